@@ -1,5 +1,5 @@
-# What compiles and links in less time and gives the same. The settings of ccache: precompiled headers are kept, and one
-# checkout is served by what was compiled in another.
+# What compiles and links in less time and gives the same. The settings of ccache stand in its launcher.
+set(TUMBLE_CCACHE_LAUNCHER ${CMAKE_CURRENT_LIST_DIR}/ccache_launcher)
 function(tumble_accelerate target)
   if(NOT TUMBLE_ACCELERATE)
     return()
@@ -8,7 +8,7 @@ function(tumble_accelerate target)
   find_program(TUMBLE_MOLD mold)
   if(TUMBLE_CCACHE AND NOT CMAKE_CXX_COMPILER_LAUNCHER)
     set_target_properties(${target} PROPERTIES CXX_COMPILER_LAUNCHER
-      "env;CCACHE_SLOPPINESS=pch_defines,time_macros,include_file_mtime,include_file_ctime;CCACHE_NOHASHDIR=1;CCACHE_BASEDIR=${CMAKE_SOURCE_DIR};${TUMBLE_CCACHE}")
+      "sh;${TUMBLE_CCACHE_LAUNCHER};${TUMBLE_CCACHE};${CMAKE_SOURCE_DIR}")
   endif()
   if(TUMBLE_MOLD AND CMAKE_CXX_COMPILER_ID STREQUAL GNU AND CMAKE_CXX_COMPILER_VERSION VERSION_GREATER_EQUAL 12.1)
     target_link_options(${target} PRIVATE -fuse-ld=mold)

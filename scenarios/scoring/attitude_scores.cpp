@@ -98,7 +98,7 @@ std::vector<Metric> attitude_metrics() {
        rmse<&AttitudeError::heading_rad, false>},
       {{"inclination_coverage_3sigma", Unit::share,
         "share of the errors of the tilt per horizontal axis, in motion, within three stated standard deviations",
-        Sense::two_sided, Place::held, kNormal3Sigma},
+        Sense::two_sided, Place::held, kNormal3Sigma, Compared::by_difference},
        Kind::attitude,
        tilt_coverage},
       {{"inclination_nees_median", Unit::number,

@@ -19,6 +19,7 @@ std::vector<Metric> trajectory_metrics(Kind kind);  ///< of kinds position and s
 std::vector<Metric> end_pose_metrics();
 std::vector<Metric> map_metrics();
 std::vector<Metric> sweep_border_metrics();
+std::vector<Metric> time_offset_metrics();  ///< of all kinds
 
 /// Besides the metrics: costs and values of the motion, which sweeps store; measures and bases of the binned metrics.
 std::vector<MetricInfo> cost_quantities();

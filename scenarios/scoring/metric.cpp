@@ -53,6 +53,7 @@ const char* symbol(Unit unit) {
     case Unit::m_s2:
       return "m/s2";
     case Unit::s:
+    case Unit::time_offset:
       return "s";
     case Unit::mib:
       return "mib";
@@ -79,6 +80,8 @@ MetricStyle style_of(Unit unit) {
       return {"°", 180.0 / std::numbers::pi};
     case Unit::m_s2:
       return {"m/s²", 1.0};
+    case Unit::time_offset:
+      return {"ms", 1e3};
     case Unit::mib:
       return {"MiB", 1.0};
     case Unit::rad_s:

@@ -16,13 +16,21 @@ namespace tumble::scenarios {
 enum class Sense { lower, higher, two_sided, none };
 
 /// Unit of the stored values. `share` lies in [0, 1]; `verdict` is 0 or 1 on each draw, 1 the bad one: its share over
-/// the draws says something, its median does not.
-enum class Unit { number, share, verdict, rad, rad_s, m, m_s, m_s2, s, mib };
+/// the draws says something, its median does not. `time_offset` is in seconds, has a sign and is small: shown in
+/// milliseconds.
+enum class Unit { number, share, verdict, rad, rad_s, m, m_s, m_s2, s, time_offset, mib };
 /// As metrics' names end: "1", "rad", "rad/s" ...
 const char* symbol(Unit unit);
 
+/// What two values of a metric on one draw differ by, for the gate: by their ratio (errors, normalised errors), or by
+/// their difference (shares of a whole, and what has a sign).
+enum class Compared { by_ratio, by_difference };
+
 /// Whether a metric is shown first, is held by the gate besides, or stands in the long table alone.
 enum class Place { detail, held, headline };
+
+/// Of a metric whose sense is not two-sided.
+inline constexpr double kNoTarget = std::numeric_limits<double>::quiet_NaN();
 
 /// A metric, or another quantity of a draw that is shown as metrics are, self-describing.
 struct MetricInfo {
@@ -31,7 +39,8 @@ struct MetricInfo {
   std::string doc;
   Sense sense = Sense::none;
   Place place = Place::detail;
-  double target = std::numeric_limits<double>::quiet_NaN();  ///< of a two-sided one
+  double target = kNoTarget;  ///< of a two-sided one
+  Compared compared = Compared::by_ratio;
 };
 
 /// The description of what is called `name`: a metric, its base when it is of a bin, a cost, a value of the motion.

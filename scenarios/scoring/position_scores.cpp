@@ -108,7 +108,7 @@ std::vector<Metric> position_metrics() {
        height_error_max},
       {{"position_coverage_3sigma", Unit::share,
         "share of the errors per axis, once it moves, within three stated standard deviations", Sense::two_sided,
-        Place::held, kNormal3Sigma},
+        Place::held, kNormal3Sigma, Compared::by_difference},
        Kind::position,
        coverage_3sigma},
       {{"position_nees_median", Unit::number,

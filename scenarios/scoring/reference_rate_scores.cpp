@@ -175,7 +175,7 @@ std::vector<Metric> reference_rate_metrics() {
   all.push_back(
       {{"rate_reference_coverage_3sigma", Unit::share,
         "share of clipped axes whose error lies within three standard deviations of method and reference together",
-        Sense::two_sided, Place::detail, kNormal3Sigma},
+        Sense::two_sided, Place::detail, kNormal3Sigma, Compared::by_difference},
        Kind::rate,
        coverage});
   all.push_back(

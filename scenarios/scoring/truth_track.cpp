@@ -96,16 +96,24 @@ Eigen::Vector3d TruthTrack::position(std::size_t index) const {
   return truth_->p_WB_m[index] + truth_->q_WB[index] * T_BA_.translation();
 }
 
-PoseState TruthTrack::pose(std::int64_t time_ns) const {
+TruthTrack::Between TruthTrack::between(std::int64_t time_ns) const {
   const auto index = static_cast<std::size_t>(time_ns / truth_->period_ns);
   const double share = static_cast<double>(time_ns % truth_->period_ns) / static_cast<double>(truth_->period_ns);
   // at a sample the next one has no part, and may be unknown
-  const std::size_t next = share > 0.0 ? std::min(index + 1, truth_->p_WB_m.size() - 1) : index;
+  return {index, share > 0.0 ? std::min(index + 1, truth_->p_WB_m.size() - 1) : index, share};
+}
 
+Eigen::Vector3d TruthTrack::body_rate_rad_s(std::int64_t time_ns) const {
+  const auto [index, next, share] = between(time_ns);
+  return (1.0 - share) * truth_->w_WB_B_rad_s[index] + share * truth_->w_WB_B_rad_s[next];
+}
+
+PoseState TruthTrack::pose(std::int64_t time_ns) const {
+  const auto [index, next, share] = between(time_ns);
   const Eigen::Quaterniond q_WB = truth_->q_WB[index].slerp(share, truth_->q_WB[next]);
   const Eigen::Vector3d p_WB = (1.0 - share) * truth_->p_WB_m[index] + share * truth_->p_WB_m[next];
   const Eigen::Vector3d v_WB = (1.0 - share) * truth_->v_WB_m_s[index] + share * truth_->v_WB_m_s[next];
-  const Eigen::Vector3d w_B = (1.0 - share) * truth_->w_WB_B_rad_s[index] + share * truth_->w_WB_B_rad_s[next];
+  const Eigen::Vector3d w_B = body_rate_rad_s(time_ns);
 
   PoseState pose;
   pose.time_ns = time_ns;
@@ -115,10 +123,12 @@ PoseState TruthTrack::pose(std::int64_t time_ns) const {
   return pose;
 }
 
+Eigen::Vector3d TruthTrack::rate_rad_s(std::int64_t time_ns) const {
+  return T_BA_.linear().transpose() * body_rate_rad_s(time_ns);
+}
+
 double TruthTrack::path_m(std::int64_t time_ns) const {
-  const auto index = static_cast<std::size_t>(time_ns / truth_->period_ns);
-  const std::size_t next = std::min(index + 1, path_m_.size() - 1);
-  const double share = static_cast<double>(time_ns % truth_->period_ns) / static_cast<double>(truth_->period_ns);
+  const auto [index, next, share] = between(time_ns);
   return (1.0 - share) * path_m_[index] + share * path_m_[next];
 }
 

@@ -36,12 +36,22 @@ class TruthTrack {
   /// Pose of the frame in W and velocity of its origin, NaN where position is not known; the attitude at `time_ns` must
   /// be covered. O(1).
   PoseState pose(std::int64_t time_ns) const;
+  /// Turning rate of the frame in W, its own axes [rad/s]; `time_ns` must be covered. NaN where the truth does not know
+  /// it. O(1).
+  Eigen::Vector3d rate_rad_s(std::int64_t time_ns) const;
   /// Length of the way that the frame's origin has gone since time 0 [m]; `time_ns` must be covered.
   double path_m(std::int64_t time_ns) const;
   /// Whether the body stands still around the instant; `time_ns` must be covered.
   bool at_rest(std::int64_t time_ns) const;
 
  private:
+  /// The samples around an instant, and how far from the first to the second it lies.
+  struct Between {
+    std::size_t index = 0, next = 0;
+    double share = 0.0;
+  };
+  Between between(std::int64_t time_ns) const;
+  Eigen::Vector3d body_rate_rad_s(std::int64_t time_ns) const;
   bool known(std::size_t index) const;
   bool attitude_known(std::size_t index) const;
   Eigen::Vector3d position(std::size_t index) const;

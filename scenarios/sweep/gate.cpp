@@ -25,9 +25,14 @@ std::string text_of(double value) {
   return text.str();
 }
 
-/// Errors and normalised errors differ by their ratio; shares that are none by their difference.
 bool by_difference(const MetricInfo& info) {
-  return info.unit == Unit::share && info.sense != Sense::lower;
+  return info.compared == Compared::by_difference;
+}
+
+/// What of `difference` does not matter.
+double margin_of(const MetricInfo& info, const GatePolicy& policy) {
+  if (!by_difference(info)) return std::log1p(policy.margin);
+  return info.unit == Unit::time_offset ? policy.time_margin_s : policy.share_margin;
 }
 
 /// How much more `now` is than `before`, as the metric is compared.
@@ -39,9 +44,11 @@ double difference(const MetricInfo& info, double before, double now) {
   return std::log(now / before);
 }
 
-/// How bad a draw is: what `GatePolicy::worst` is a multiple of.
+/// How bad a draw is: what `GatePolicy::worst` is a multiple of. Of a share what it lacks, of what has a sign how far
+/// it lies from its target.
 double badness(const MetricInfo& info, double value) {
-  return by_difference(info) ? 1.0 - value : value;
+  if (!by_difference(info)) return value;
+  return info.unit == Unit::share ? 1.0 - value : std::abs(value - info.target);
 }
 
 struct Pair {
@@ -91,7 +98,7 @@ void hold_worst_draw(const MetricInfo& info, const std::vector<Pair>& pairs, con
   };
   const Pair& before = *std::max_element(pairs.begin(), pairs.end(), worse(&Pair::before));
   const Pair& now = *std::max_element(pairs.begin(), pairs.end(), worse(&Pair::now));
-  const double slack = by_difference(info) ? policy.share_margin : 0.0;
+  const double slack = by_difference(info) ? margin_of(info, policy) : 0.0;
   if (!(badness(info, now.now) > policy.worst * badness(info, before.before) + slack)) return;
   result.seed = now.seed;
   result.fault = "worst draw: " + text_of(now.now) + " at seed " + std::to_string(now.seed) + ", was " +
@@ -113,7 +120,7 @@ GateResult hold_metric(const GateRun& all, const MethodRun& before, const Method
   }
   const double middle = quantile(more, 0.5);
   result.change = by_difference(info) ? middle : std::expm1(middle);
-  const double margin = by_difference(info) ? policy.share_margin : std::log1p(policy.margin);
+  const double margin = margin_of(info, policy);
   const double rises = chance_beyond(more, margin), falls = chance_beyond(less, margin);
   double worse = 1.0, better = 1.0;
   if (info.sense == Sense::lower) worse = rises, better = falls;

@@ -20,7 +20,8 @@
 /// - presence: an ok outcome has every metric that it had;
 /// - the middle, of each held metric (metric.hpp, `held_metrics`): no shift of the pairs for the worse beyond the
 /// margin.
-///   Pairs differ by the logarithm of their ratio, shares (but errors) by their difference. The exact signed-rank test
+///   Pairs differ by the logarithm of their ratio or by their difference, as the metric says (`Compared`). The exact
+///   signed-rank test
 ///   (statistics/paired.hpp) of the differences less the margin; metrics with a target are held on both sides, a
 ///   covariance that becomes smaller fails as one that becomes larger does. A run that is no worse fails any of all
 ///   tests of a gate with at most `risk` (Bonferroni);
@@ -50,6 +51,7 @@ struct GatePolicy {
   double risk = 0.05;           ///< chance that a run which is no worse fails, over all tests; (0, 0.5]
   double margin = 0.02;         ///< shift of the pairs that does not matter, of ratios; [0, 10]
   double share_margin = 0.005;  ///< the same, of differences of shares; [0, 1]
+  double time_margin_s = 5e-5;  ///< the same, of differences of offsets in time; [0, 1]
   double worst = 2.0;           ///< how many times the accepted worst draw a draw may be; at least 1
 };
 
@@ -80,7 +82,7 @@ struct GateResult {
   std::size_t draws = 0;                   ///< pairs that count
   double accepted = 0.0;                   ///< median, or the share of draws that were not ok
   double value = 0.0;                      ///< the same now
-  double change = 0.0;                     ///< median of the pairs': of ratios less one, or of differences of shares
+  double change = 0.0;                     ///< median of the pairs': of ratios less one, or of differences
   double chance = 1.0;                     ///< of pairs as bad, were the run no worse; times the number of tests
   bool better = false;                     ///< by the same test the other way: accept it, and it is held
   std::string fault = {};                  ///< what is wrong, with a seed; empty when nothing is

@@ -171,7 +171,7 @@ Gate load_gate(const DataRoot& data, const std::string& name, std::span<const Me
                    " --accept' makes it");
   }
   const YamlNode root = YamlNode::parse(read_text_file(path), path.string());
-  const std::array<std::string, 5> required = {"suite", "risk", "margin", "share_margin", "worst"};
+  const std::array<std::string, 6> required = {"suite", "risk", "margin", "share_margin", "time_margin_s", "worst"};
   const auto fields = root.fields(required);
   Gate gate;
   gate.suite = fields.at("suite").text();
@@ -179,6 +179,7 @@ Gate load_gate(const DataRoot& data, const std::string& name, std::span<const Me
   gate.policy.risk = within(fields.at("risk"), 1e-6, 0.5);
   gate.policy.margin = within(fields.at("margin"), 0.0, 10.0);
   gate.policy.share_margin = within(fields.at("share_margin"), 0.0, 1.0);
+  gate.policy.time_margin_s = within(fields.at("time_margin_s"), 0.0, 1.0);
   gate.policy.worst = within(fields.at("worst"), 1.0, 1000.0);
   const std::filesystem::path table = std::filesystem::path(path).replace_extension(".csv");
   gate.accepted = parse_gate_run(read_text_file(table), table.string(), described);
@@ -190,7 +191,8 @@ std::string to_yaml(const Gate& gate) {
          "# How a run is held to the accepted one, draw by draw: scenarios/sweep/gate.hpp says what each number does.\n"
          "suite: " +
          gate.suite + "\nrisk: " + number_text(gate.policy.risk) + "\nmargin: " + number_text(gate.policy.margin) +
-         "\nshare_margin: " + number_text(gate.policy.share_margin) + "\nworst: " + number_text(gate.policy.worst) +
+         "\nshare_margin: " + number_text(gate.policy.share_margin) +
+         "\ntime_margin_s: " + number_text(gate.policy.time_margin_s) + "\nworst: " + number_text(gate.policy.worst) +
          "\n";
 }
 

@@ -216,7 +216,8 @@ void write_documents(const path& folder, const path& scratch) {
   bench.draws = {{"hill", 1, "mild", "ab", OutcomeStatus::ok, {{"ate_m", 0.5}}},
                  {"hill", 2, "wild", "", OutcomeStatus::timeout, {}}};
   put_text(in(folder, "bench_results") / "small", to_line(bench) + "\n");
-  put_text(in(folder, "gate") / "small", "suite: gate\nrisk: 0.05\nmargin: 0.02\nshare_margin: 0.005\nworst: 2\n");
+  put_text(in(folder, "gate") / "small",
+           "suite: gate\nrisk: 0.05\nmargin: 0.02\nshare_margin: 0.005\ntime_margin_s: 5e-05\nworst: 2\n");
   put_text(in(folder, "gate_run") / "small",
            "scenario,kind,method,metric,1,2\nhill,slam,tumble,status,ok,failed\nhill,slam,tumble,map_overlap,0.75,\n");
 

@@ -97,6 +97,11 @@ scenarios::GateRun of_suite(scenarios::GateRun run, const scenarios::Suite& suit
 
 std::string change_text(const GateResult& result) {
   if (std::isnan(result.change)) return "";
+  const scenarios::MetricInfo& info = scenarios::metric_info(result.metric);
+  if (info.unit == scenarios::Unit::time_offset) {
+    const scenarios::MetricStyle style = scenarios::style_of(info.unit);
+    return fmt::format("{:+.2f} {}", style.factor * result.change, style.unit);
+  }
   const bool ratio = !result.metric.empty() && std::abs(result.change) < 10.0;
   return ratio ? fmt::format("{:+.1f} %", 100.0 * result.change) : number_text(result.change);
 }

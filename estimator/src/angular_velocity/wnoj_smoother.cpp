@@ -12,7 +12,8 @@ constexpr double kVarianceMin = 1e-18;
 constexpr double kVarianceMax = 1e18;
 
 // One eliminated knot of one axis: R x_k + S x_{k+1} = z with noise of unit variance, R upper triangular.
-// The state x is (rate, acceleration * time_scale), which keeps both columns of like size for any sample rate.
+// The state x is (rate, acceleration * time_scale), which keeps both columns of like size for any sample rate. saave.md
+// (S6)
 struct Row {
   Eigen::Matrix2d R, S;
   Eigen::Vector2d z;
@@ -45,7 +46,8 @@ void triangularise(Stack& a) {
 }
 
 Row eliminate(Carried& carried, double rate, double deviation, double dt_s, double psd, double time_scale_s) {
-  // square root of Q^-1 for the scaled state: Q = L L', L lower triangular, so L^-1 (F x_k - x_{k+1}) is white
+  // square root of Q^-1 for the scaled state: Q = L L', L lower triangular, so L^-1 (F x_k - x_{k+1}) is white;
+  // saave.md (S5)
   const double ratio = dt_s / time_scale_s;
   const double unit = std::sqrt(psd * dt_s) * dt_s;
   const double l11 = unit / std::sqrt(3.0);
@@ -116,7 +118,8 @@ void smooth_axis(std::span<const WnojSmoother::Measurement> measurements, int ax
   }
   measure(carried, measurements.back().rate_rad_s[axis], std::sqrt(measurements.back().variance_rad2_s2[axis]));
 
-  // x_k = R^-1 (z - S x_{k+1}), covariance R^-1 (1 + S P S') R^-T: sums of positive terms, nothing cancels
+  // x_k = R^-1 (z - S x_{k+1}), covariance R^-1 (1 + S P S') R^-T: sums of positive terms, nothing cancels; saave.md
+  // (S7)
   Eigen::Matrix2d R_inv = carried.R.triangularView<Eigen::Upper>().solve(Eigen::Matrix2d::Identity());
   Eigen::Vector2d x = R_inv * carried.z;
   Eigen::Matrix2d P = R_inv * R_inv.transpose();

@@ -132,6 +132,7 @@ std::span<const Mutation> mutations() {
       Mutation{"lost_bump", "bump", "position/tumble", nullptr, lose_a_bump},
       Mutation{"shift_1_ms", "hill", "rate/tumble", nullptr, shift_by_1_ms},
       Mutation{"shift_1_ms_live", "hill", "rate/tumble_lag", nullptr, shift_by_1_ms},
+      Mutation{"shift_1_ms_poses", "hill", "slam/tumble", nullptr, shift_by_1_ms},
       Mutation{"lever_arm_sign_given_live", "hill", "rate/tumble_lag", flip_lever_arms, nullptr},
       Mutation{"covariance_halved_live", "hill", "rate/tumble_lag", nullptr, halve_covariances},
       Mutation{"covariance_doubled_live", "hill", "rate/tumble_lag", nullptr, double_covariances},

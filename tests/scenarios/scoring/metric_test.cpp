@@ -22,12 +22,29 @@ TEST(MetricInfo, TwoSidedMetricsHaveATargetAndTheOthersNone) {
     EXPECT_EQ(metric.info.sense == Sense::two_sided, std::isfinite(metric.info.target)) << metric.info.name;
     const bool consistency = metric.info.name.find("nees") != std::string::npos ||
                              metric.info.name.find("coverage_3sigma") != std::string::npos;
-    EXPECT_EQ(metric.info.sense == Sense::two_sided, consistency) << metric.info.name;
+    const bool offset = metric.info.unit == Unit::time_offset;
+    EXPECT_EQ(metric.info.sense == Sense::two_sided, consistency || offset) << metric.info.name;
     if (metric.info.place != Place::detail) {
       EXPECT_NE(metric.info.sense, Sense::none) << metric.info.name;
     }
   }
   for (const Sense sense : {Sense::lower, Sense::higher, Sense::two_sided, Sense::none}) EXPECT_GE(count[sense], 2u);
+}
+
+// a ratio says nothing of what may be 0 or below; a difference needs a margin of its unit, which gate.hpp has of two
+TEST(MetricInfo, WhatTheGateHoldsIsComparedByWhatItsUnitHas) {
+  std::map<Compared, std::size_t> count;
+  for (const Metric& metric : metrics()) {
+    const MetricInfo& info = metric.info;
+    ++count[info.compared];
+    if (info.compared == Compared::by_difference) {
+      EXPECT_TRUE(info.unit == Unit::share || info.unit == Unit::time_offset) << info.name;
+    } else if (info.place != Place::detail) {
+      EXPECT_FALSE(info.target == 0.0 || info.sense == Sense::higher) << info.name;
+    }
+  }
+  EXPECT_GE(count[Compared::by_difference], 10u);
+  EXPECT_GE(count[Compared::by_ratio], 20u);
 }
 
 TEST(MetricInfo, EveryKindHasHeadlinesAndTheGateHoldsThem) {
@@ -60,6 +77,8 @@ TEST(MetricInfo, SharesAreShownInPercentAllOfThem) {
     EXPECT_EQ(style_of(metric_info(name).unit).unit, "%") << name;
   }
   EXPECT_EQ(style_of(metric_info("pose_nees").unit).unit, "");
+  EXPECT_EQ(style_of(metric_info("pose_time_offset_s").unit).unit, "ms");
+  EXPECT_EQ(style_of(metric_info("estimate_cpu_s").unit).unit, "s");
 }
 
 TEST(MetricInfo, BetterIsLowerHigherOrNearerToTheTarget) {
@@ -70,6 +89,8 @@ TEST(MetricInfo, BetterIsLowerHigherOrNearerToTheTarget) {
   EXPECT_TRUE(is_better(nees, 1.2, 0.3)) << "the most over-cautious covariance is not the best";
   EXPECT_TRUE(is_better(nees, 0.8, 2.0));
   EXPECT_FALSE(is_better(nees, 0.01, 1.5));
+  EXPECT_TRUE(is_better(metric_info("pose_time_offset_s"), -1e-4, 2e-4)) << "nearer to 0";
+  EXPECT_FALSE(is_better(metric_info("pose_time_offset_s"), -3e-4, 2e-4));
   EXPECT_FALSE(is_better(metric_info("estimate_cpu_s"), 1.0, 2.0));
   EXPECT_FALSE(is_better(metric_info("ate_m"), std::nan(""), 2.0));
   EXPECT_EQ(worst_value(metric_info("ate_m")), kInfinity);

@@ -17,7 +17,8 @@ namespace {
 using ::testing::HasSubstr;
 
 constexpr std::uint64_t kDraws = 16;
-constexpr const char *kError = "translation_error_end_m", *kShare = "map_overlap", *kNees = "pose_nees";
+constexpr const char *kError = "translation_error_end_m", *kShare = "map_overlap", *kNees = "pose_nees",
+                     *kOffset = "pose_time_offset_s";
 
 Outcome outcome_of(std::uint64_t seed) {
   Outcome outcome;
@@ -31,6 +32,7 @@ Outcome outcome_of(std::uint64_t seed) {
   outcome.scores = {{kError, 0.01 + 0.002 * number},
                     {kShare, 0.9 + 0.002 * number},
                     {kNees, 0.4 + 0.1 * number},
+                    {kOffset, 1e-4 * (number - 8.0)},  // early and late
                     {"map_failed", 0.0},
                     {"estimate_cpu_s", number}};
   return outcome;
@@ -75,7 +77,7 @@ Change scaled(const char* metric, double factor) {
 
 TEST(Gate, TheAcceptedRunPasses) {
   const std::vector<GateResult> held = held_after([](Outcome&) {});
-  ASSERT_EQ(held.size(), 4u) << "outcomes and three metrics; verdicts count as outcomes, costs are not held";
+  ASSERT_EQ(held.size(), 5u) << "outcomes and four metrics; verdicts count as outcomes, costs are not held";
   for (const GateResult& result : held) {
     EXPECT_EQ(result.fault, "");
     EXPECT_FALSE(result.better);
@@ -102,6 +104,21 @@ TEST(Gate, WhatGoesUpAndDownPasses) {
 TEST(Gate, ACovarianceIsHeldOnBothSides) {
   EXPECT_THAT(fault_after(kNees, scaled(kNees, 2.0)), HasSubstr("higher in 16"));
   EXPECT_THAT(fault_after(kNees, scaled(kNees, 0.5)), HasSubstr("lower in 16"));
+}
+
+TEST(Gate, WhatHasASignIsHeldByItsDifferenceOnBothSides) {
+  const auto later = [](double by_s) { return [=](Outcome& outcome) { score_of(outcome, kOffset) += by_s; }; };
+  EXPECT_THAT(fault_after(kOffset, later(1e-4)), HasSubstr("higher in 16"));
+  EXPECT_THAT(fault_after(kOffset, later(-1e-4)), HasSubstr("lower in 16"));
+  EXPECT_EQ(fault_after(kOffset, later(4e-5)), "") << "within the margin of 50 us";
+  EXPECT_NEAR(result_of(held_after(later(1e-4)), kOffset).change, 1e-4, 1e-12) << "seconds, not a ratio";
+  const auto one = [](double to_s) {
+    return [=](Outcome& outcome) {
+      if (outcome.seed == 8) score_of(outcome, kOffset) = to_s;
+    };
+  };
+  EXPECT_THAT(fault_after(kOffset, one(-1.7e-3)), HasSubstr("seed 8")) << "twice the worst of 0.8 ms, and the margin";
+  EXPECT_EQ(fault_after(kOffset, one(-1.6e-3)), "");
 }
 
 TEST(Gate, ADrawThatIsLostIsSeen) {
@@ -160,7 +177,8 @@ TEST(Gate, AMethodOrARunThatIsMissingFails) {
 
 class GateFiles : public testing::TemporaryFolder {
  protected:
-  static constexpr const char* kPolicy = "suite: small\nrisk: 0.05\nmargin: 0.02\nshare_margin: 0.005\nworst: 2\n";
+  static constexpr const char* kPolicy =
+      "suite: small\nrisk: 0.05\nmargin: 0.02\nshare_margin: 0.005\ntime_margin_s: 5e-05\nworst: 2\n";
   static constexpr const char* kHead = "scenario,kind,method,metric,1,2\n";
 
   std::string complaint(const std::string& policy, const std::string& run) const {
@@ -181,7 +199,7 @@ TEST_F(GateFiles, ReadBackExactly) {
   outcomes[2].status = OutcomeStatus::crashed;
   outcomes[5].scores.erase(outcomes[5].scores.begin());
   for (const Outcome& outcome : outcomes) results.store(outcome);
-  const Gate gate{"small", {0.01, 0.03, 0.004, 1.5}, gate_run(results, 1, kDraws)};
+  const Gate gate{"small", {0.01, 0.03, 0.004, 2e-5, 1.5}, gate_run(results, 1, kDraws)};
   write("scenarios/gates/small.yaml", to_yaml(gate));
   write("scenarios/gates/small.csv", to_csv(gate.accepted));
   const DataRoot data{folder_};
@@ -189,6 +207,7 @@ TEST_F(GateFiles, ReadBackExactly) {
   const Gate back = load_gate(data, "small");
   EXPECT_EQ(back.suite, "small");
   EXPECT_EQ(back.policy.risk, 0.01);
+  EXPECT_EQ(back.policy.time_margin_s, 2e-5);
   EXPECT_EQ(back.policy.worst, 1.5);
   EXPECT_EQ(to_csv(back.accepted), to_csv(gate.accepted));
   EXPECT_EQ(to_csv(gate_run(outcomes, 1, kDraws)), to_csv(gate.accepted)) << "database and outcomes say the same";
@@ -210,7 +229,8 @@ TEST_F(GateFiles, SayWhatIsWrongAndWhere) {
   EXPECT_THAT(complaint(kPolicy, good + "hill,slam,tumble,status,ok,ok\n"), HasSubstr("twice"));
   EXPECT_THAT(complaint(kPolicy, "scenario,kind,method,metric,2,1\n"), HasSubstr("seeds must rise"));
   EXPECT_THAT(complaint(kPolicy, head), HasSubstr("nothing accepted"));
-  EXPECT_THAT(complaint("suite: small\nrisk: 0.7\nmargin: 0\nshare_margin: 0\nworst: 2\n", good), HasSubstr("0.7"));
+  EXPECT_THAT(complaint("suite: small\nrisk: 0.7\nmargin: 0\nshare_margin: 0\ntime_margin_s: 0\nworst: 2\n", good),
+              HasSubstr("0.7"));
   write("scenarios/gates/other.yaml", kPolicy);
   write("scenarios/gates/other.csv", good);
   try {

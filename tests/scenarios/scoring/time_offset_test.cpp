@@ -1,0 +1,136 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Offsets in time of estimates that are the truth of another instant: an offset in closed form.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <map>
+#include <string>
+
+#include "scenarios/scoring/clipping.hpp"
+#include "scenarios/scoring/perfect_estimate.hpp"
+#include "tumble/common/so3.hpp"
+
+namespace tumble::scenarios {
+namespace {
+
+using testing::perfect_estimate;
+using testing::scores;
+
+constexpr double kLate_s = 0.3e-3;
+
+const testing::SyntheticMotion& motion() {
+  static const testing::SyntheticMotion motion;
+  return motion;
+}
+
+const sim::Recording& rig() {
+  static const sim::Recording recording = testing::synthetic_rig(motion());
+  return recording;
+}
+
+/// Attitudes and poses of the body as they truly were `late_s` before their stamps.
+Estimate late_estimate(double late_s) {
+  Estimate estimate = perfect_estimate(rig(), Frame::body);
+  for (AttitudeState& attitude : estimate.attitudes)
+    attitude.q_WA = motion().attitude(1e-9 * static_cast<double>(attitude.time_ns) - late_s);
+  for (PoseState& pose : estimate.poses) {
+    const double time_s = 1e-9 * static_cast<double>(pose.time_ns) - late_s;
+    pose.p_WA_m = motion().position_m(time_s);
+    pose.q_WA = motion().attitude(time_s);
+  }
+  return estimate;
+}
+
+const std::map<Kind, std::string>& of_attitudes() {
+  static const std::map<Kind, std::string> all = {{Kind::attitude, "attitude_time_offset_s"},
+                                                  {Kind::position, "pose_time_offset_s"},
+                                                  {Kind::slam, "pose_time_offset_s"}};
+  return all;
+}
+
+// to the first order in the offset; the second, of the acceleration, cancels from rest to rest, the third is 1e-8 of it
+TEST(TimeOffset, OfAttitudesAndPosesIsWhatTheyAreLateBy) {
+  for (const auto& [kind, name] : of_attitudes()) {
+    for (const double late_s : {kLate_s, -kLate_s, 1e-3, 0.0})
+      EXPECT_NEAR(scores(kind, late_estimate(late_s), rig()).at(name), late_s, 1e-9) << to_string(kind);
+  }
+}
+
+TEST(TimeOffset, OfAttitudesIsTheSameInAWorldOfItsOwn) {
+  Estimate estimate = late_estimate(kLate_s);
+  testing::move_world(Eigen::Translation3d(3.0, -7.0, 2.0) * Eigen::AngleAxisd(2.5, Eigen::Vector3d::UnitZ()),
+                      estimate);
+  for (const auto& [kind, name] : of_attitudes())
+    EXPECT_NEAR(scores(kind, estimate, rig()).at(name), kLate_s, 1e-9) << to_string(kind);
+}
+
+/// The recording with a turning rate that rises steadily, nothing clipped: differences of it are exact.
+sim::Recording steadily_faster(const Eigen::Vector3d& acceleration_rad_s2) {
+  sim::Recording recording = rig();
+  sim::ImuTruth& truth = recording.truth.imus.front();
+  for (std::size_t k = 0; k < truth.rate_rad_s.size(); ++k) {
+    const double time_s = 1e-9 * static_cast<double>(recording.sensors.imus.front().time_ns[k]);
+    truth.rate_rad_s[k] = truth.gyro_unclipped_rad_s[k] = time_s * acceleration_rad_s2;
+  }
+  recording.sensors.imus.front().gyro_rad_s = truth.rate_rad_s;
+  return recording;
+}
+
+TEST(TimeOffset, OfRatesIsWhatTheyAreLateBy) {
+  const Eigen::Vector3d acceleration_rad_s2(2.0, -1.0, 0.5);
+  const sim::Recording recording = steadily_faster(acceleration_rad_s2);
+  for (const double late_s : {kLate_s, -kLate_s, 1e-3}) {
+    Estimate estimate = perfect_estimate(recording);
+    for (RateState& rate : estimate.rates) rate.w_WI_I_rad_s -= late_s * acceleration_rad_s2;
+    EXPECT_NEAR(scores(Kind::rate, estimate, recording).at("rate_time_offset_s"), late_s, 1e-13);
+  }
+}
+
+// in the motion there and back the rail hides samples: they have no part, whatever is claimed of them
+TEST(TimeOffset, OfRatesIsToldByWhatIsNotClipped) {
+  Estimate estimate = perfect_estimate(rig());
+  const ClippingTruth truth(rig().sensors, rig().truth);
+  std::size_t clipped = 0;
+  for (std::size_t k = 0; k < estimate.rates.size(); ++k) {
+    const double middle_s = 1e-9 * static_cast<double>(estimate.rates[k].time_ns) - 2.5e-3;
+    const Eigen::Matrix3d R_IB = rig().truth.imus.front().T_BI.linear().transpose();
+    estimate.rates[k].w_WI_I_rad_s = R_IB * motion().rate_B_rad_s(middle_s - kLate_s);
+    if (truth.clipped_axes(k) == 0) continue;
+    ++clipped;
+    estimate.rates[k].w_WI_I_rad_s.setZero();
+  }
+  ASSERT_GT(clipped, 50u);
+  // the acceleration is a difference over 10 ms: 1e-4 of an offset
+  EXPECT_NEAR(scores(Kind::rate, estimate, rig()).at("rate_time_offset_s"), kLate_s, 1e-3 * kLate_s);
+}
+
+// what is wrong, but not late: across the turn, along it now forth and now back, or the same whichever way it turns;
+// each is zero where the estimate stands at the start, where its world is aligned
+TEST(TimeOffset, OfAnErrorThatIsNoneOfTimeIsZero) {
+  Estimate estimate = late_estimate(0.0);
+  const Eigen::Vector3d across_W = Eigen::Vector3d::UnitZ().cross(motion().axis_W).normalized();
+  for (AttitudeState& attitude : estimate.attitudes) attitude.q_WA = so3::exp(0.02 * across_W) * attitude.q_WA;
+  for (std::size_t k = 1; k < estimate.poses.size(); k += 2) {
+    PoseState& pose = estimate.poses[k];
+    pose.q_WA = so3::exp((k % 4 == 1 ? 0.02 : -0.02) * motion().axis_W) * pose.q_WA;
+    pose.p_WA_m.x() += 0.5;
+  }
+  for (RateState& rate : estimate.rates) rate.w_WI_I_rad_s += Eigen::Vector3d(0.3, -0.2, 0.1);
+  EXPECT_NEAR(scores(Kind::attitude, estimate, rig()).at("attitude_rmse_rad"), 0.02, 1e-6);
+  EXPECT_NEAR(scores(Kind::slam, estimate, rig()).at("ate_rad"), 0.02 / std::sqrt(2.0), 1e-4);
+  EXPECT_NEAR(scores(Kind::attitude, estimate, rig()).at("attitude_time_offset_s"), 0.0, 1e-9);
+  EXPECT_NEAR(scores(Kind::slam, estimate, rig()).at("pose_time_offset_s"), 0.0, 1e-6);
+  EXPECT_NEAR(scores(Kind::rate, estimate, rig()).at("rate_time_offset_s"), 0.0, 1e-6);
+}
+
+TEST(TimeOffset, OfABodyThatNeverTurnsIsNone) {
+  testing::SyntheticMotion still;
+  still.angle_rad = 0.0;
+  const sim::Recording recording = testing::synthetic_rig(still);
+  for (const auto& [kind, name] : of_attitudes())
+    EXPECT_FALSE(scores(kind, perfect_estimate(recording), recording).contains(name)) << to_string(kind);
+  EXPECT_FALSE(scores(Kind::rate, perfect_estimate(recording), recording).contains("rate_time_offset_s"));
+}
+
+}  // namespace
+}  // namespace tumble::scenarios
