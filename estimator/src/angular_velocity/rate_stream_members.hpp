@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include "frozen_members.hpp"
 #include "rails_members.hpp"
 #include "tumble/angular_velocity/rate_stream.hpp"
 
@@ -88,6 +89,7 @@ template <StateOf<RateStream::State> Self, class Visitor>
 void members(Self& s, Visitor& visit) {
   visit("rate.rails", s.rails);
   visit("rate.rests", s.rests);
+  visit("rate.frozen", s.frozen);
   visit("rate.window", s.window);
   visit("rate.rig", s.rig);
   visit("rate.rig_covariance", s.rig_covariance);

@@ -53,6 +53,15 @@ TEST(Verdicts, SlamFindsAWrongCalibrationAndSaysWhenSensorsContradictEachOther) 
   }
 }
 
+// The same by what came before alone, which the library's door tells its user too.
+TEST(Verdicts, SlamThatLagsFindsALidarOfAnotherScale) {
+  const DataRoot data{test::source_dir()};
+  const SimulatedDraw draw = simulate_draw(data, load_scenario(data, "hill"), 62022, 1);
+  const Method& method = *find_methods("slam/tumble_lag").at(0);
+  EXPECT_EQ(run(method, draw, "none").localised, 1.0);
+  EXPECT_EQ(run(method, draw, "lidar_ranges_long").localised, 0.0);
+}
+
 // A scale that all gyros share is in the way too, where nothing contradicts it: more than a metre off, and told by the
 // forces of units at different places.
 TEST(Verdicts, PositionTellsGyrosOfAnotherScale) {

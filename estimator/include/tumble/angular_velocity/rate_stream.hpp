@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "tumble/angular_velocity/detail/arrow_solver.hpp"
+#include "tumble/angular_velocity/detail/frozen_axes.hpp"
 #include "tumble/angular_velocity/detail/least_rails.hpp"
 #include "tumble/angular_velocity/detail/rail_watch.hpp"
 #include "tumble/angular_velocity/detail/rate_model.hpp"
@@ -124,6 +125,7 @@ class RateStream {
   struct State {
     RailWatch::State rails;
     RestDetector::State rests;
+    FrozenAxes::State frozen;
     std::vector<Knot> window;  ///< oldest first
     RigConstants rig;
     RigConstants::Matrix rig_covariance;
@@ -169,6 +171,10 @@ class RateStream {
   /// Estimates of the samples still in the window that push() has not given out, oldest first, appended to `out`.
   void flush(const State& state, std::vector<RateState>& out) const;
 
+  /// Whether the IMU can be believed just now: `out_of_range` with the axis by name that has frozen (FrozenAxes), whose
+  /// rates state the fastest rate that was read as their deviation.
+  Status doubt(const State& state) const { return frozen_.verdict(state.frozen); }
+
   /// What has been learnt of the rig.
   RigCalibration calibration(const State& state) const { return {state.rig, widened(state)}; }
 
@@ -204,6 +210,7 @@ class RateStream {
   Params params_;
   RailWatch rails_;
   RestDetector rests_;
+  FrozenAxes frozen_;
   RateModel model_;
   std::size_t capacity_;
   std::size_t every_;  ///< samples from one step to the next
