@@ -351,6 +351,20 @@ std::vector<ImuSample> noisy(std::vector<ImuSample> imu) {
   return imu;
 }
 
+// Gravity turns as it should in the mirrored world too: only flight tells.
+TEST(TumblingOdometry, TellsAnAccelerometerOfTheOtherSense) {
+  ThrownBody body;
+  body.rail_rad_s = 20.0;  // so that the flight is read
+  TumblingOdometry sound(params_of(body)), mirrored(params_of(body));
+  for (ImuSample sample : noisy(body.imu())) {
+    ASSERT_TRUE(sound.add_imu(sample).ok());
+    sample.specific_force_m_s2 *= -1.0;
+    ASSERT_TRUE(mirrored.add_imu(sample).ok());
+  }
+  EXPECT_TRUE(sound.doubt().ok()) << sound.doubt().message();
+  EXPECT_NE(mirrored.doubt().message().find("other sense"), std::string::npos) << mirrored.doubt().message();
+}
+
 // Its reading stands still from within the flight on, as that of a sensor that has died.
 TEST(TumblingOdometry, NamesAnAxisThatFrozeAndNoLongerStatesToKnowIt) {
   const ThrownBody body;

@@ -145,6 +145,7 @@ Estimate run(const sim::Sensors& sensors, const sim::Values& parameters, Word wo
     return estimate;
   }
   (void)check_imu(sensors, samples, estimate);  // a warning, as for attitudes
+  (void)check_flights(sensors, samples, estimate);
   tell_frozen_axes(sensors, samples, estimate);
   TumblingOdometry odometry(stated_params(sensors, parameters));
   Listener listener(word, estimate);

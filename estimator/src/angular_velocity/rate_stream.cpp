@@ -59,6 +59,8 @@ RateStream::RateStream(const Params& params)
       rails_({.clipping = {params.rails, params.planes, params.accel_planes}}),
       rests_(params.rests),
       frozen_(ranges_of(params.rails)),
+      sense_({.lever_arm_m = params.model.nominal.lever_arm_m,
+              .gyro_range_rad_s = params.rails.stated_gyro_rad_s.value_or(0.0)}),
       model_(params.model, params.period_s) {
   require_fields(params);
   require_within("lag_s", params.lag_s, 2.0 * params.period_s, std::min(10.0, 4096.0 * params.period_s));
@@ -179,6 +181,7 @@ double RateStream::jump_before(const Knot& oldest, const State& state) const {
 
 void RateStream::append(const ImuSample& sample, std::span<const AuxiliaryReading> auxiliary_imus, State& state) const {
   frozen_.step(sample, state.frozen);
+  sense_.step(sample, state.sense);
   const bool changed = rails_.observe(sample, state.rails);
   Knot knot;
   knot.by_walls = rails_.walls().classify(sample, state.rails.known.walls);

@@ -85,11 +85,31 @@ void members(Self& s, Visitor& visit) {
   visit("knot.age", s.age);
 }
 
+template <StateOf<FlightSense::Reading> Self, class Visitor>
+void members(Self& s, Visitor& visit) {
+  visit("reading.time_ns", s.time_ns);
+  visit("reading.rate_rad_s", s.rate_rad_s);
+  visit("reading.force_m_s2", s.force_m_s2);
+  visit("reading.free", s.free);
+}
+
+template <StateOf<FlightSense::State> Self, class Visitor>
+void members(Self& s, Visitor& visit) {
+  visit("sense.average", s.average);
+  visit("sense.before", s.before);
+  visit("sense.readings", s.readings, 0.0, 2.0);
+  visit("sense.run_s", s.run_s);
+  visit("sense.flown_s", s.flown_s);
+  visit("sense.last_time_ns", s.last_time_ns);
+  visit("sense.started", s.started);
+}
+
 template <StateOf<RateStream::State> Self, class Visitor>
 void members(Self& s, Visitor& visit) {
   visit("rate.rails", s.rails);
   visit("rate.rests", s.rests);
   visit("rate.frozen", s.frozen);
+  visit("rate.sense", s.sense);
   visit("rate.window", s.window);
   visit("rate.rig", s.rig);
   visit("rate.rig_covariance", s.rig_covariance);

@@ -6,6 +6,11 @@
 
 namespace tumble {
 
+Status RateStream::doubt(const State& state) const {
+  const Status of_axes = frozen_.verdict(state.frozen);
+  return of_axes.ok() ? sense_.verdict(state.sense) : of_axes;
+}
+
 Status RateStream::check_state(const State& state) const {
   const std::size_t most = capacity_ + every_;
   if (state.window.size() > most)
@@ -38,7 +43,7 @@ bool RateStream::equal(const State& a, const State& b) {
                       y.observation.auxiliary_imus.begin(),
                       [](const AuxiliaryReading& r, const AuxiliaryReading& s) { return r.same(s); });
   };
-  return RailWatch::equal(a.rails, b.rails) && a.rests == b.rests && a.frozen == b.frozen &&
+  return RailWatch::equal(a.rails, b.rails) && a.rests == b.rests && a.frozen == b.frozen && a.sense == b.sense &&
          std::equal(a.window.begin(), a.window.end(), b.window.begin(), b.window.end(), same) && a.rig == b.rig &&
          a.rig_covariance == b.rig_covariance && a.prior.diagonal == b.prior.diagonal &&
          a.prior.border == b.prior.border && a.prior.gradient == b.prior.gradient &&

@@ -140,8 +140,10 @@ void OdometryPass::settle_until(TimeNs time_ns) {
 void OdometryPass::begin_rates(const RegimeStream::Params& rate) {
   rates_ = RegimeStream(rate);
   const FrozenAxes::State frozen = rate_state_.rate.frozen;  // an axis may stay frozen
+  const FlightSense::State sense = rate_state_.rate.sense;
   rate_state_ = rates_.start();
   rate_state_.rate.frozen = frozen;
+  rate_state_.rate.sense = sense;
 }
 
 void OdometryPass::take_map(const OdometryPass& other) {

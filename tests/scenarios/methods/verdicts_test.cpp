@@ -92,7 +92,7 @@ TEST(Verdicts, PositionRefusesForcesOfHalfTheSize) {
 }
 
 struct SaidOfRates {
-  bool implausible = false, z_frozen = false;
+  bool implausible = false, z_frozen = false, other_sense = false;
   double turned_sigma_rad_s = 0.0;  ///< mean where it turns
 };
 
@@ -101,7 +101,8 @@ SaidOfRates rates_of(const SimulatedDraw& draw, const std::string& wrong) {
   testing::wrong_inputs().at(wrong)(given.recording.sensors);
   Outcome outcome;
   const Estimate estimate = run_method(*find_methods("rate/tumble").at(0), given, outcome);
-  SaidOfRates out{estimate.health.contains("imu_implausible"), estimate.health.contains("imu_gyro_z_frozen_since_s")};
+  SaidOfRates out{estimate.health.contains("imu_implausible"), estimate.health.contains("imu_gyro_z_frozen_since_s"),
+                  estimate.health.contains("imu_flight_against_s")};
   double samples = 0.0;
   for (const RateState& rate : estimate.rates) {
     if (rate.w_WI_I_rad_s.norm() < 2.0) continue;
@@ -120,6 +121,11 @@ TEST(Verdicts, RatesTellAGyroOfAnotherSenseAndAnAxisThatFroze) {
   const SaidOfRates good = rates_of(draw, "none");
   EXPECT_FALSE(good.implausible);
   EXPECT_FALSE(good.z_frozen);
+  EXPECT_FALSE(good.other_sense);
+  // the mirrored world: gravity turns as it should, and only flight tells
+  const SaidOfRates mirrored = rates_of(draw, "accel_flipped");
+  EXPECT_TRUE(mirrored.implausible);
+  EXPECT_TRUE(mirrored.other_sense);
   const SaidOfRates flipped = rates_of(draw, "gyro_flipped");
   EXPECT_TRUE(flipped.implausible);
   EXPECT_GT(flipped.turned_sigma_rad_s, 2.0) << "and does not state to know them";

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "tumble/angular_velocity/detail/arrow_solver.hpp"
+#include "tumble/angular_velocity/detail/flight_sense.hpp"
 #include "tumble/angular_velocity/detail/frozen_axes.hpp"
 #include "tumble/angular_velocity/detail/least_rails.hpp"
 #include "tumble/angular_velocity/detail/rail_watch.hpp"
@@ -126,6 +127,7 @@ class RateStream {
     RailWatch::State rails;
     RestDetector::State rests;
     FrozenAxes::State frozen;
+    FlightSense::State sense;
     std::vector<Knot> window;  ///< oldest first
     RigConstants rig;
     RigConstants::Matrix rig_covariance;
@@ -172,8 +174,9 @@ class RateStream {
   void flush(const State& state, std::vector<RateState>& out) const;
 
   /// Whether the IMU can be believed just now: `out_of_range` with the axis by name that has frozen (FrozenAxes), whose
-  /// rates state the fastest rate that was read as their deviation.
-  Status doubt(const State& state) const { return frozen_.verdict(state.frozen); }
+  /// rates state the fastest rate that was read as their deviation, or where the accelerometer has the other sense than
+  /// the nominal lever arm (FlightSense).
+  Status doubt(const State& state) const;
 
   /// What has been learnt of the rig.
   RigCalibration calibration(const State& state) const { return {state.rig, widened(state)}; }
@@ -211,6 +214,7 @@ class RateStream {
   RailWatch rails_;
   RestDetector rests_;
   FrozenAxes frozen_;
+  FlightSense sense_;
   RateModel model_;
   std::size_t capacity_;
   std::size_t every_;  ///< samples from one step to the next
