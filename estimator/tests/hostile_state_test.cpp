@@ -39,6 +39,7 @@ struct Tumbling {
   using Door = TumblingOdometry;
   static TumblingOdometry::Params params() {
     TumblingOdometry::Params out;
+    out.lever_arm_I_m.setZero();
     out.lag_s = 0.05;
     return out;
   }

@@ -2,8 +2,10 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <cstdint>
 #include <limits>
 #include <optional>
+#include <string>
 #include <vector>
 
 #include "rolled_sphere.hpp"
@@ -114,6 +116,56 @@ TEST(RollingOdometry, ARailThatNoFlagTellsIsSeenByTheReadings) {
     EXPECT_LT(seen.off_m, 0.15 * believed.off_m) << count;
     EXPECT_GT(believed.off_m, 3.0 * believed.sigma_m) << count;
   }
+}
+
+/// Readings of a sensor that is alive: no two are the same to the last bit.
+std::vector<ImuSample> noisy(std::vector<ImuSample> unit) {
+  std::uint32_t drawn = 1;
+  const auto draw = [&] { return static_cast<double>((drawn = 1664525 * drawn + 1013904223) >> 8) / 16777216.0 - 0.5; };
+  for (ImuSample& sample : unit) {
+    for (int axis = 0; axis < 3; ++axis) {
+      sample.angular_velocity_rad_s[axis] += 2e-3 * draw();
+      sample.specific_force_m_s2[axis] += 2e-2 * draw();
+    }
+  }
+  return unit;
+}
+
+/// Its gyro's y, about which the sphere rolls, dies when it begins to turn.
+std::vector<ImuSample> frozen_y(std::vector<ImuSample> unit) {
+  const std::size_t from = unit.size() / 3;
+  for (std::size_t k = from; k < unit.size(); ++k)
+    unit[k].angular_velocity_rad_s.y() = unit[from].angular_velocity_rad_s.y();
+  for (std::size_t k = from; k < unit.size(); ++k)
+    unit[k].angular_velocity_rad_s.x() += 0.5 * std::sin(0.05 * double(k));
+  return unit;
+}
+
+TEST(RollingOdometry, AUnitOfWhichAnAxisFreezesIsLeftOutAndNamed) {
+  const std::vector<Eigen::Vector3d> places_m(kPlaces.begin(), kPlaces.end());
+  std::vector<std::vector<ImuSample>> units;
+  for (const Eigen::Vector3d& place_m : places_m) units.push_back(noisy(unit_at(place_m)));
+  RollingOdometry sound(params_of(places_m)), harmed(params_of(places_m));
+  for (std::size_t k = 0; k < units[0].size(); ++k) {
+    ASSERT_TRUE(sound.add_imus(std::vector<ImuSample>{units[0][k], units[1][k], units[2][k]}).ok());
+    EXPECT_TRUE(sound.doubt().ok()) << sound.doubt().message();
+  }
+  units[1] = frozen_y(units[1]);
+  for (std::size_t k = 0; k < units[0].size(); ++k)
+    ASSERT_TRUE(harmed.add_imus(std::vector<ImuSample>{units[0][k], units[1][k], units[2][k]}).ok());
+  EXPECT_NE(harmed.doubt().message().find("unit 2's gyro y"), std::string::npos) << harmed.doubt().message();
+  EXPECT_NEAR(sound.newest()->pose.p_WA_m.x(), kWay_m, 0.02 * kWay_m);
+  EXPECT_NEAR(harmed.newest()->pose.p_WA_m.x(), kWay_m, 0.05 * kWay_m);
+}
+
+TEST(RollingOdometry, TheOnlyUnitIsRefusedWithTheNameOfItsFrozenAxis) {
+  RollingOdometry odometry(params_of({kPlaces[0]}));
+  Status status;
+  for (const ImuSample& sample : frozen_y(noisy(unit_at(kPlaces[0])))) {
+    if (!(status = odometry.add_imu(sample)).ok()) break;
+  }
+  EXPECT_EQ(status.trouble, Trouble::out_of_range);
+  EXPECT_NE(status.message().find("unit 1's gyro y"), std::string::npos) << status.message();
 }
 
 TEST(RollingOdometry, TroubleIsAValue) {

@@ -144,10 +144,12 @@ TEST(SecondPass, AGapOfTheImuEndsIt) {
 }
 
 TEST(SecondPass, RefusesParametersOutOfTheirBounds) {
-  TumblingOdometry::Params params;
+  TumblingOdometry::Params stated;
+  stated.lever_arm_I_m.setZero();
+  TumblingOdometry::Params params = stated;
   params.expert.again.sweeps = 1;  // would never catch up
   EXPECT_THROW(TumblingOdometry{params}, InvalidParams);
-  params = {};
+  params = stated;
   params.expert.again.doubt = 0.5;
   EXPECT_THROW(TumblingOdometry{params}, InvalidParams);
 }

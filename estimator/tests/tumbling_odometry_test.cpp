@@ -4,8 +4,10 @@
 #include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <limits>
 #include <optional>
+#include <string>
 #include <vector>
 
 #include "thrown_body.hpp"
@@ -310,15 +312,86 @@ TEST(TumblingOdometry, SweepsThatWaitAreBounded) {
 }
 
 TEST(TumblingOdometry, RefusesParametersOutOfTheirBounds) {
-  TumblingOdometry::Params params;
-  params.lever_arm_sigma_m = -1.0;
-  EXPECT_THROW(TumblingOdometry{params}, InvalidParams);
-  params = {};
-  params.imu.rate_hz = 0.0;
-  EXPECT_THROW(TumblingOdometry{params}, InvalidParams);
-  params = {};
-  params.expert.mapping.expert.matching.neighbours = 1;
-  EXPECT_THROW(TumblingOdometry{params}, InvalidParams);
+  const auto refuses = [](const auto& change) {
+    TumblingOdometry::Params params = params_of(ThrownBody());
+    change(params);
+    try {
+      const TumblingOdometry odometry(params);
+      return std::string();
+    } catch (const InvalidParams& error) {
+      return std::string(error.what());
+    }
+  };
+  using Params = TumblingOdometry::Params;
+  const auto names = [](const std::string& text, const char* field) { return text.find(field) != std::string::npos; };
+  EXPECT_EQ(refuses([](Params&) {}), "");
+  EXPECT_TRUE(names(refuses([](Params& p) { p.lever_arm_sigma_m = -1.0; }), "lever_arm_sigma_m"));
+  EXPECT_TRUE(names(refuses([](Params& p) { p.imu.rate_hz = 0.0; }), "rate_hz"));
+  EXPECT_TRUE(names(refuses([](Params& p) { p.expert.mapping.expert.matching.neighbours = 1; }), "neighbours"));
+  // a lever arm that nobody stated is not one of zero, which may be meant
+  EXPECT_TRUE(names(refuses([](Params& p) { p.lever_arm_I_m = Params().lever_arm_I_m; }), "lever_arm_m"));
+  EXPECT_EQ(refuses([](Params& p) { p.lever_arm_I_m.setZero(); }), "");
+  EXPECT_TRUE(names(refuses([](Params& p) { p.imu.gyro_range_rad_s = 450.0; }), "gyro_range_rad_s"));
+  const Eigen::Vector3d corner(0.5, 0.4, 0.2);
+  EXPECT_EQ(refuses([&](Params& p) { p.own_body_L = {-corner, corner}; }), "");
+  EXPECT_TRUE(names(refuses([&](Params& p) { p.own_body_L = {corner, -corner}; }), "own_body_L"));
+}
+
+/// Readings of a sensor that is alive: no two are the same to the last bit.
+std::vector<ImuSample> noisy(std::vector<ImuSample> imu) {
+  std::uint32_t drawn = 1;
+  const auto draw = [&] { return static_cast<double>((drawn = 1664525 * drawn + 1013904223) >> 8) / 16777216.0 - 0.5; };
+  for (ImuSample& sample : imu) {
+    for (int axis = 0; axis < 3; ++axis) {
+      if (std::abs(sample.angular_velocity_rad_s[axis]) < ThrownBody().rail_rad_s)
+        sample.angular_velocity_rad_s[axis] += 2e-3 * draw();
+      sample.specific_force_m_s2[axis] += 2e-2 * draw();
+    }
+  }
+  return imu;
+}
+
+// Gravity turns as it should in the mirrored world too: only flight tells.
+TEST(TumblingOdometry, TellsAnAccelerometerOfTheOtherSense) {
+  ThrownBody body;
+  body.rail_rad_s = 20.0;  // so that the flight is read
+  TumblingOdometry sound(params_of(body)), mirrored(params_of(body));
+  for (ImuSample sample : noisy(body.imu())) {
+    ASSERT_TRUE(sound.add_imu(sample).ok());
+    sample.specific_force_m_s2 *= -1.0;
+    ASSERT_TRUE(mirrored.add_imu(sample).ok());
+  }
+  EXPECT_TRUE(sound.doubt().ok()) << sound.doubt().message();
+  EXPECT_NE(mirrored.doubt().message().find("other sense"), std::string::npos) << mirrored.doubt().message();
+}
+
+// Its reading stands still from within the flight on, as that of a sensor that has died.
+TEST(TumblingOdometry, NamesAnAxisThatFrozeAndNoLongerStatesToKnowIt) {
+  const ThrownBody body;
+  TumblingOdometry::Params params = params_of(body);
+  params.imu.gyro_range_rad_s = body.rail_rad_s;
+  TumblingOdometry odometry(params);
+  std::vector<ImuSample> imu = noisy(body.imu());
+  const auto from = static_cast<std::size_t>((body.rest_s + body.push_s) * body.imu_hz);
+  double widest_rad_s = 0.0;
+  for (std::size_t k = 0; k < imu.size(); ++k) {
+    if (k > from) imu[k].angular_velocity_rad_s.x() = imu[from].angular_velocity_rad_s.x();
+    ASSERT_TRUE(odometry.add_imu(imu[k]).ok());
+    if (k < from) {
+      EXPECT_TRUE(odometry.doubt().ok()) << odometry.doubt().message();
+    }
+    if (const auto& rate = odometry.settled_rate())
+      widest_rad_s = std::max(widest_rad_s, std::sqrt(rate->covariance_rad2_s2(0, 0)));
+  }
+  const Status doubt = odometry.doubt();
+  EXPECT_EQ(doubt.trouble, Trouble::out_of_range);
+  EXPECT_NE(doubt.message().find("gyro x"), std::string::npos) << doubt.message();
+  EXPECT_GT(widest_rad_s, 2.0);
+  TumblingOdometry sound(params);  // negative control
+  for (const ImuSample& sample : noisy(body.imu())) {
+    ASSERT_TRUE(sound.add_imu(sample).ok());
+    EXPECT_TRUE(sound.doubt().ok());
+  }
 }
 
 }  // namespace

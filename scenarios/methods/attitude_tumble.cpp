@@ -53,6 +53,7 @@ Estimate run_rig(const sim::Sensors& sensors, const sim::Values& parameters) {
   estimate.status = bridge::primary_imu_samples(sensors, samples);
   if (!estimate.status.ok()) return estimate;
   (void)check_imu(sensors, samples, estimate);  // a warning: a body that is pushed about all the time may look so
+  (void)check_flights(sensors, samples, estimate);
   tell_frozen_axes(sensors, samples, estimate);
   const std::vector<Eigen::Matrix3d> covariances =
       recover_clipped(sensors, samples, estimate.health).covariances_rad2_s2;

@@ -42,6 +42,7 @@ Estimate run(const sim::Sensors& sensors, const sim::Values& parameters, const O
   estimate.status = bridge::primary_imu_samples(sensors, samples);
   if (!estimate.status.ok()) return estimate;
   (void)check_imu(sensors, samples, estimate);  // a warning, as for the filters
+  (void)check_flights(sensors, samples, estimate);
   tell_frozen_axes(sensors, samples, estimate);
   std::vector<ImuSample> recovered = samples;
   RecoveredRates told;

@@ -5,7 +5,9 @@
 #include <cmath>
 #include <string>
 
+#include "scenarios/methods/bridge.hpp"
 #include "scenarios/methods/frozen_axes.hpp"
+#include "tumble/angular_velocity/detail/flight_sense.hpp"
 #include "tumble/attitude/detail/rest_gravity.hpp"
 #include "tumble/attitude/imu_plausibility.hpp"
 #include "tumble/odometry/imu_sheet.hpp"
@@ -101,7 +103,26 @@ Status check_imus(const sim::Sensors& sensors, const MergedImus& imus, Estimate&
       estimate);
 }
 
+Status check_flights(const sim::Sensors& sensors, std::span<const ImuSample> samples, Estimate& estimate) {
+  if (sensors.sphere_radius_m > 0.0) return {};
+  FlightSense::Params params;
+  params.lever_arm_m = bridge::lever_arm_I_m(sensors.imus.front());
+  params.gyro_range_rad_s = sensors.imus.front().stated_gyro_range_rad_s;
+  const FlightSense sense(params);
+  FlightSense::State state;
+  for (const ImuSample& sample : samples) sense.step(sample, state);
+  const Status status = told(sense.verdict(state), estimate);
+  if (!status.ok()) estimate.health["imu_flight_against_s"] = status.value;
+  return status;
+}
+
 void check_rates(const sim::Sensors& sensors, std::span<const ImuSample> samples, Estimate& estimate) {
+  if (!check_flights(sensors, samples, estimate).ok()) {
+    for (RateState& rate : estimate.rates) {  // a force of the other sense tells nothing of what a rail hid
+      if (rate.clipped_axes == 0) continue;
+      rate.covariance_rad2_s2 += rate.w_WI_I_rad_s.squaredNorm() * Eigen::Matrix3d::Identity();
+    }
+  }
   const Status of_readings = check_imu(sensors, samples, estimate);
   const Status of_rates = check_turning_between_rests(sensors, samples, estimate);
   if (of_readings.ok() && of_rates.ok()) return;

@@ -20,8 +20,13 @@ Status check_imus(const sim::Sensors& sensors, const MergedImus& imus, Estimate&
 
 /// The same of a rig's primary IMU whose rates the estimate holds, one for each sample, and what gravity at its rests
 /// says of them (RestGravity: `rest_gravity_missed_rad` with its deviation). Where either speaks
-/// against the readings, the covariance of every rate grows by the square of the rate. O(N).
+/// against the readings, the covariance of every rate grows by the square of the rate; where flights show forces of the
+/// other sense, that of the clipped ones. O(N).
 void check_rates(const sim::Sensors& sensors, std::span<const ImuSample> samples, Estimate& estimate);
+
+/// Whether flights of a rig show forces of the other sense than its lever arm makes (FlightSense): `imu_implausible`
+/// and the seconds of it, as `imu_flight_against_s`. O(N).
+Status check_flights(const sim::Sensors& sensors, std::span<const ImuSample> samples, Estimate& estimate);
 
 /// Single axes of the primary IMU that froze, whose samples these are: `imu_implausible`, and since when, as
 /// `imu_gyro_z_frozen_since_s`. Of a gyro's axis nothing is known meanwhile but that it turns no faster than any

@@ -9,8 +9,8 @@
 #include "scenarios/methods/slam_registry.hpp"
 #include "scenarios/methods/slam_settings.hpp"
 #include "scenarios/methods/sweep_log.hpp"
-#include "scenarios/methods/sweep_scale.hpp"
 #include "tumble/angular_velocity/clipping_finder.hpp"
+#include "tumble/mapping/detail/sweep_scale.hpp"
 #include "tumble/mapping/lidar_inertial_odometry.hpp"
 #include "tumble/odometry/tumbling_odometry.hpp"
 
@@ -160,8 +160,7 @@ void report_end(const CalibrationVerdict& calibration, double innovation_90, Est
 }
 
 /// Ranges that the motion contradicts make a map of another size, however well its sweeps agree.
-void report_scale(std::span<const ImuSample> samples, double gravity_m_s2, Estimate& estimate) {
-  const SweepScale scale = find_sweep_scale(samples, estimate.sweeps, gravity_m_s2);
+void report_scale(const SweepScale& scale, Estimate& estimate) {
   estimate.health["lidar_scale_changes"] = static_cast<double>(scale.changes);
   if (!std::isfinite(scale.sigma)) return;
   estimate.health["lidar_scale"] = scale.scale;
@@ -342,7 +341,7 @@ void run_slam_chain(const sim::Sensors& sensors, std::span<const ImuSample> samp
   if (!estimate.status.ok()) return;
   if (chain.calibration) report_calibration(odometry, sensors, estimate.health);
   report_end(calibration, report_innovations(estimate), estimate);
-  if (chain.calibration) report_scale(samples, sensors.gravity_m_s2, estimate);
+  if (chain.calibration) report_scale(find_sweep_scale(samples, estimate.sweeps, sensors.gravity_m_s2), estimate);
   draw_map(odometry, estimate);
 }
 
@@ -352,9 +351,10 @@ void settle(std::vector<PoseState> last_word, SweepReport& sweep) {
   sweep.pose = sweep.trajectory.back();
 }
 
-void conclude_sweeps(const LidarInertialOdometry& odometry, Estimate& estimate) {
+void conclude_sweeps(const LidarInertialOdometry& odometry, const SweepScale& scale, Estimate& estimate) {
   gather_poses(estimate);
   report_end({}, report_innovations(estimate), estimate);
+  report_scale(scale, estimate);
   draw_map(odometry, estimate);
 }
 

@@ -78,10 +78,10 @@ class Listener {
     }
   }
   /// The run has ended.
-  void conclude(const LidarInertialOdometry& mapper) {
-    for (std::vector<PoseState>& open : mapper.open_trajectories()) settle_next(std::move(open));
+  void conclude(const TumblingOdometry& odometry) {
+    for (std::vector<PoseState>& open : odometry.mapper().open_trajectories()) settle_next(std::move(open));
     if (word_ == Word::live) speak_live();
-    conclude_sweeps(mapper, estimate_);
+    conclude_sweeps(odometry.mapper(), odometry.sweep_scale(), estimate_);
   }
 
  private:
@@ -145,6 +145,7 @@ Estimate run(const sim::Sensors& sensors, const sim::Values& parameters, Word wo
     return estimate;
   }
   (void)check_imu(sensors, samples, estimate);  // a warning, as for attitudes
+  (void)check_flights(sensors, samples, estimate);
   tell_frozen_axes(sensors, samples, estimate);
   TumblingOdometry odometry(stated_params(sensors, parameters));
   Listener listener(word, estimate);
@@ -152,7 +153,7 @@ Estimate run(const sim::Sensors& sensors, const sim::Values& parameters, Word wo
   if (!estimate.status.ok()) return estimate;
   estimate.health["gaps"] = static_cast<double>(odometry.gaps());
   estimate.health["passed_again"] = odometry.passed_again() ? 1.0 : 0.0;
-  listener.conclude(odometry.mapper());
+  listener.conclude(odometry);
   return estimate;
 }
 

@@ -12,6 +12,7 @@
 #include "scenarios/methods/frozen_axes.hpp"
 #include "scenarios/methods/rate_baseline.hpp"
 #include "tumble/angular_velocity/clipping_finder.hpp"
+#include "tumble/angular_velocity/detail/frozen_axes.hpp"
 #include "tumble/attitude/imu_merge.hpp"
 #include "tumble/common/detail/imu_interpolation.hpp"
 #include "tumble/odometry/imu_sheet.hpp"
@@ -186,7 +187,7 @@ Status frozen_in_all(const FrozenAxis& axis) {
        "seconds for which accel y repeats one reading, and no IMU is without the like,",
        "seconds for which accel z repeats one reading, and no IMU is without the like,"}};
   const char* field = kFields[axis.triad == Triad::gyro ? 0 : 1][axis.axis];
-  return {Trouble::out_of_range, field, seconds(axis.to_ns - axis.from_ns), kAxisFrozen_s};
+  return {Trouble::out_of_range, field, seconds(axis.to_ns - axis.from_ns), FrozenAxes::Params{}.frozen_s};
 }
 
 /// Takes away what units read while one of their axes was frozen, and tells of it; trouble where that leaves nothing.

@@ -93,6 +93,7 @@ std::vector<LidarPoint> some_points() {
 
 TumblingOdometry tumbling() {
   TumblingOdometry::Params params;
+  params.lever_arm_I_m.setZero();
   params.lag_s = 0.03;
   return TumblingOdometry(params);
 }

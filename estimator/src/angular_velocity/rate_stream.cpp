@@ -19,6 +19,11 @@ int clipped_axes(const RateObservation& o) {
   return o.unseen();
 }
 
+FrozenAxes::Params ranges_of(const RailDetector::Params& rails) {
+  return {.gyro_range_rad_s = rails.stated_gyro_rad_s.value_or(0.0),
+          .accel_range_m_s2 = rails.stated_accel_m_s2.value_or(0.0)};
+}
+
 double seconds_between(const RateStream::Knot& from, const RateStream::Knot& to) {
   return seconds(to.observation.sample.time_ns - from.observation.sample.time_ns);
 }
@@ -53,6 +58,9 @@ RateStream::RateStream(const Params& params)
     : params_(params),
       rails_({.clipping = {params.rails, params.expert.planes, params.expert.accel_planes}}),
       rests_(params.expert.rests),
+      frozen_(ranges_of(params.rails)),
+      sense_({.lever_arm_m = params.model.nominal.lever_arm_m,
+              .gyro_range_rad_s = params.rails.stated_gyro_rad_s.value_or(0.0)}),
       model_(params.model, params.period_s) {
   require_fields(params);
   require_within("lag_s", params.lag_s, 2.0 * params.period_s, std::min(10.0, 4096.0 * params.period_s));
@@ -172,6 +180,8 @@ double RateStream::jump_before(const Knot& oldest, const State& state) const {
 }
 
 void RateStream::append(const ImuSample& sample, std::span<const AuxiliaryReading> auxiliary_imus, State& state) const {
+  frozen_.step(sample, state.frozen);
+  sense_.step(sample, state.sense);
   const bool changed = rails_.observe(sample, state.rails);
   holds_.observe(sample, state.holds);
   Knot knot;
@@ -341,6 +351,7 @@ RateState RateStream::to_state(const Knot& knot, const State& state) const {
   out.w_WI_I_rad_s = knot.estimate.knot.rate_rad_s;
   out.covariance_rad2_s2 = model_.reported(covariance, knot.observation, knot.estimate);
   out.covariance_rad2_s2.diagonal() += knot.stale_rad_s.cwiseAbs2();
+  out.covariance_rad2_s2.diagonal() += frozen_.rate_variance_rad2_s2(out.time_ns, state.frozen);
   out.clipped_axes = knot.observation.clipping.gyro | knot.observation.clipping.void_gyro;
   out.source = rate_source(knot.observation, knot.estimate, covariance, params_.recovered_sigma_rad_s);
   return out;
@@ -354,51 +365,6 @@ std::optional<RateState> RateStream::newest(const State& state) const {
 void RateStream::flush(const State& state, std::vector<RateState>& out) const {
   const std::size_t given = state.window.size() + 1 - std::min(capacity_, state.window.size() + 1);
   for (std::size_t k = given; k < state.window.size(); ++k) out.push_back(to_state(state.window[k], state));
-}
-
-Status RateStream::check_state(const State& state) const {
-  const std::size_t most = capacity_ + every_;
-  if (state.window.size() > most)
-    return {Trouble::out_of_range, "rate.window", double(state.window.size()), double(most)};
-  if (state.waiting > every_) return {Trouble::out_of_range, "rate.waiting", double(state.waiting), double(every_)};
-  if (!rails_.has_room_for(state.rails)) return {Trouble::out_of_range, "rails.readings", 1.0, 0.0};
-  for (std::size_t k = 1; k < state.window.size(); ++k) {
-    const TimeNs before_ns = state.window[k - 1].observation.sample.time_ns;
-    const Status status = check_follows(state.window[k].observation.sample.time_ns, before_ns, params_.gap_max_s);
-    if (!status.ok()) return status;
-  }
-  return {};
-}
-
-bool RateStream::equal(const State& a, const State& b) {
-  const auto same = [](const Knot& x, const Knot& y) {
-    const ImuSample &p = x.observation.sample, &q = y.observation.sample;
-    const RateEstimate &e = x.estimate, &f = y.estimate;
-    return p.time_ns == q.time_ns && p.angular_velocity_rad_s == q.angular_velocity_rad_s &&
-           p.specific_force_m_s2 == q.specific_force_m_s2 && p.device_clip_flags == q.device_clip_flags &&
-           x.observation.clipping == y.observation.clipping && x.by_walls == y.by_walls &&
-           x.observation.at_rest == y.observation.at_rest && x.observation.partial == y.observation.partial &&
-           x.observation.lone == y.observation.lone && x.observation.doubted == y.observation.doubted &&
-           x.repeats == y.repeats && x.stale_rad_s == y.stale_rad_s &&
-           x.observation.lost_rad_s == y.observation.lost_rad_s &&
-           x.observation.lost_sigma_rad_s == y.observation.lost_sigma_rad_s && e.knot == f.knot &&
-           e.flight_weight == f.flight_weight && e.contact_m_s2 == f.contact_m_s2 &&
-           e.bound_precision == f.bound_precision && e.bound_shift == f.bound_shift && e.soft_bounds == f.soft_bounds &&
-           x.covariance_rad2_s2 == y.covariance_rad2_s2 && x.age == y.age && x.approach_rad_s == y.approach_rad_s &&
-           std::equal(x.observation.auxiliary_imus.begin(), x.observation.auxiliary_imus.end(),
-                      y.observation.auxiliary_imus.begin(),
-                      [](const AuxiliaryReading& r, const AuxiliaryReading& s) { return r.same(s); });
-  };
-  return RailWatch::equal(a.rails, b.rails) && a.rests == b.rests && a.holds == b.holds &&
-         std::equal(a.window.begin(), a.window.end(), b.window.begin(), b.window.end(), same) && a.rig == b.rig &&
-         a.rig_covariance == b.rig_covariance && a.prior.diagonal == b.prior.diagonal &&
-         a.prior.border == b.prior.border && a.prior.gradient == b.prior.gradient &&
-         a.prior_corner.matrix == b.prior_corner.matrix && a.prior_corner.gradient == b.prior_corner.gradient &&
-         a.extremes == b.extremes && a.least == b.least && a.entry_rad_s == b.entry_rad_s &&
-         a.entry_samples == b.entry_samples && a.left == b.left && a.left_ns == b.left_ns &&
-         a.prior_knot == b.prior_knot && a.prior_rig == b.prior_rig && a.samples == b.samples &&
-         a.rig_resets == b.rig_resets && a.flight_run == b.flight_run && a.waiting == b.waiting &&
-         a.learnt_from == b.learnt_from && a.failures == b.failures;
 }
 
 }  // namespace tumble

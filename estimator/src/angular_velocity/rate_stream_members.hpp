@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include "frozen_members.hpp"
 #include "rails_members.hpp"
 #include "tumble/angular_velocity/rate_stream.hpp"
 
@@ -86,11 +87,32 @@ void members(Self& s, Visitor& visit) {
   visit("knot.stale_rad_s", s.stale_rad_s);
 }
 
+template <StateOf<FlightSense::Reading> Self, class Visitor>
+void members(Self& s, Visitor& visit) {
+  visit("reading.time_ns", s.time_ns);
+  visit("reading.rate_rad_s", s.rate_rad_s);
+  visit("reading.force_m_s2", s.force_m_s2);
+  visit("reading.free", s.free);
+}
+
+template <StateOf<FlightSense::State> Self, class Visitor>
+void members(Self& s, Visitor& visit) {
+  visit("sense.average", s.average);
+  visit("sense.before", s.before);
+  visit("sense.readings", s.readings, 0.0, 2.0);
+  visit("sense.run_s", s.run_s);
+  visit("sense.flown_s", s.flown_s);
+  visit("sense.last_time_ns", s.last_time_ns);
+  visit("sense.started", s.started);
+}
+
 template <StateOf<RateStream::State> Self, class Visitor>
 void members(Self& s, Visitor& visit) {
   visit("rate.rails", s.rails);
   visit("rate.rests", s.rests);
   visit("rate.holds", s.holds);
+  visit("rate.frozen", s.frozen);
+  visit("rate.sense", s.sense);
   visit("rate.window", s.window);
   visit("rate.rig", s.rig);
   visit("rate.rig_covariance", s.rig_covariance);

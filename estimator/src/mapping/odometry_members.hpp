@@ -2,6 +2,7 @@
 #pragma once
 
 #include "../common/imu_members.hpp"
+#include "tumble/mapping/detail/sweep_scale.hpp"
 #include "tumble/mapping/lidar_inertial_odometry.hpp"
 
 /// Members of sweeps and reports, and what the mapper's Params hold beside Fields: state_visitor.hpp.
@@ -33,6 +34,29 @@ void members(Self& s, Visitor& visit) {
   visit("report.points_alone", s.points_alone);
   visit("report.points_registered", s.points_registered);
   visit("report.map_points_added", s.map_points_added);
+}
+
+template <StateOf<SweepScale> Self, class Visitor>
+void members(Self& s, Visitor& visit) {
+  visit("scale.scale", s.scale);
+  visit.with_nan("scale.sigma", s.sigma);  // infinite before anything tells
+  visit("scale.changes", s.changes);
+}
+
+template <StateOf<SweepScaleWatch::Change> Self, class Visitor>
+void members(Self& s, Visitor& visit) {
+  visit("change.by_imu_m_s", s.by_imu_m_s);
+  visit("change.by_sweeps_m_s", s.by_sweeps_m_s);
+}
+
+template <class Self, class Visitor>
+void SweepScaleWatch::members(Self& s, Visitor& visit) {
+  visit.scratch(s.gravity_m_s2_);  // these two are of the parameters
+  visit.scratch(s.samples_max_);
+  visit("scale.samples", s.samples_);
+  visit("scale.sweeps", s.sweeps_);
+  visit("scale.changes", s.changes_);
+  visit("scale.found", s.scale_);
 }
 
 template <StateOf<FlyingBody> Self, class Visitor>

@@ -4,6 +4,19 @@
 
 namespace tumble::mapping {
 
+namespace {
+
+/// Eigen's empty box says that there is none; any other without an inside has corners that are swapped.
+void require_corners_in_order(const Eigen::AlignedBox3d& box) {
+  const Eigen::AlignedBox3d none;
+  if (box.min() == none.min() && box.max() == none.max()) return;
+  require_within("own_body_L largest x less the least", box.sizes().x(), 0.0, kUnbounded);
+  require_within("own_body_L largest y less the least", box.sizes().y(), 0.0, kUnbounded);
+  require_within("own_body_L largest z less the least", box.sizes().z(), 0.0, kUnbounded);
+}
+
+}  // namespace
+
 void check_params(const LidarInertialOdometry::Params& params) {
   require_fields(params);
   require_within("range_max_m", params.range_max_m, params.range_min_m, 1e4);
@@ -14,6 +27,7 @@ void check_params(const LidarInertialOdometry::Params& params) {
       (params.T_IL.linear() * params.T_IL.linear().transpose() - Eigen::Matrix3d::Identity()).cwiseAbs().maxCoeff();
   require_within("T_IL rotation's distance from orthogonal", orthogonality, 0.0, 1e-6);
   require_within("T_IL rotation's determinant", params.T_IL.linear().determinant(), 0.999, 1.001);
+  require_corners_in_order(params.own_body_L);
   require_within("T_IL translation", params.T_IL.translation().norm(), 0.0, 1e3);
 }
 

@@ -10,6 +10,10 @@ namespace {
 
 constexpr double kRoom_s = 2.0;  // of samples that memory is kept for: more than the longest gap of a lidar
 
+std::size_t samples_in(double time_s, const RegimeStream::Params& rate) {
+  return static_cast<std::size_t>(std::ceil(time_s / rate.rate.period_s)) + 16;
+}
+
 /// What the stream does not know of a clipped axis, its deviation being beyond what the mapper believes at most, goes
 /// to the mapper as the reading it is, a bound: the registration estimates what is missing. A rig that is not learnt
 /// yet may extrapolate a push by tens of rad/s, and says so.
@@ -67,10 +71,10 @@ OdometryPass::OdometryPass(const RegimeStream::Params& rate, const LidarInertial
     : rates_(rate),
       rate_state_(rates_.start()),
       mapper_(mapping),
+      scale_(mapping.expert.gravity_m_s2, samples_in(kRoom_s, rate)),
       rate_sigma_max_rad_s_(mapping.expert.prior.rate_sigma_max_rad_s),
       time_offset_s_(mapping.time_offset_s) {
-  const double room = std::max(rate.rate.lag_s, kRoom_s) / rate.rate.period_s;
-  unsettled_.samples.reserve(static_cast<std::size_t>(std::ceil(room)) + 16);
+  unsettled_.samples.reserve(samples_in(std::max(rate.rate.lag_s, kRoom_s), rate));
 }
 
 Status OdometryPass::add_imu(const ImuSample& sample) {
@@ -96,7 +100,9 @@ bool OdometryPass::covers(TimeNs end_ns) const {
 
 Status OdometryPass::add_sweep(TimeNs start_ns, TimeNs end_ns, std::span<const LidarPoint> points,
                                LidarInertialOdometry::SweepReport& report) {
-  return mapper_.add_sweep(start_ns, end_ns, points, report);
+  const Status status = mapper_.add_sweep(start_ns, end_ns, points, report);
+  if (!report.trajectory.empty()) scale_.add(report);
+  return status;
 }
 
 Status OdometryPass::newest(PoseState& pose) const {
@@ -118,6 +124,7 @@ void OdometryPass::settle(const RateState& rate) {
   settled_ = rate;
   if (told_ns_ && rate.time_ns <= *told_ns_) return;
   told_ns_ = rate.time_ns;
+  scale_.add(sample);
   if (!mapper_.add_imu(sample, for_the_mapper(rate, sample, rate_sigma_max_rad_s_)).ok()) ++refused_samples_;
 }
 
@@ -132,11 +139,16 @@ void OdometryPass::settle_until(TimeNs time_ns) {
 
 void OdometryPass::begin_rates(const RegimeStream::Params& rate) {
   rates_ = RegimeStream(rate);
+  const FrozenAxes::State frozen = rate_state_.rate.frozen;  // an axis may stay frozen
+  const FlightSense::State sense = rate_state_.rate.sense;
   rate_state_ = rates_.start();
+  rate_state_.rate.frozen = frozen;
+  rate_state_.rate.sense = sense;
 }
 
 void OdometryPass::take_map(const OdometryPass& other) {
   mapper_ = other.mapper_;
+  scale_ = other.scale_;
   time_offset_s_ = other.time_offset_s_;
   told_ns_ = other.told_ns_;
 }

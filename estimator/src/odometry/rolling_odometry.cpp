@@ -2,6 +2,7 @@
 #include "tumble/odometry/rolling_odometry.hpp"
 
 #include <algorithm>
+#include <limits>
 
 namespace tumble {
 
@@ -9,6 +10,28 @@ namespace {
 
 constexpr std::size_t kRecoveringUnits = 3;  // so many IMUs tell a rate beyond the range
 constexpr double kRecoveredSigma_rad_s = 1.0;
+
+constexpr std::array<std::array<const char*, 6>, ImuMerge::kImus> kFrozenFields = {
+    {{{"seconds for which unit 1's gyro x repeats one reading", "seconds for which unit 1's gyro y repeats one reading",
+       "seconds for which unit 1's gyro z repeats one reading",
+       "seconds for which unit 1's accel x repeats one reading",
+       "seconds for which unit 1's accel y repeats one reading",
+       "seconds for which unit 1's accel z repeats one reading"}},
+     {{"seconds for which unit 2's gyro x repeats one reading", "seconds for which unit 2's gyro y repeats one reading",
+       "seconds for which unit 2's gyro z repeats one reading",
+       "seconds for which unit 2's accel x repeats one reading",
+       "seconds for which unit 2's accel y repeats one reading",
+       "seconds for which unit 2's accel z repeats one reading"}},
+     {{"seconds for which unit 3's gyro x repeats one reading", "seconds for which unit 3's gyro y repeats one reading",
+       "seconds for which unit 3's gyro z repeats one reading",
+       "seconds for which unit 3's accel x repeats one reading",
+       "seconds for which unit 3's accel y repeats one reading",
+       "seconds for which unit 3's accel z repeats one reading"}},
+     {{"seconds for which unit 4's gyro x repeats one reading", "seconds for which unit 4's gyro y repeats one reading",
+       "seconds for which unit 4's gyro z repeats one reading",
+       "seconds for which unit 4's accel x repeats one reading",
+       "seconds for which unit 4's accel y repeats one reading",
+       "seconds for which unit 4's accel z repeats one reading"}}}};
 
 // Of the radius the door's own counts; the smoother's has no default.
 void require_stated(RollingOdometry::Params params) {
@@ -55,6 +78,15 @@ std::vector<ImuSheet> sheets_of(const RollingOdometry::Params& params) {
   return out;
 }
 
+std::vector<FrozenAxes> watches_of(const RollingOdometry::Params& params) {
+  std::vector<FrozenAxes> out;
+  for (const RollingOdometry::Unit& unit : params.units) {
+    out.emplace_back(FrozenAxes::Params{.gyro_range_rad_s = unit.sheet.gyro_range_rad_s,
+                                        .accel_range_m_s2 = unit.sheet.accel_range_m_s2});
+  }
+  return out;
+}
+
 RollingOdometry::Pose as_pose(const RollingEstimate& estimate) {
   RollingOdometry::Pose out;
   out.pose = {estimate.time_ns, estimate.p_WG_m, estimate.q_WI, estimate.v_WG_m_s, estimate.covariance};
@@ -89,6 +121,7 @@ RollingOdometry::RollingOdometry(const Params& params, const ImuMerge::Params& m
       merge_state_(std::make_unique<ImuMerge::State>()),
       state_(std::make_unique<RollingSmoother::State>()),
       rails_state_(rails_.start()),
+      watches_(watches_of(params)),
       live_(params.lag_s <= 0.0) {}
 
 RollingOdometry::RollingOdometry(const RollingOdometry& other)
@@ -99,6 +132,8 @@ RollingOdometry::RollingOdometry(const RollingOdometry& other)
       merge_state_(std::make_unique<ImuMerge::State>(*other.merge_state_)),
       state_(std::make_unique<RollingSmoother::State>(*other.state_)),
       rails_state_(other.rails_state_),
+      watches_(other.watches_),
+      frozen_(other.frozen_),
       done_(other.done_),
       taken_(other.taken_),
       live_(other.live_),
@@ -116,13 +151,42 @@ Status RollingOdometry::add_imus(std::span<const ImuSample> samples) {
   UnitRails::Samples flagged;
   rails_.flag(samples, rails_state_, flagged);
   ImuMerge::State next = *merge_state_;  // all take the sample, or none
-  const std::span<const ImuSample> judged = std::span(flagged).first(samples.size());
+  Frozen frozen = frozen_;
+  for (std::size_t k = 0; k < samples.size(); ++k) watches_[k].step(samples[k], frozen[k]);
+  const std::span<ImuSample> judged = std::span(flagged).first(samples.size());
+  if (Status status = leave_out_frozen(frozen, judged); !status.ok()) return status;
   if (Status status = merge_.step(judged, next, merged); !status.ok()) return status;
   if (merged) {
     if (Status status = take_in(*merged); !status.ok()) return status;
   }
   *merge_state_ = next;
+  frozen_ = frozen;
   rails_.observe(samples, rails_state_);
+  return {};
+}
+
+/// Gives NaN for what a unit reads of which an axis has frozen, and trouble where that leaves nobody.
+Status RollingOdometry::leave_out_frozen(const Frozen& states, std::span<ImuSample> samples) const {
+  bool any = false, heard = false;
+  for (std::size_t k = 0; k < samples.size(); ++k) {
+    const bool finite = check_sample(samples[k]).ok();
+    const bool frozen = finite && !watches_[k].verdict(states[k]).ok();
+    if (frozen) samples[k].angular_velocity_rad_s.setConstant(std::numeric_limits<double>::quiet_NaN());
+    any = any || frozen;
+    heard = heard || (finite && !frozen);
+  }
+  return any && !heard ? doubt(states) : Status{};
+}
+
+Status RollingOdometry::doubt(const Frozen& frozen) const {
+  for (std::size_t unit = 0; unit < watches_.size(); ++unit) {
+    Status status = watches_[unit].verdict(frozen[unit]);
+    if (status.ok()) continue;
+    const auto axes = frozen[unit].axes;
+    const auto first = std::find_if(axes.begin(), axes.end(), [](const FrozenAxes::Axis& axis) { return axis.frozen; });
+    status.field = kFrozenFields.at(unit).at(static_cast<std::size_t>(first - axes.begin()));
+    return status;
+  }
   return {};
 }
 
@@ -150,6 +214,7 @@ void RollingOdometry::reset() {
   *merge_state_ = {};
   *state_ = {};
   rails_state_ = rails_.start();
+  frozen_ = {};
   finished_ = false;
 }
 

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // RollingOdometry as bytes.
+#include "../angular_velocity/frozen_members.hpp"
 #include "../attitude/imu_merge_members.hpp"
 #include "../common/state_params.hpp"
 #include "../rolling/rolling_members.hpp"
@@ -36,6 +37,8 @@ void RollingOdometry::members(Self& s, Visitor& visit) {
   visit("merge", *s.merge_state_);
   visit("rolling", *s.state_);
   visit("rails", s.rails_state_);
+  visit.scratch(s.watches_);  // of the parameters
+  visit("frozen", s.frozen_);
   if constexpr (std::is_const_v<Self>) {
     const std::vector<RollingEstimate> waiting(s.done_.begin() + static_cast<std::ptrdiff_t>(s.taken_), s.done_.end());
     visit("done", waiting);

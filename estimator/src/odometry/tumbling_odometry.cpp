@@ -117,6 +117,11 @@ Status TumblingOdometry::newest(PoseState& pose) const {
   return pass_.newest(pose);
 }
 
+Status TumblingOdometry::doubt() const {
+  const Status of_imu = pass_.rates().rate().doubt(pass_.rate_state().rate);
+  return of_imu.ok() ? pass_.sweep_scale().verdict() : of_imu;
+}
+
 void TumblingOdometry::finish() {
   if (!newest_rate()) return;  // nothing since the last time
   settle_all();

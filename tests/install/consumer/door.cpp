@@ -8,7 +8,9 @@ int main() {
   sphere.radius_m = 0.145;
   sphere.units.push_back({tumble::sheets::phidget1044()});
   tumble::RollingOdometry rolling(sphere);
-  tumble::TumblingOdometry tumbling{tumble::TumblingOdometry::Params{}};
+  tumble::TumblingOdometry::Params rig;
+  rig.lever_arm_I_m.setZero();  // the IMU at the centre of mass
+  tumble::TumblingOdometry tumbling(rig);
   tumble::ImuSample sample;
   sample.specific_force_m_s2 = {0.0, 0.0, 9.80665};
   for (int k = 1; k <= 100; ++k) {

@@ -53,6 +53,15 @@ TEST(Verdicts, SlamFindsAWrongCalibrationAndSaysWhenSensorsContradictEachOther) 
   }
 }
 
+// The same by what came before alone, which the library's door tells its user too.
+TEST(Verdicts, SlamThatLagsFindsALidarOfAnotherScale) {
+  const DataRoot data{test::source_dir()};
+  const SimulatedDraw draw = simulate_draw(data, load_scenario(data, "hill"), 62022, 1);
+  const Method& method = *find_methods("slam/tumble_lag").at(0);
+  EXPECT_EQ(run(method, draw, "none").localised, 1.0);
+  EXPECT_EQ(run(method, draw, "lidar_ranges_long").localised, 0.0);
+}
+
 // A scale that all gyros share is in the way too, where nothing contradicts it: more than a metre off, and told by the
 // forces of units at different places.
 TEST(Verdicts, PositionTellsGyrosOfAnotherScale) {
@@ -83,7 +92,7 @@ TEST(Verdicts, PositionRefusesForcesOfHalfTheSize) {
 }
 
 struct SaidOfRates {
-  bool implausible = false, z_frozen = false;
+  bool implausible = false, z_frozen = false, other_sense = false;
   double turned_sigma_rad_s = 0.0;  ///< mean where it turns
 };
 
@@ -92,7 +101,8 @@ SaidOfRates rates_of(const SimulatedDraw& draw, const std::string& wrong) {
   testing::wrong_inputs().at(wrong)(given.recording.sensors);
   Outcome outcome;
   const Estimate estimate = run_method(*find_methods("rate/tumble").at(0), given, outcome);
-  SaidOfRates out{estimate.health.contains("imu_implausible"), estimate.health.contains("imu_gyro_z_frozen_since_s")};
+  SaidOfRates out{estimate.health.contains("imu_implausible"), estimate.health.contains("imu_gyro_z_frozen_since_s"),
+                  estimate.health.contains("imu_flight_against_s")};
   double samples = 0.0;
   for (const RateState& rate : estimate.rates) {
     if (rate.w_WI_I_rad_s.norm() < 2.0) continue;
@@ -111,6 +121,11 @@ TEST(Verdicts, RatesTellAGyroOfAnotherSenseAndAnAxisThatFroze) {
   const SaidOfRates good = rates_of(draw, "none");
   EXPECT_FALSE(good.implausible);
   EXPECT_FALSE(good.z_frozen);
+  EXPECT_FALSE(good.other_sense);
+  // the mirrored world: gravity turns as it should, and only flight tells
+  const SaidOfRates mirrored = rates_of(draw, "accel_flipped");
+  EXPECT_TRUE(mirrored.implausible);
+  EXPECT_TRUE(mirrored.other_sense);
   const SaidOfRates flipped = rates_of(draw, "gyro_flipped");
   EXPECT_TRUE(flipped.implausible);
   EXPECT_GT(flipped.turned_sigma_rad_s, 2.0) << "and does not state to know them";

@@ -8,6 +8,8 @@
 #include <vector>
 
 #include "tumble/angular_velocity/detail/arrow_solver.hpp"
+#include "tumble/angular_velocity/detail/flight_sense.hpp"
+#include "tumble/angular_velocity/detail/frozen_axes.hpp"
 #include "tumble/angular_velocity/detail/rail_watch.hpp"
 #include "tumble/angular_velocity/detail/rate_model.hpp"
 #include "tumble/angular_velocity/detail/rate_stream_expert_params.hpp"
@@ -65,19 +67,14 @@ struct RateStreamParams {
 /// An estimate comes out when its sample is `lag_s` old, and a provisional one at once. A step is O(window): in
 /// proportion to the rate of the samples beyond 200 Hz, to its square below; no allocation after the State is made.
 /// Rails, upright ones and the tilted planes of a gyro's elements, are learnt as they show themselves (RailWatch); with
-/// each that becomes known the window is read again, element by element, so that a clipped sample that was believed
-/// counts as believed only where it left the window before its rail was seen. Give it the calibration of an earlier run
-/// where there is one: then the error is 1.1 times that of the batch (median and mean) and 99 % lie within three
-/// deviations. Without it the rig is learnt in the tumble that needs it: 1.6 times the median of the batch and 1.7
-/// times its mean. Nearly all of that arises in the first 0.3 s after the first clipped sample, and the window is not
-/// what loses it: the batch run anew for each sample on all the past and the same 0.2 s ahead is no better. With 0.5 s
-/// of lag it is 1.2 and 1.4 (docs/maths/rate_stream.md has the draws).
+/// each that becomes known the window is read again, so that a clipped sample that was believed counts as believed only
+/// where it left the window before its rail was seen. With the calibration of an earlier run the error is 1.1 times that
+/// of the batch and 99 % lie within three deviations; without it the rig is learnt in the tumble that needs it: 1.6
+/// times, 1.2 with 0.5 s of lag (docs/maths/rate_stream.md has the draws).
 ///
-/// What leaves the window is weighed for good while the constants are off by millimetres, and the samples of a flight
-/// err together (its edges, an impact or a push that was taken for flight), so that their formal covariance is too
-/// small: the lever arm was off by five of its deviations after 10 samples of flight, by three after 40. The covariance
-/// of the rig is therefore widened while few samples have been learnt from (`rig_doubt`), and that of the rates
-/// contains it so. What it does not model: see RateSmoother.
+/// The samples of a flight err together, so that what has left the window makes the covariance of the rig too small: it
+/// is widened while few have been learnt from (`rig_doubt`), and that of the rates contains it so. What it does not
+/// model: see RateSmoother.
 class RateStream {
  public:
   using Params = RateStreamParams;
@@ -105,6 +102,11 @@ class RateStream {
 
   /// Estimates of the samples still in the window that push() has not given out, oldest first, appended to `out`.
   void flush(const State& state, std::vector<RateState>& out) const;
+
+  /// Whether the IMU can be believed just now: `out_of_range` with the axis by name that has frozen (FrozenAxes), whose
+  /// rates state the fastest rate that was read as their deviation, or where the accelerometer has the other sense than
+  /// the nominal lever arm (FlightSense).
+  Status doubt(const State& state) const;
 
   /// What has been learnt of the rig.
   RigCalibration calibration(const State& state) const { return {state.rig, widened(state)}; }
@@ -142,6 +144,8 @@ class RateStream {
   RailWatch rails_;
   RestDetector rests_;
   HoldWatch holds_;
+  FrozenAxes frozen_;
+  FlightSense sense_;
   RateModel model_;
   std::size_t capacity_;
   std::size_t every_;  ///< samples from one step to the next

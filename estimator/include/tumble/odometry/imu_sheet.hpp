@@ -6,6 +6,7 @@
 namespace tumble {
 
 /// What the data sheet of an IMU says. A range of 0 is not stated: rails are found as they show themselves either way.
+/// Data sheets state a gyro's range in degrees a second, 250 to 4000: one beyond 100 rad/s (5730) was not converted.
 struct ImuSheet {
   double rate_hz = 100.0;
   double gyro_range_rad_s = 0.0;
@@ -17,7 +18,8 @@ struct ImuSheet {
   template <class Self, class Visitor>
   static void fields(Self& p, Visitor& visit) {
     visit(p.rate_hz, {"rate_hz", "Hz", 1.0, 1e5, "samples per second", Rank::first});
-    visit(p.gyro_range_rad_s, {"gyro_range_rad_s", "rad/s", 0.0, 1e4, "stated range; 0: not stated", Rank::first});
+    visit(p.gyro_range_rad_s,
+          {"gyro_range_rad_s", "rad/s", 0.0, 100.0, "stated range, in rad/s; 0: not stated", Rank::first});
     visit(p.accel_range_m_s2, {"accel_range_m_s2", "m/s^2", 0.0, 1e5, "stated range; 0: not stated", Rank::first});
     visit(p.gyro_noise_rad_s_sqrt_hz,
           {"gyro_noise_rad_s_sqrt_hz", "rad/s/sqrt(Hz)", 1e-9, 1.0, "density of the gyro's white noise", Rank::first});

@@ -2,12 +2,14 @@
 #pragma once
 
 #include <Eigen/Geometry>
+#include <array>
 #include <cstddef>
 #include <memory>
 #include <optional>
 #include <span>
 #include <vector>
 
+#include "tumble/angular_velocity/detail/frozen_axes.hpp"
 #include "tumble/attitude/imu_merge.hpp"
 #include "tumble/common/pose.hpp"
 #include "tumble/odometry/detail/unit_rails.hpp"
@@ -77,7 +79,7 @@ class RollingOdometry {
   /// Takes what all units read at one time (the first's stamp counts); one that has nothing to say gives NaN. On
   /// trouble the state is as it was: `too_few` (units, or one that has something to say), `time_order`, `degenerate`
   /// (no gravity in the first sample), `gap` (more than a second: the way is not known any more, and the run is over
-  /// until reset()), `out_of_range` after finish().
+  /// until reset()), `out_of_range` after finish() and where the only unit that is heard has a frozen axis.
   Status add_imus(std::span<const ImuSample> samples);
   /// The same of a sphere with one.
   Status add_imu(const ImuSample& sample) { return add_imus({&sample, 1}); }
@@ -94,6 +96,11 @@ class RollingOdometry {
   /// Begins a new run: at the origin, at rest. Poses that wait for take() stay.
   void reset();
 
+  /// Whether the units can be believed just now: `ok`, or `out_of_range` with unit and axis by name that has frozen
+  /// (FrozenAxes), for how long and the bound. What that unit reads is left out meanwhile; where it is the only one
+  /// that is heard, add_imus() says so and takes nothing in.
+  Status doubt() const { return doubt(frozen_); }
+
   /// What the IMUs say of each other: frozen, disagreeing, late ones.
   const ImuMerge::State& units() const { return *merge_state_; }
 
@@ -106,9 +113,13 @@ class RollingOdometry {
   static void members(Self& s, Visitor& visit);
 
  private:
+  using Frozen = std::array<FrozenAxes::State, ImuMerge::kImus>;
+
   RollingOdometry(const Params& params, const ImuMerge::Params& merged);
 
   Status take_in(const ImuSample& merged);
+  Status leave_out_frozen(const Frozen& frozen, std::span<ImuSample> samples) const;
+  Status doubt(const Frozen& frozen) const;
 
   Params params_;
   ImuMerge merge_;
@@ -117,6 +128,8 @@ class RollingOdometry {
   std::unique_ptr<ImuMerge::State> merge_state_;
   std::unique_ptr<RollingSmoother::State> state_;
   UnitRails::State rails_state_;
+  std::vector<FrozenAxes> watches_;  ///< of the units
+  Frozen frozen_{};
   std::vector<RollingEstimate> done_;
   std::size_t taken_ = 0;
   bool live_ = true, finished_ = false;

@@ -42,7 +42,8 @@ class TumblingOdometry {
     LidarInertialOdometry::SweepReport report;
   };
 
-  /// Throws InvalidParams on a parameter outside of its bound.
+  /// Throws InvalidParams on a parameter outside of its bound, a lever arm that was not stated and a box of the own
+  /// body whose corners are swapped.
   explicit TumblingOdometry(const Params& params);
 
   /// Takes a sample of the IMU, in order of time. Sweeps whose rates are settled with it are registered now. On trouble
@@ -68,6 +69,15 @@ class TumblingOdometry {
   /// Pose and velocity of the IMU at its newest sample, by inertia from the last sweep that was registered, with
   /// covariance. `empty` before that. Allocates; O(samples since then).
   Status newest(PoseState& pose) const;
+
+  /// Whether what it is told can be believed just now: `ok`, or `out_of_range` with the axis of the IMU by name that
+  /// has frozen and for how long, with an accelerometer of the other sense (FlightSense), or with the scale of the
+  /// lidar's ranges where the IMU contradicts it (SweepScale). It goes on either way: rates that nothing is known of
+  /// have a wide deviation; a map of another scale is one.
+  Status doubt() const;
+
+  /// By how much the lidar's ranges are longer than the IMU has it, as far as the motion told.
+  const SweepScale& sweep_scale() const { return pass_.sweep_scale(); }
 
   /// Time of the newest sample that was taken in.
   std::optional<TimeNs> newest_ns() const { return newest_ns_; }

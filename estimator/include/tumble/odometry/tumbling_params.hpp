@@ -3,6 +3,7 @@
 
 #include <Eigen/Geometry>
 #include <cstddef>
+#include <limits>
 
 #include "tumble/attitude/regime_stream.hpp"
 #include "tumble/common/parameters.hpp"
@@ -40,8 +41,8 @@ struct TumblingExpertParams {
 struct TumblingParams {
   ImuSheet imu;
   /// From the body's centre of mass to the IMU, in IMU axes: what turns rates into forces; and how well it is known
-  /// (standard deviation per axis). It is estimated.
-  Eigen::Vector3d lever_arm_I_m = Eigen::Vector3d::Zero();
+  /// (standard deviation per axis). It is estimated. Has no default: zero is an IMU at the centre of mass.
+  Eigen::Vector3d lever_arm_I_m = Eigen::Vector3d::Constant(std::numeric_limits<double>::quiet_NaN());
   double lever_arm_sigma_m = 0.01;
   Eigen::Isometry3d T_IL = Eigen::Isometry3d::Identity();  ///< lidar in IMU axes
   /// Of T_IL and of the lidar's clock: standard deviations, both are estimated; 0: exact.
@@ -49,8 +50,10 @@ struct TumblingParams {
   double mount_sigma_m = 0.006;
   double time_offset_sigma_s = 0.003;
   LidarSheet lidar;
-  Eigen::AlignedBox3d own_body_L;  ///< returns inside are the robot's own; empty: none are
-  double lag_s = 0.2;              ///< how old a sample is when its rate is settled
+  /// Returns inside are the robot's own; Eigen's empty box, as here: none are. One whose corners are swapped is
+  /// refused.
+  Eigen::AlignedBox3d own_body_L;
+  double lag_s = 0.2;  ///< how old a sample is when its rate is settled
 
   using Expert = TumblingExpertParams;
   Expert expert;  ///< what few need

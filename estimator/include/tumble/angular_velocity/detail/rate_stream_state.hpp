@@ -8,6 +8,8 @@
 #include <vector>
 
 #include "tumble/angular_velocity/detail/arrow_solver.hpp"
+#include "tumble/angular_velocity/detail/flight_sense.hpp"
+#include "tumble/angular_velocity/detail/frozen_axes.hpp"
 #include "tumble/angular_velocity/detail/hold_watch.hpp"
 #include "tumble/angular_velocity/detail/least_rails.hpp"
 #include "tumble/angular_velocity/detail/rail_watch.hpp"
@@ -39,6 +41,8 @@ struct RateStreamState {
   RailWatch::State rails;
   RestDetector::State rests;
   HoldWatch::State holds;
+  FrozenAxes::State frozen;
+  FlightSense::State sense;
   std::vector<RateStreamKnot> window;  ///< oldest first
   RigConstants rig;
   RigConstants::Matrix rig_covariance;

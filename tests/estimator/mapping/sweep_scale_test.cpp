@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "scenarios/methods/sweep_scale.hpp"
+#include "tumble/mapping/detail/sweep_scale.hpp"
 
 #include <gtest/gtest.h>
 
@@ -8,14 +8,14 @@
 
 #include "oracles/gaussian.hpp"
 
-namespace tumble::scenarios {
+namespace tumble {
 namespace {
 
 constexpr double kGravity = 9.80665;
 
 struct Flight {
   std::vector<ImuSample> samples;
-  std::vector<LidarInertialOdometry::SweepReport> sweeps;
+  std::vector<SweepReport> sweeps;
 };
 
 // Hops of 0.8 s, spinning about the vertical: a parabola each, p known in closed form; sweeps of 0.1 s.
@@ -24,7 +24,7 @@ Flight hops(double scale, double noise_m) {
   constexpr int kHop = 80;
   oracles::Gaussian noise(11);
   Flight out;
-  LidarInertialOdometry::SweepReport sweep;
+  SweepReport sweep;
   for (int k = 0; k <= 400; ++k) {
     const double t_s = kDt_s * k, in_hop_s = kDt_s * (k % kHop);
     ImuSample sample;
@@ -58,6 +58,37 @@ TEST(SweepScale, IsThatOfTheRanges) {
   }
 }
 
+// Sweep by sweep, as they come, it is the same slope, and what came later changes nothing of what was said.
+TEST(SweepScale, IsToldWhileSweepsCome) {
+  for (const double scale : {0.9, 1.0, 1.1}) {
+    const Flight flight = hops(scale, 0.005);
+    SweepScaleWatch watch(kGravity, 200);
+    std::size_t next = 0;
+    for (const SweepReport& sweep : flight.sweeps) {
+      for (; next < flight.samples.size() && flight.samples[next].time_ns <= sweep.pose.time_ns; ++next)
+        watch.add(flight.samples[next]);
+      watch.add(sweep);
+      EXPECT_TRUE(scale != 1.0 || watch.scale().verdict().ok()) << watch.scale().verdict().message();
+    }
+    const SweepScale whole = find_sweep_scale(flight.samples, flight.sweeps, kGravity);
+    EXPECT_EQ(watch.scale().changes, whole.changes);
+    EXPECT_NEAR(watch.scale().scale, whole.scale, 1e-6);
+    EXPECT_EQ(watch.scale().verdict().ok(), scale == 1.0);
+  }
+}
+
+TEST(SweepScale, ALidarThatIsSilentForTooLongIsNotCompared) {
+  const Flight flight = hops(1.1, 0.005);
+  SweepScaleWatch watch(kGravity, 50);
+  std::size_t next = 0;
+  for (const SweepReport& sweep : flight.sweeps) {
+    for (; next < flight.samples.size() && flight.samples[next].time_ns <= sweep.pose.time_ns; ++next)
+      watch.add(flight.samples[next]);
+    watch.add(sweep);
+  }
+  EXPECT_EQ(watch.scale().changes, 0u);
+}
+
 TEST(SweepScale, NothingIsSaidWhereNothingTells) {
   const Flight flight = hops(1.1, 0.005);
   EXPECT_FALSE(find_sweep_scale({}, {}, kGravity).is_off());
@@ -83,4 +114,4 @@ TEST(SweepScale, PlacesAsUncertainAsTheScaleAreNotTakenForOne) {
 }
 
 }  // namespace
-}  // namespace tumble::scenarios
+}  // namespace tumble

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "scenarios/methods/sweep_scale.hpp"
+#include "tumble/mapping/detail/sweep_scale.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -8,37 +8,36 @@
 
 #include "tumble/common/time.hpp"
 
-namespace tumble::scenarios {
+namespace tumble {
 
 namespace {
 
 constexpr double kLeast = 0.02, kDeviations = 5.0;
 // The mapper's prior is that of the IMU: over 0.1 s ranges that are 10 % long come out as 1.02 to 1.03, over 0.4 s as
-// 1.08, and good ones as 0.998 to 1.006 (hill, 62001 to 62006).
+// 1.08, and good ones as 0.998 to 1.006.
 constexpr double kSpan_s = 0.4;
 constexpr double kChange_m_s = 0.5;  // a change of velocity that is smaller tells less than its noise
-constexpr std::size_t kChangesMin = 5;
+constexpr std::size_t kChangesMin = 5, kChangesMax = 1000;
+constexpr std::size_t kSpanMax = 64;  // sweeps, of a lidar that is watched
 constexpr int kIterations = 10;
 constexpr double kHuber = 1.5, kPerMedian = 1.4826;  // deviations; of a normal distribution by its median deviation
 constexpr unsigned kAccelFlags = kClipAccelX | kClipAccelY | kClipAccelZ;
 
-/// A change of velocity from one span to the next.
-struct Change {
-  Eigen::Vector3d by_imu_m_s, by_sweeps_m_s;
-};
+using Change = SweepScaleWatch::Change;
 
 /// Sums of the IMU along the run's attitudes.
 class FeltMotion {
  public:
-  FeltMotion(std::span<const ImuSample> samples, std::span<const LidarInertialOdometry::SweepReport> sweeps,
-             double gravity_m_s2)
+  template <class Sweeps>
+  FeltMotion(std::span<const ImuSample> samples, const Sweeps& sweeps, double gravity_m_s2)
       : samples_(samples), gravity_W_m_s2_(0.0, 0.0, -gravity_m_s2) {
-    for (const auto& sweep : sweeps)
+    for (const SweepReport& sweep : sweeps)
       attitudes_.insert(attitudes_.end(), sweep.trajectory.begin(), sweep.trajectory.end());
   }
 
   /// Mean velocity from `middle_ns` to `to_ns` less that from `from_ns` to `middle_ns`; none where a force was hidden.
   std::optional<Eigen::Vector3d> change(TimeNs from_ns, TimeNs middle_ns, TimeNs to_ns) const {
+    if (attitudes_.empty()) return std::nullopt;
     const auto later = [](const ImuSample& sample, TimeNs time_ns) { return sample.time_ns <= time_ns; };
     auto next = std::lower_bound(samples_.begin(), samples_.end(), from_ns, later);
     Eigen::Vector3d velocity = Eigen::Vector3d::Zero(), place = velocity, at_middle = velocity;
@@ -72,45 +71,35 @@ class FeltMotion {
 };
 
 /// Whether surfaces say where a sweep was, in some directions at least.
-bool is_placed(const LidarInertialOdometry::SweepReport& sweep) {
+bool is_placed(const SweepReport& sweep) {
   return sweep.verdict == SweepVerdict::registered || sweep.verdict == SweepVerdict::degenerate;
 }
 
-std::size_t sweeps_in(double span_s, std::span<const LidarInertialOdometry::SweepReport> sweeps) {
+template <class Sweeps>
+std::size_t sweeps_in(double span_s, const Sweeps& sweeps) {
   if (sweeps.size() < 2) return 1;
   const double all_s = seconds(sweeps.back().pose.time_ns - sweeps.front().pose.time_ns);
   const double count = span_s * static_cast<double>(sweeps.size() - 1) / std::max(all_s, 1e-9);
   return static_cast<std::size_t>(std::clamp(std::round(count), 1.0, static_cast<double>(sweeps.size())));
 }
 
-std::vector<Change> changes_of(std::span<const ImuSample> samples,
-                               std::span<const LidarInertialOdometry::SweepReport> sweeps, double gravity_m_s2) {
-  std::vector<Change> out;
-  const FeltMotion felt(samples, sweeps, gravity_m_s2);
-  const std::size_t span = sweeps_in(kSpan_s, sweeps);
-  for (std::size_t k = 2 * span; k < sweeps.size(); ++k) {
-    const auto held = sweeps.subspan(k - 2 * span, 2 * span + 1);
-    if (!std::all_of(held.begin(), held.end(), is_placed)) continue;
-    const PoseState &from = held.front().pose, &middle = held[span].pose, &to = held.back().pose;
-    if (!(from.time_ns < middle.time_ns && middle.time_ns < to.time_ns)) continue;
-    const auto by_imu = felt.change(from.time_ns, middle.time_ns, to.time_ns);
-    if (!by_imu || by_imu->norm() < kChange_m_s) continue;
-    out.push_back({*by_imu, (to.p_WA_m - middle.p_WA_m) / seconds(to.time_ns - middle.time_ns) -
-                                (middle.p_WA_m - from.p_WA_m) / seconds(middle.time_ns - from.time_ns)});
+/// Over the two spans that end with sweep `last`; none where it cannot be told or is too small.
+template <class Sweeps>
+std::optional<Change> change_until(std::size_t last, std::size_t span, const Sweeps& sweeps, const FeltMotion& felt) {
+  for (std::size_t k = last - 2 * span; k <= last; ++k) {
+    if (!is_placed(sweeps[k])) return std::nullopt;
   }
-  return out;
+  const PoseState &from = sweeps[last - 2 * span].pose, &middle = sweeps[last - span].pose, &to = sweeps[last].pose;
+  if (!(from.time_ns < middle.time_ns && middle.time_ns < to.time_ns)) return std::nullopt;
+  const auto by_imu = felt.change(from.time_ns, middle.time_ns, to.time_ns);
+  if (!by_imu || !(by_imu->norm() >= kChange_m_s)) return std::nullopt;
+  return Change{*by_imu, (to.p_WA_m - middle.p_WA_m) / seconds(to.time_ns - middle.time_ns) -
+                             (middle.p_WA_m - from.p_WA_m) / seconds(middle.time_ns - from.time_ns)};
 }
 
-}  // namespace
-
-bool SweepScale::is_off() const {
-  return std::abs(scale - 1.0) > std::max(kLeast, kDeviations * sigma);
-}
-
-SweepScale find_sweep_scale(std::span<const ImuSample> samples,
-                            std::span<const LidarInertialOdometry::SweepReport> sweeps, double gravity_m_s2) {
+template <class Changes>
+SweepScale fit(const Changes& changes) {
   SweepScale out;
-  const std::vector<Change> changes = changes_of(samples, sweeps, gravity_m_s2);
   out.changes = changes.size();
   if (changes.size() < kChangesMin) return out;
   std::vector<double> off(changes.size());
@@ -133,4 +122,59 @@ SweepScale find_sweep_scale(std::span<const ImuSample> samples,
   return out;
 }
 
-}  // namespace tumble::scenarios
+}  // namespace
+
+bool SweepScale::is_off() const {
+  return std::abs(scale - 1.0) > std::max(kLeast, kDeviations * sigma);
+}
+
+Status SweepScale::verdict() const {
+  if (!is_off()) return {};
+  const double bound = std::max(kLeast, kDeviations * sigma);
+  return {Trouble::out_of_range, "scale of the lidar's ranges by what the IMU feels", scale,
+          scale > 1.0 ? 1.0 + bound : 1.0 - bound};
+}
+
+SweepScale find_sweep_scale(std::span<const ImuSample> samples, std::span<const SweepReport> sweeps,
+                            double gravity_m_s2) {
+  std::vector<Change> changes;
+  const FeltMotion felt(samples, sweeps, gravity_m_s2);
+  const std::size_t span = sweeps_in(kSpan_s, sweeps);
+  for (std::size_t k = 2 * span; k < sweeps.size(); ++k) {
+    if (const auto change = change_until(k, span, sweeps, felt)) changes.push_back(*change);
+  }
+  return fit(changes);
+}
+
+SweepScaleWatch::SweepScaleWatch(double gravity_m_s2, std::size_t samples_max)
+    : gravity_m_s2_(gravity_m_s2), samples_max_(samples_max) {
+  samples_.reserve(samples_max_);
+}
+
+void SweepScaleWatch::add(const ImuSample& sample) {
+  if (samples_.size() >= samples_max_) {  // the lidar is silent
+    samples_.clear();
+    sweeps_.clear();
+  }
+  samples_.push_back(sample);
+}
+
+void SweepScaleWatch::add(const SweepReport& sweep) {
+  SweepReport& kept = sweeps_.emplace_back();
+  kept.pose = sweep.pose;
+  kept.verdict = sweep.verdict;
+  kept.trajectory = sweep.trajectory;
+  const std::size_t span = std::min(sweeps_in(kSpan_s, sweeps_), kSpanMax);
+  while (sweeps_.size() > 2 * span + 1) sweeps_.pop_front();
+  const TimeNs from_ns = sweeps_.front().pose.time_ns;
+  std::erase_if(samples_, [&](const ImuSample& earlier) { return earlier.time_ns <= from_ns; });
+  if (sweeps_.size() < 2 * span + 1) return;
+  const FeltMotion felt(samples_, sweeps_, gravity_m_s2_);
+  const std::optional<Change> change = change_until(2 * span, span, sweeps_, felt);
+  if (!change) return;
+  changes_.push_back(*change);
+  if (changes_.size() > kChangesMax) changes_.pop_front();
+  scale_ = fit(changes_);
+}
+
+}  // namespace tumble

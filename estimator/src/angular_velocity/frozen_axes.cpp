@@ -1,0 +1,161 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "tumble/angular_velocity/detail/frozen_axes.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace tumble {
+
+namespace {
+
+constexpr double kLonger = 10.0;       // than any hold before
+constexpr double kRailShare = 0.9;     // of the stated range, from which on a reading may stand at its rail
+constexpr double kExtremeShare = 0.5;  // and from which on where it is the highest or lowest of the axis
+constexpr double kQuanta = 50.0;       // of the axis, by which another moves: a part of 2 % in this axis is one quantum
+constexpr double kTurning_rad_s = 0.3;  // by which another axis of a gyro changes, for the body to move
+constexpr double kPushed_m_s2 = 1.0;    // and of an accelerometer
+constexpr double kChanging = 0.5;       // of the samples of a hold, in which another axis changes
+// A body that rests: no other axis turns, and forces stay where they were.
+constexpr double kStill_rad_s = 0.2, kStill_m_s2 = 0.5;
+// What a sound axis reads of one at most: its bias, gravity.
+constexpr double kRestMost_rad_s = 1.0, kRestMost_m_s2 = 15.0;
+
+constexpr bool is_gyro(std::size_t channel) {
+  return channel < 3;
+}
+
+/// Of the same triad: the k-th of the two others.
+constexpr std::size_t other(std::size_t channel, std::size_t k) {
+  return channel / 3 * 3 + (channel + 1 + k) % 3;
+}
+
+std::array<double, 6> readings(const ImuSample& sample) {
+  const Eigen::Vector3d &w = sample.angular_velocity_rad_s, &f = sample.specific_force_m_s2;
+  return {w.x(), w.y(), w.z(), f.x(), f.y(), f.z()};
+}
+
+void begin_hold(std::size_t channel, const std::array<double, 6>& now, TimeNs time_ns, FrozenAxes::Axis& axis) {
+  axis.reading = now[channel];
+  axis.since_ns = time_ns;
+  axis.held_s = axis.samples = axis.still_s = 0.0;
+  axis.flagged = axis.frozen = false;
+  axis.still_at = now;
+  for (std::size_t k = 0; k < 2; ++k) {
+    axis.other_low[k] = axis.other_high[k] = now[other(channel, k)];
+    axis.other_changes[k] = 0.0;
+  }
+}
+
+/// Whether all axes but `channel` read what a body at rest makes them read, as in `before`.
+bool others_rest(std::size_t channel, const std::array<double, 6>& now, const std::array<double, 6>& before) {
+  for (std::size_t k = 0; k < now.size(); ++k) {
+    if (k == channel) continue;
+    if (is_gyro(k) ? std::abs(now[k]) > kStill_rad_s : std::abs(now[k] - before[k]) > kStill_m_s2) return false;
+  }
+  return true;
+}
+
+}  // namespace
+
+FrozenAxes::FrozenAxes(const Params& params) : params_(params) {
+  require_fields(params);
+}
+
+void FrozenAxes::step(const ImuSample& sample, State& state) const {
+  if (!check_sample(sample).ok()) return;
+  if (state.started && sample.time_ns <= state.last_time_ns) return;
+  const std::array<double, 6> now = readings(sample);
+  const double dt_s = state.started ? seconds(sample.time_ns - state.last_time_ns) : 0.0;
+  for (std::size_t c = 0; c < now.size(); ++c) {
+    Axis& axis = state.axes[c];
+    if (!state.started) axis.lowest = axis.highest = now[c];
+    axis.lowest = std::min(axis.lowest, now[c]);
+    axis.highest = std::max(axis.highest, now[c]);
+    if (!state.started || now[c] != axis.reading) {
+      if (state.started) {
+        const double change = std::abs(now[c] - axis.reading);
+        axis.quantum = axis.quantum > 0.0 ? std::min(axis.quantum, change) : change;
+        if (!axis.frozen && !at_rail(c, axis)) axis.longest_s = std::max(axis.longest_s, axis.held_s);
+        axis.moved_s += dt_s;
+      }
+      begin_hold(c, now, sample.time_ns, axis);
+    }
+    hold(c, now, dt_s, sample.device_clip_flags, state);
+  }
+  state.before = now;
+  state.last_time_ns = sample.time_ns;
+  state.fastest_rad_s = std::max(state.fastest_rad_s, sample.angular_velocity_rad_s.norm());
+  state.started = true;
+}
+
+void FrozenAxes::hold(std::size_t channel, const std::array<double, 6>& now, double dt_s, std::uint8_t flags,
+                      State& state) const {
+  Axis& axis = state.axes[channel];
+  const int first = is_gyro(channel) ? kClipGyroX : kClipAccelX;
+  axis.flagged = axis.flagged || (flags & first << channel % 3) != 0;
+  if (state.last_time_ns >= axis.since_ns && state.started) {
+    axis.held_s += dt_s;
+    axis.samples += 1.0;
+    for (std::size_t k = 0; k < 2; ++k) {
+      const std::size_t beside = other(channel, k);
+      axis.other_low[k] = std::min(axis.other_low[k], now[beside]);
+      axis.other_high[k] = std::max(axis.other_high[k], now[beside]);
+      if (now[beside] != state.before[beside]) axis.other_changes[k] += 1.0;
+    }
+    if (others_rest(channel, now, axis.still_at)) {
+      axis.still_s += dt_s;
+    } else {
+      axis.still_s = 0.0;
+      axis.still_at = now;
+    }
+  }
+  const double most = is_gyro(channel) ? kRestMost_rad_s : kRestMost_m_s2;
+  const bool froze = at_rail(channel, axis) ? axis.still_s >= params_.rail_still_s && std::abs(axis.reading) >= most
+                                            : axis.moved_s >= params_.frozen_s &&
+                                                  axis.held_s >= std::max(params_.frozen_s, kLonger * axis.longest_s) &&
+                                                  others_move(channel, axis);
+  axis.frozen = axis.frozen || froze;
+  axis.ever_frozen = axis.ever_frozen || froze;
+}
+
+bool FrozenAxes::at_rail(std::size_t channel, const Axis& axis) const {
+  const double stated = is_gyro(channel) ? params_.gyro_range_rad_s : params_.accel_range_m_s2;
+  const double size = std::abs(axis.reading);
+  if (axis.flagged || (stated > 0.0 && size >= kRailShare * stated)) return true;
+  return size >= kExtremeShare * stated && (axis.reading == axis.lowest || axis.reading == axis.highest);
+}
+
+bool FrozenAxes::others_move(std::size_t channel, const Axis& axis) const {
+  const double least = std::max(is_gyro(channel) ? kTurning_rad_s : kPushed_m_s2, kQuanta * axis.quantum);
+  for (std::size_t k = 0; k < 2; ++k) {
+    const bool changes = axis.other_changes[k] >= kChanging * axis.samples;
+    if (changes && axis.other_high[k] - axis.other_low[k] >= least) return true;
+  }
+  return false;
+}
+
+const FrozenAxes::Axis& FrozenAxes::axis(Triad triad, int axis, const State& state) {
+  return state.axes.at((triad == Triad::gyro ? 0U : 3U) + static_cast<std::size_t>(axis));
+}
+
+Status FrozenAxes::verdict(const State& state) const {
+  constexpr std::array<const char*, 6> kFields = {
+      "seconds for which gyro x repeats one reading",  "seconds for which gyro y repeats one reading",
+      "seconds for which gyro z repeats one reading",  "seconds for which accel x repeats one reading",
+      "seconds for which accel y repeats one reading", "seconds for which accel z repeats one reading"};
+  for (std::size_t c = 0; c < kFields.size(); ++c) {
+    if (state.axes[c].frozen) return {Trouble::out_of_range, kFields[c], state.axes[c].held_s, params_.frozen_s};
+  }
+  return {};
+}
+
+Eigen::Vector3d FrozenAxes::rate_variance_rad2_s2(TimeNs time_ns, const State& state) const {
+  Eigen::Vector3d out = Eigen::Vector3d::Zero();
+  for (std::size_t c = 0; c < 3; ++c) {
+    const Axis& axis = state.axes[c];
+    if (axis.frozen && time_ns >= axis.since_ns) out[static_cast<int>(c)] = state.fastest_rad_s * state.fastest_rad_s;
+  }
+  return out;
+}
+
+}  // namespace tumble

@@ -1,0 +1,59 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// What holds of the states of a RateStream, and when two of them are the same.
+#include <algorithm>
+
+#include "tumble/angular_velocity/rate_stream.hpp"
+
+namespace tumble {
+
+Status RateStream::doubt(const State& state) const {
+  const Status of_axes = frozen_.verdict(state.frozen);
+  return of_axes.ok() ? sense_.verdict(state.sense) : of_axes;
+}
+
+Status RateStream::check_state(const State& state) const {
+  const std::size_t most = capacity_ + every_;
+  if (state.window.size() > most)
+    return {Trouble::out_of_range, "rate.window", double(state.window.size()), double(most)};
+  if (state.waiting > every_) return {Trouble::out_of_range, "rate.waiting", double(state.waiting), double(every_)};
+  if (!rails_.has_room_for(state.rails)) return {Trouble::out_of_range, "rails.readings", 1.0, 0.0};
+  for (std::size_t k = 1; k < state.window.size(); ++k) {
+    const TimeNs before_ns = state.window[k - 1].observation.sample.time_ns;
+    const Status status = check_follows(state.window[k].observation.sample.time_ns, before_ns, params_.gap_max_s);
+    if (!status.ok()) return status;
+  }
+  return {};
+}
+
+bool RateStream::equal(const State& a, const State& b) {
+  const auto same = [](const Knot& x, const Knot& y) {
+    const ImuSample &p = x.observation.sample, &q = y.observation.sample;
+    const RateEstimate &e = x.estimate, &f = y.estimate;
+    return p.time_ns == q.time_ns && p.angular_velocity_rad_s == q.angular_velocity_rad_s &&
+           p.specific_force_m_s2 == q.specific_force_m_s2 && p.device_clip_flags == q.device_clip_flags &&
+           x.observation.clipping == y.observation.clipping && x.by_walls == y.by_walls &&
+           x.observation.at_rest == y.observation.at_rest && x.observation.partial == y.observation.partial &&
+           x.observation.lone == y.observation.lone && x.observation.doubted == y.observation.doubted &&
+           x.repeats == y.repeats && x.stale_rad_s == y.stale_rad_s &&
+           x.observation.lost_rad_s == y.observation.lost_rad_s &&
+           x.observation.lost_sigma_rad_s == y.observation.lost_sigma_rad_s && e.knot == f.knot &&
+           e.flight_weight == f.flight_weight && e.contact_m_s2 == f.contact_m_s2 &&
+           e.bound_precision == f.bound_precision && e.bound_shift == f.bound_shift && e.soft_bounds == f.soft_bounds &&
+           x.covariance_rad2_s2 == y.covariance_rad2_s2 && x.age == y.age && x.approach_rad_s == y.approach_rad_s &&
+           std::equal(x.observation.auxiliary_imus.begin(), x.observation.auxiliary_imus.end(),
+                      y.observation.auxiliary_imus.begin(),
+                      [](const AuxiliaryReading& r, const AuxiliaryReading& s) { return r.same(s); });
+  };
+  return RailWatch::equal(a.rails, b.rails) && a.rests == b.rests && a.holds == b.holds && a.frozen == b.frozen &&
+         a.sense == b.sense && std::equal(a.window.begin(), a.window.end(), b.window.begin(), b.window.end(), same) &&
+         a.rig == b.rig && a.rig_covariance == b.rig_covariance && a.prior.diagonal == b.prior.diagonal &&
+         a.prior.border == b.prior.border && a.prior.gradient == b.prior.gradient &&
+         a.prior_corner.matrix == b.prior_corner.matrix && a.prior_corner.gradient == b.prior_corner.gradient &&
+         a.extremes == b.extremes && a.least == b.least && a.entry_rad_s == b.entry_rad_s &&
+         a.entry_samples == b.entry_samples && a.left == b.left && a.left_ns == b.left_ns &&
+         a.prior_knot == b.prior_knot && a.prior_rig == b.prior_rig && a.samples == b.samples &&
+         a.rig_resets == b.rig_resets && a.flight_run == b.flight_run && a.waiting == b.waiting &&
+         a.learnt_from == b.learnt_from && a.failures == b.failures;
+}
+
+}  // namespace tumble

@@ -1,0 +1,144 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "tumble/angular_velocity/detail/frozen_axes.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <random>
+#include <string>
+#include <vector>
+
+#include "tumble/common/status.hpp"
+
+namespace tumble {
+namespace {
+
+constexpr double kPeriod_s = 0.01, kRail_rad_s = 5.0, kRail_m_s2 = 40.0;
+
+/// Rests for two seconds, turns and is pushed for four, rests for four: readings with noise, clipped at the rails.
+std::vector<ImuSample> moving_body() {
+  std::mt19937 random(1);
+  std::normal_distribution<double> noise;
+  std::vector<ImuSample> out;
+  for (int k = 1; k <= 1000; ++k) {
+    const double t = k * kPeriod_s, moves = t > 2.0 && t < 6.0 ? 1.0 : 0.0;
+    ImuSample sample;
+    sample.time_ns = static_cast<TimeNs>(k) * 10'000'000;
+    sample.angular_velocity_rad_s = moves * Eigen::Vector3d(3.0 * std::sin(4.0 * t), 2.0 * std::cos(5.0 * t),
+                                                            9.0 * std::sin(0.5 * M_PI * (t - 2.0)));
+    sample.specific_force_m_s2 = Eigen::Vector3d(0.0, 0.0, 9.81) +
+                                 moves * Eigen::Vector3d(4.0 * std::sin(7.0 * t), 3.0 * std::sin(9.0 * t), 0.0);
+    for (int j = 0; j < 3; ++j) {
+      sample.angular_velocity_rad_s[j] += 0.005 * noise(random);
+      sample.specific_force_m_s2[j] += 0.02 * noise(random);
+    }
+    out.push_back(sample);
+  }
+  return out;
+}
+
+std::vector<ImuSample> clipped(std::vector<ImuSample> samples) {
+  for (ImuSample& sample : samples)
+    sample.angular_velocity_rad_s = sample.angular_velocity_rad_s.cwiseMax(-kRail_rad_s).cwiseMin(kRail_rad_s);
+  return samples;
+}
+
+struct Found {
+  std::string first;  ///< verdict when it was no longer ok
+  TimeNs told_ns = 0;
+  FrozenAxes::State state;
+};
+
+Found watch(const std::vector<ImuSample>& samples, const FrozenAxes::Params& params) {
+  const FrozenAxes detector(params);
+  Found out;
+  for (const ImuSample& sample : samples) {
+    detector.step(sample, out.state);
+    const Status status = detector.verdict(out.state);
+    if (status.ok() || !out.first.empty()) continue;
+    out.first = status.message();
+    out.told_ns = sample.time_ns;
+  }
+  return out;
+}
+
+FrozenAxes::Params stated() {
+  return {.gyro_range_rad_s = kRail_rad_s, .accel_range_m_s2 = kRail_m_s2};
+}
+
+TEST(FrozenAxes, NamesAnAxisThatRepeatsOneReadingWhileTheOthersMove) {
+  for (const FrozenAxes::Params& params : {FrozenAxes::Params{}, stated()}) {
+    EXPECT_EQ(watch(clipped(moving_body()), params).first, "");
+    std::vector<ImuSample> samples = clipped(moving_body());
+    for (std::size_t k = 300; k < samples.size(); ++k)
+      samples[k].angular_velocity_rad_s.x() = samples[300].angular_velocity_rad_s.x();
+    const Found found = watch(samples, params);
+    EXPECT_NE(found.first.find("gyro x"), std::string::npos) << found.first;
+    EXPECT_LT(found.told_ns, samples[300].time_ns + 600'000'000);
+    const Eigen::Vector3d variance = FrozenAxes(params).rate_variance_rad2_s2(samples[400].time_ns, found.state);
+    EXPECT_GT(std::sqrt(variance.x()), kRail_rad_s);
+    EXPECT_EQ(variance.y(), 0.0);
+    EXPECT_EQ(FrozenAxes(params).rate_variance_rad2_s2(samples[299].time_ns, found.state).x(), 0.0);
+  }
+}
+
+TEST(FrozenAxes, NamesAnAxisOfTheAccelerometer) {
+  std::vector<ImuSample> samples = moving_body();
+  for (std::size_t k = 300; k < samples.size(); ++k)
+    samples[k].specific_force_m_s2.y() = samples[300].specific_force_m_s2.y();
+  EXPECT_NE(watch(samples, stated()).first.find("accel y"), std::string::npos);
+}
+
+// The body lies still at the end, and the axis goes on to read its rail: no body rests that turns so.
+TEST(FrozenAxes, NamesAnAxisThatStandsAtItsRailOnABodyAtRest) {
+  for (const FrozenAxes::Params& params : {FrozenAxes::Params{}, stated()}) {
+    std::vector<ImuSample> samples = clipped(moving_body());
+    const auto at_rail = std::find_if(samples.begin(), samples.end(), [](const ImuSample& sample) {
+      return sample.angular_velocity_rad_s.z() == kRail_rad_s;
+    });
+    ASSERT_NE(at_rail, samples.end());
+    for (auto sample = at_rail; sample != samples.end(); ++sample) sample->angular_velocity_rad_s.z() = kRail_rad_s;
+    EXPECT_NE(watch(samples, params).first.find("gyro z"), std::string::npos);
+    // and so from the beginning
+    for (ImuSample& sample : samples) sample.angular_velocity_rad_s.z() = -kRail_rad_s;
+    EXPECT_NE(watch(samples, params).first.find("gyro z"), std::string::npos);
+  }
+  std::vector<ImuSample> samples = moving_body();
+  for (ImuSample& sample : samples) sample.specific_force_m_s2.x() = kRail_m_s2;
+  EXPECT_NE(watch(samples, stated()).first.find("accel x"), std::string::npos);
+}
+
+TEST(FrozenAxes, ASensorWithoutNoiseAtRestIsNotFrozen) {
+  std::vector<ImuSample> samples = moving_body();
+  for (ImuSample& sample : samples) {
+    if (sample.time_ns > 2'000'000'000 && sample.time_ns < 6'000'000'000) continue;
+    sample.angular_velocity_rad_s.setZero();
+    sample.specific_force_m_s2 = {0.0, 0.0, 9.81};
+  }
+  EXPECT_EQ(watch(samples, {}).first, "");
+}
+
+TEST(FrozenAxes, OneThatIsReadMoreSlowlyIsNotFrozen) {
+  std::vector<ImuSample> samples = moving_body();
+  for (std::size_t k = 0; k < samples.size(); ++k)
+    samples[k].angular_velocity_rad_s.x() = samples[k - k % 20].angular_velocity_rad_s.x();
+  EXPECT_EQ(watch(samples, {}).first, "");
+}
+
+TEST(FrozenAxes, WhatIsNoReadingIsPassedOver) {
+  const FrozenAxes detector(stated());
+  FrozenAxes::State state;
+  for (const ImuSample& sample : clipped(moving_body())) detector.step(sample, state);
+  const FrozenAxes::State before = state;
+  ImuSample nan = moving_body().back();
+  nan.time_ns += 1;
+  nan.angular_velocity_rad_s.x() = std::nan("");
+  detector.step(nan, state);
+  detector.step(moving_body().front(), state);
+  EXPECT_EQ(state, before);
+  EXPECT_THROW(FrozenAxes({.frozen_s = std::nan("")}), InvalidParams);
+}
+
+}  // namespace
+}  // namespace tumble
