@@ -27,7 +27,13 @@ struct Message {
   Sweep sweep;
 };
 
-/// The next message; nothing at the end and at the first line that is none.
+/// Says that what follows is not read.
+inline std::optional<Message> stop(const std::string& kind) {
+  std::fprintf(stderr, "no whole message: '%s'; nothing after it is read\n", kind.c_str());
+  return std::nullopt;
+}
+
+/// The next message; nothing at the end, and nothing, aloud, at the first line that is none.
 inline std::optional<Message> next(std::istream& in) {
   Message out;
   std::string kind;
@@ -44,9 +50,9 @@ inline std::optional<Message> next(std::istream& in) {
       in >> p.x() >> p.y() >> p.z() >> point.offset_ns >> point.ring;
     }
   } else {
-    return std::nullopt;
+    return stop(kind);
   }
-  if (!in) return std::nullopt;
+  if (!in) return stop(kind);
   return out;
 }
 

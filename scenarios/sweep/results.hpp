@@ -94,8 +94,6 @@ class Results {
   /// All that `work` stores, or, when it throws, nothing of it. Throws what it throws.
   void in_one_transaction(const std::function<void()>& work);
 
-  /// Of a plain outcome.
-  bool has(const std::string& scenario, std::uint64_t seed, Kind kind, const std::string& method) const;
   /// The row with the scenario, seed, kind, method and setting of `key`, without its scores.
   std::optional<Outcome> find(const Outcome& key) const;
   /// What is held of one draw, curves included, without scores.

@@ -89,19 +89,6 @@ std::optional<Outcome> Results::find(const Outcome& key) const {
   return std::nullopt;
 }
 
-bool Results::has(const std::string& scenario, std::uint64_t seed, Kind kind, const std::string& method) const {
-  return impl_->guarded([&] {
-    SQLite::Statement select(impl_->database,
-                             "SELECT 1 FROM outcomes WHERE scenario = ? AND seed = ? AND kind = ? AND method = ? "
-                             "AND varied = ''");
-    select.bind(1, scenario);
-    select.bind(2, stored_seed(seed));
-    select.bind(3, std::string(to_string(kind)));
-    select.bind(4, method);
-    return select.executeStep();
-  });
-}
-
 std::vector<ScoreRow> Results::scores(Rows rows) const {
   return impl_->guarded([&] {
     std::vector<ScoreRow> found;

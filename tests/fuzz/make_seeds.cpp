@@ -226,8 +226,6 @@ void write_documents(const path& folder, const path& scratch) {
   write_learnt_rig(in(folder, "learnt") / "small", rig);
   const std::vector<MapPoint> map(3, MapPoint{{1, 2, 3}, {0, 0, 1}, 0.1f});
   write_map(in(folder, "map_ply") / "small", map);
-  write_pcd_map(scratch / "map.pcd", map);
-  std::filesystem::copy_file(scratch / "map.pcd", in(folder, "map_pcd") / "small");
 
   Estimate estimate;
   estimate.health["rejected_samples"] = 2.0;

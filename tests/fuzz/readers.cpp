@@ -162,9 +162,6 @@ void learnt(const path& file) {
 void map_ply(const path& file) {
   read_map(file);
 }
-void map_pcd(const path& file) {
-  read_pcd_map(file);
-}
 void estimate(const path& place) {
   Kind kind{};
   std::string method;
@@ -223,7 +220,6 @@ constexpr std::array kReaders = {
     Reader{"data_sheet", "a.yaml", data_sheet},
     Reader{"learnt", "a.json", learnt},
     Reader{"map_ply", "map.ply", map_ply},
-    Reader{"map_pcd", "map.pcd", map_pcd},
     Reader{"estimate_tum", "a.tum", estimate_tum},
     Reader{"estimate_rates", "rates.csv", estimate_rates},
     Reader{"estimate_json", "estimate.json", estimate_json},

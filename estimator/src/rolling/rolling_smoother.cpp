@@ -227,11 +227,6 @@ void RollingSmoother::finish(State& state, std::vector<RollingEstimate>& out) co
   finish(state, appending(out));
 }
 
-void RollingSmoother::finish(std::span<const RollingMode> known, State& state,
-                             std::vector<RollingEstimate>& out) const {
-  finish(known, state, appending(out));
-}
-
 void RollingSmoother::finish(std::span<const RollingMode> known, State& state, const Take& take) const {
   Path path = best_path(state);
   if (state.samples.empty()) return;

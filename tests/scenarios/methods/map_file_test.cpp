@@ -5,10 +5,8 @@
 
 #include <cmath>
 #include <filesystem>
-#include <fstream>
 #include <string>
-
-#include "scenarios/errors.hpp"
+#include <vector>
 
 namespace tumble::scenarios {
 namespace {
@@ -27,14 +25,6 @@ class MapFile : public ::testing::Test {
     map[7].normal_W.setZero();
     return map;
   }
-  static std::string complaint(const std::filesystem::path& path) {
-    try {
-      read_pcd_map(path);
-    } catch (const BadInput& error) {
-      return error.what();
-    }
-    return "";
-  }
 
   std::filesystem::path folder_ =
       std::filesystem::temp_directory_path() /
@@ -50,29 +40,10 @@ void expect_equal(const std::vector<MapPoint>& a, const std::vector<MapPoint>& b
   }
 }
 
-TEST_F(MapFile, PlyAndPcdGiveBackEveryBit) {
+TEST_F(MapFile, PlyGivesBackEveryBit) {
   const std::vector<MapPoint> map = some_map();
   write_map(folder_ / "map.ply", map);
   expect_equal(read_map(folder_ / "map.ply"), map);
-  write_pcd_map(folder_ / "map.pcd", map);
-  expect_equal(read_pcd_map(folder_ / "map.pcd"), map);
-}
-
-TEST_F(MapFile, PcdThatIsNoMapIsRefusedInSilence) {
-  ::testing::internal::CaptureStderr();
-  ::testing::internal::CaptureStdout();
-  const std::filesystem::path path = folder_ / "map.pcd";
-  EXPECT_NE(complaint(path).find("no such file"), std::string::npos);
-  write_pcd_map(path, some_map());
-  std::filesystem::resize_file(path, std::filesystem::file_size(path) - 100);
-  EXPECT_NE(complaint(path).find("truncated"), std::string::npos);
-  std::ofstream(path) << "VERSION 0.7\nFIELDS x y z\nSIZE 4 4 4\nTYPE F F F\nCOUNT 1 1 1\nWIDTH 1\nHEIGHT 1\n"
-                         "VIEWPOINT 0 0 0 1 0 0 0\nPOINTS 1\nDATA ascii\n1 2 3\n";
-  EXPECT_NE(complaint(path).find("no field 'normal_x'"), std::string::npos);
-  EXPECT_THROW(write_pcd_map(folder_ / "absent" / "map.pcd", some_map()), BadInput);
-  EXPECT_THROW(write_pcd_map(path, {}), BadInput);
-  EXPECT_EQ(::testing::internal::GetCapturedStderr(), "");
-  EXPECT_EQ(::testing::internal::GetCapturedStdout(), "");
 }
 
 }  // namespace

@@ -117,7 +117,6 @@ class RollingSmoother {
 
   /// The same with modes known from elsewhere, one per sample of a whole run that `state` took with kWholeRun.
   void finish(std::span<const RollingMode> known, State& state, const Take& take) const;
-  void finish(std::span<const RollingMode> known, State& state, std::vector<RollingEstimate>& out) const;
 
   /// What holds of every state that step() left, for one that comes from elsewhere; the first that does not. A state
   /// with a lag of samples that came more than four times as fast as rate_max_hz is refused.
