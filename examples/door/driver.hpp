@@ -28,7 +28,7 @@ struct Message {
 };
 
 /// Says that what follows is not read.
-inline std::nullopt_t stop(const std::string& kind) {
+inline std::optional<Message> stop(const std::string& kind) {
   std::fprintf(stderr, "no whole message: '%s'; nothing after it is read\n", kind.c_str());
   return std::nullopt;
 }
