@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include <cmath>
 #include <limits>
 
 #include "scenarios/scoring/beside_truth.hpp"
