@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "scenarios/errors.hpp"
+#include "tumble/angular_velocity/detail/recording_check.hpp"
 #include "tumble/common/detail/sample_check.hpp"
 
 namespace tumble::scenarios::bridge {
@@ -31,7 +32,18 @@ void require_length(const std::string& place, const char* field, std::size_t fou
                  std::to_string(expected));
 }
 
-// what every method may rely on: finite, of what its device can read, rising, without holes
+// Stamps of another unit are a thousand times off; a device that is read more seldom than it says is not.
+constexpr double kPeriodsMax = 20.0;
+
+Status check_period(const sim::ImuRecord& record, std::span<const ImuSample> samples) {
+  if (record.period_ns <= 0 || samples.size() < 3) return {};
+  const double step_s = median_period_s(samples), stated_s = seconds(record.period_ns);
+  if (step_s > stated_s / kPeriodsMax && step_s < stated_s * kPeriodsMax) return {};
+  return {Trouble::out_of_range, "median step of imu time_ns in s, held to 20 times the stated period and its 20th,",
+          step_s, step_s < stated_s ? stated_s / kPeriodsMax : stated_s * kPeriodsMax};
+}
+
+// what every method may rely on: finite, of what its device can read, rising at its period, without holes
 Status check_stream(const sim::ImuRecord& record, std::span<const ImuSample> samples) {
   if (samples.empty()) return {Trouble::empty, "time_ns", 0.0, 1.0};
   if (const Status status = check_samples(samples, kGapMaxS); !status.ok()) return status;
@@ -39,7 +51,7 @@ Status check_stream(const sim::ImuRecord& record, std::span<const ImuSample> sam
     const Status status = check_range(record, sample.angular_velocity_rad_s, sample.specific_force_m_s2);
     if (!status.ok()) return status;
   }
-  return {};
+  return check_period(record, samples);
 }
 
 }  // namespace

@@ -38,7 +38,8 @@ inline constexpr double kStatedRangesMax = 2.0;
 Status check_range(const sim::ImuRecord& record, const Eigen::Vector3d& gyro_rad_s, const Eigen::Vector3d& accel_m_s2);
 
 /// Samples of an IMU, in order. Trouble: `empty`, `non_finite`, `time_order`, `gap` (more than kGapMaxS),
-/// `out_of_range` (check_range); then `out` is empty. Throws BadInput when the record's arrays differ in length. O(N).
+/// `out_of_range` (check_range; a median step 20 times off the stated period); then `out` is empty. Throws BadInput
+/// when the record's arrays differ in length. O(N).
 Status imu_samples(const sim::ImuRecord& record, std::vector<ImuSample>& out);
 
 /// The primary IMU's samples; `empty` when the recording has no IMU.

@@ -7,6 +7,7 @@
 
 #include "scenarios/methods/bridge.hpp"
 #include "scenarios/methods/frozen_axes.hpp"
+#include "scenarios/recordings/rounded_stamps.hpp"
 #include "tumble/angular_velocity/detail/flight_sense.hpp"
 #include "tumble/attitude/detail/rest_gravity.hpp"
 #include "tumble/attitude/imu_plausibility.hpp"
@@ -69,6 +70,7 @@ Status check_turning_between_rests(const sim::Sensors& sensors, std::span<const 
 
 Status check_imu(const sim::Sensors& sensors, std::span<const ImuSample> samples, Estimate& estimate) {
   const Status of_rest = check_rest_force(sensors, samples, estimate);
+  if (are_rounded(sensors.imus.front().time_ns)) estimate.health["imu_stamps_rounded_s"] = 1e-3;
   ImuPlausibility::Params params;
   params.gravity_m_s2 = sensors.gravity_m_s2;
   // a sphere's units are merged, with rates beyond any range told
@@ -117,15 +119,10 @@ Status check_flights(const sim::Sensors& sensors, std::span<const ImuSample> sam
 }
 
 void check_rates(const sim::Sensors& sensors, std::span<const ImuSample> samples, Estimate& estimate) {
-  if (!check_flights(sensors, samples, estimate).ok()) {
-    for (RateState& rate : estimate.rates) {  // a force of the other sense tells nothing of what a rail hid
-      if (rate.clipped_axes == 0) continue;
-      rate.covariance_rad2_s2 += rate.w_WI_I_rad_s.squaredNorm() * Eigen::Matrix3d::Identity();
-    }
-  }
+  const Status of_flights = check_flights(sensors, samples, estimate);
   const Status of_readings = check_imu(sensors, samples, estimate);
   const Status of_rates = check_turning_between_rests(sensors, samples, estimate);
-  if (of_readings.ok() && of_rates.ok()) return;
+  if (of_flights.ok() && of_readings.ok() && of_rates.ok()) return;
   // of such rates the size alone is known: one of the other sense is off by twice itself, one of half the scale by half
   for (RateState& rate : estimate.rates) {
     rate.covariance_rad2_s2 += rate.w_WI_I_rad_s.squaredNorm() * Eigen::Matrix3d::Identity();

@@ -11,8 +11,9 @@
 namespace tumble::scenarios {
 
 /// Puts what was found into the estimate's health (`imu_force_share`, `imu_rest_force_share`,
-/// `imu_turning_unexplained`, `imu_turning_slope`, `imu_turning_agreement`, `imu_frozen_s`, `imu_implausible`) and
-/// returns the verdict: `out_of_range` with what was seen, where the readings contradict each other or gravity. O(N).
+/// `imu_turning_unexplained`, `imu_turning_slope`, `imu_turning_agreement`, `imu_frozen_s`, `imu_stamps_rounded_s`,
+/// `imu_implausible`) and returns the verdict: `out_of_range` with what was seen, where the readings contradict each
+/// other or gravity. O(N).
 Status check_imu(const sim::Sensors& sensors, std::span<const ImuSample> samples, Estimate& estimate);
 
 /// The same of several IMUs as one, whose differences tell a flipped sign besides (`imu_arm_share`).
@@ -20,12 +21,11 @@ Status check_imus(const sim::Sensors& sensors, const MergedImus& imus, Estimate&
 
 /// The same of a rig's primary IMU whose rates the estimate holds, one for each sample, and what gravity at its rests
 /// says of them (RestGravity: `rest_gravity_missed_rad` with its deviation). Where either speaks
-/// against the readings, the covariance of every rate grows by the square of the rate; where flights show forces of the
-/// other sense, that of the clipped ones. O(N).
+/// against the readings, the covariance of every rate grows by the square of the rate. O(N).
 void check_rates(const sim::Sensors& sensors, std::span<const ImuSample> samples, Estimate& estimate);
 
-/// Whether flights of a rig show forces of the other sense than its lever arm makes (FlightSense): `imu_implausible`
-/// and the seconds of it, as `imu_flight_against_s`. O(N).
+/// Whether flights of a rig show forces of the other sense than its lever arm makes, or of twice the rate
+/// (FlightSense): `imu_implausible` and the seconds of it, as `imu_flight_against_s`. O(N).
 Status check_flights(const sim::Sensors& sensors, std::span<const ImuSample> samples, Estimate& estimate);
 
 /// Single axes of the primary IMU that froze, whose samples these are: `imu_implausible`, and since when, as

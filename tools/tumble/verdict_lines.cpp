@@ -18,6 +18,10 @@ struct Verdict {
 constexpr Verdict kVerdicts[] = {
     {"imu_implausible", false,
      "the IMU's readings contradict each other or gravity; the estimate is not to be trusted"},
+    {"imu_flight_against_s", false,
+     "in flight the force is not what the turning makes: an accelerometer that is flipped, or a gyro that reads half"},
+    {"imu_stamps_rounded_s", false,
+     "stamps are rounded to this, more coarsely than the IMU beats; import evens them out"},
     {"rate_unit_suspect", false, "the gyro's readings look as if they were of another unit"},
     {"force_unit_suspect", false, "the accelerometer's readings look as if they were of another unit"},
     {"localised", true, "where it is on its map is not known; the estimate is not to be trusted"},

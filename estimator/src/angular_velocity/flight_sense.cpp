@@ -53,12 +53,14 @@ void FlightSense::take(const Reading& now, State& state) const {
   }
   const double dt_s = seconds(now.time_ns - first.time_ns);
   const Eigen::Vector3d &t = params_.lever_arm_m, &w = middle.rate_rad_s;
-  const Eigen::Vector3d turning = ((now.rate_rad_s - first.rate_rad_s) / dt_s).cross(t) + w.cross(w.cross(t));
-  const double size = turning.norm();
-  const bool tells = first.free && middle.free && now.free && size >= params_.force_min_m_s2;
-  for (std::size_t sense = 0; sense < 2; ++sense) {
-    const Eigen::Vector3d expected = sense == 0 ? turning : Eigen::Vector3d(-turning);
-    if (!tells || !((middle.force_m_s2 - expected).norm() <= params_.share * size)) {
+  const Eigen::Vector3d along = ((now.rate_rad_s - first.rate_rad_s) / dt_s).cross(t), about = w.cross(w.cross(t));
+  const std::array<Eigen::Vector3d, 3> expected = {along + about, -along - about, 2.0 * along + 4.0 * about};
+  const bool free = first.free && middle.free && now.free;
+  for (std::size_t sense = 0; sense < expected.size(); ++sense) {
+    const double size = expected[sense].norm();
+    const bool flies =
+        free && size >= params_.force_min_m_s2 && (middle.force_m_s2 - expected[sense]).norm() <= params_.share * size;
+    if (!flies) {
       state.run_s[sense] = 0.0;
       continue;
     }
@@ -68,10 +70,15 @@ void FlightSense::take(const Reading& now, State& state) const {
 }
 
 Status FlightSense::verdict(const State& state) const {
-  const double least_s = std::max(params_.against_s, params_.against_with * state.flown_s[0]);
-  if (state.flown_s[1] <= least_s) return {};
-  return {Trouble::out_of_range, "seconds of flight in which the force is that of the other sense", state.flown_s[1],
-          least_s};
+  const double sound_s = params_.against_with * state.flown_s[0];
+  const double against_s = std::max(params_.against_s, sound_s), halved_s = std::max(params_.halved_s, sound_s);
+  if (state.flown_s[1] > against_s)
+    return {Trouble::out_of_range, "seconds of flight in which the force is that of the other sense", state.flown_s[1],
+            against_s};
+  if (state.flown_s[2] > halved_s)
+    return {Trouble::out_of_range, "seconds of flight in which the force is that of twice the rate", state.flown_s[2],
+            halved_s};
+  return {};
 }
 
 }  // namespace tumble

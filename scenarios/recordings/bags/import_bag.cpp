@@ -147,8 +147,9 @@ sim::ImuRecord read_imu(const Bag& bag, const StaticFrames& frames, const std::s
   const std::string where = bag.place + ": topic " + topic;
   finish_readings(where, reading.accel_unit, imu);
   // messages are in rad/s by their definition, and not every driver keeps to it
+  const std::string evened = even_out_stamps(imu);
   const std::string units = require_plausible_rates(where, imu, reading.gyro_unit);
-  for (const std::string& remark : {units, stamps.remark()}) {
+  for (const std::string& remark : {evened, units, stamps.remark()}) {
     if (!remark.empty()) notes.push_back(topic + ": " + remark);
   }
   place_sensor(bag, frames, topic, frame, imu.T_BI, notes);

@@ -224,8 +224,9 @@ Imported import_imu_csv(const std::filesystem::path& path, const sim::ImuRecord&
   while (text.next(line)) add();
   finish_readings(path.string(), unit, imu);
   Imported out;
-  const std::string units = require_plausible_rates(path.string(), imu, gyro_unit);
-  if (!units.empty()) out.notes.push_back(units);
+  for (const std::string& remark : {even_out_stamps(imu), require_plausible_rates(path.string(), imu, gyro_unit)}) {
+    if (!remark.empty()) out.notes.push_back(remark);
+  }
   const std::int64_t first_ns = imu.time_ns.front();
   for (std::int64_t& time : imu.time_ns) time -= first_ns;
   out.info.attribution =

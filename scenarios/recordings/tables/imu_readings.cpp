@@ -8,6 +8,7 @@
 
 #include "scenarios/errors.hpp"
 #include "scenarios/recordings/clouds/sweep_stamps.hpp"
+#include "scenarios/recordings/rounded_stamps.hpp"
 #include "scenarios/recordings/upper_median.hpp"
 
 namespace tumble::scenarios {
@@ -184,6 +185,14 @@ void finish_readings(const std::string& where, AccelUnit unit, sim::ImuRecord& i
   require_plausible_force(where, imu, unit);
   imu.period_ns = median_step_ns(imu.time_ns);
   require_plausible_period(where, imu);
+}
+
+std::string even_out_stamps(sim::ImuRecord& imu) {
+  if (!are_rounded(imu.time_ns)) return "";
+  imu.time_ns = evened(imu.time_ns);
+  imu.period_ns = mean_step_ns(imu.time_ns);
+  return "stamps are whole milliseconds of an IMU that beats every " +
+         rounded(1e-6 * static_cast<double>(imu.period_ns)) + " ms: put on that beat, by a millisecond at most";
 }
 
 double scale_of(AccelUnit unit) {

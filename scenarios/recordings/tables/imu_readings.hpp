@@ -19,6 +19,10 @@ void add_reading(const std::string& where, std::int64_t stamp_ns, const Eigen::V
 /// specific force outside 3 to 30 m/s^2 or a period outside 20 us to 2 s, which says that the unit is another one.
 void finish_readings(const std::string& where, AccelUnit unit, sim::ImuRecord& imu);
 
+/// Puts stamps in whole milliseconds of a faster IMU on its beat (rounded_stamps.hpp), whose mean step becomes the
+/// period, and says so; else nothing.
+std::string even_out_stamps(sim::ImuRecord& imu);
+
 /// How gravity turns in the accelerometer against what the gyro says: over windows of 0.2 s in which the specific force
 /// keeps the size of gravity within a tenth and turns by one to some twenty degrees, the change of the force is held
 /// against

@@ -91,6 +91,20 @@ TEST(Verdicts, PositionRefusesForcesOfHalfTheSize) {
   EXPECT_NEAR(estimate.health.at("imu_rest_force_share"), 0.5, 0.02);
 }
 
+// Microseconds for nanoseconds: the whole run lasts some milliseconds, and every rate and way is that of another
+// motion.
+TEST(Verdicts, StampsOfAnotherUnitThanThePeriodAreRefused) {
+  const DataRoot data{test::source_dir()};
+  SimulatedDraw draw = simulate_draw(data, load_scenario(data, "hill"), 62001, 1, Lidars::left_out);
+  testing::wrong_inputs().at("stamps_in_us")(draw.recording.sensors);
+  for (const char* method : {"rate/tumble", "rate/tumble_lag", "attitude/tumble"}) {
+    Outcome outcome;
+    const Estimate estimate = run_method(*find_methods(method).at(0), draw, outcome);
+    EXPECT_EQ(estimate.status.trouble, Trouble::out_of_range) << method;
+    EXPECT_NE(std::string(estimate.status.field).find("period"), std::string::npos) << method;
+  }
+}
+
 struct SaidOfRates {
   bool implausible = false, z_frozen = false, other_sense = false;
   double turned_sigma_rad_s = 0.0;  ///< mean where it turns

@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <cstdio>
 #include <sstream>
 
@@ -17,8 +18,10 @@
 namespace tumble::scenarios {
 namespace {
 
+using testing::Contains;
 using testing::ElementsAre;
 using testing::HasSubstr;
+using testing::Not;
 using testing::StartsWith;
 
 const std::string kHeader = "s,ns,frame,qx,qy,qz,qw,qc,wx,wy,wz,wc,ax,ay,az,ac\n";
@@ -128,6 +131,38 @@ TEST_F(ImportCsv, TakesBackWhatExportWrote) {
   EXPECT_EQ(imu.period_ns, given.period_ns);
   ASSERT_EQ(imu.time_ns.size(), given.time_ns.size());
   EXPECT_EQ(imu.time_ns.back(), given.time_ns.back() - given.time_ns.front());
+}
+
+/// A body that rocks about y, read every `step_ms`, with stamps of whole milliseconds.
+std::string rocking(double step_ms) {
+  std::ostringstream text;
+  text.precision(12);
+  text << "sec,nsec,wx,wy,wz,ax,ay,az\n";
+  for (int k = 0; k < 3000; ++k) {
+    const double time_s = 1e-3 * step_ms * k, angle = 0.5 * std::sin(2.0 * time_s);
+    const auto stamp_ms = static_cast<std::int64_t>(std::llround(1e3 * time_s));
+    text << stamp_ms / 1000 << ',' << stamp_ms % 1000 * 1'000'000 << ",0," << std::cos(2.0 * time_s) << ",0,"
+         << -9.81 * std::sin(angle) << ",0," << 9.81 * std::cos(angle) << '\n';
+  }
+  return text.str();
+}
+
+TEST_F(ImportCsv, PutsStampsInWholeMillisecondsOnTheBeatOfAFasterImuAndSaysSo) {
+  for (const double step_ms : {1.2, 1.5, 1.9, 2.4}) {
+    const Imported imported = import(rocking(step_ms));
+    const std::vector<std::int64_t>& stamps = imported.sensors.imus[0].time_ns;
+    double worst_ns = 0.0;
+    for (std::size_t k = 0; k < stamps.size(); ++k)
+      worst_ns = std::max(worst_ns, std::abs(static_cast<double>(stamps[k]) - 1e6 * step_ms * static_cast<double>(k)));
+    EXPECT_LT(worst_ns, 1.5e5) << step_ms;  // they stood up to half a millisecond off
+    EXPECT_NEAR(static_cast<double>(imported.sensors.imus[0].period_ns), 1e6 * step_ms, 1e3);
+    EXPECT_THAT(imported.notes, Contains(HasSubstr("whole milliseconds"))) << step_ms;
+  }
+  for (const double step_ms : {1.0, 2.0, 4.0}) {  // a beat of whole milliseconds is what it says
+    const Imported imported = import(rocking(step_ms));
+    EXPECT_THAT(imported.notes, Not(Contains(HasSubstr("whole milliseconds"))));
+    EXPECT_EQ(imported.sensors.imus[0].time_ns[1], static_cast<std::int64_t>(1e6 * step_ms));
+  }
 }
 
 const std::string kNamed =
