@@ -26,9 +26,8 @@ namespace tumble {
 
 /// Of RateStream.
 struct RateStreamParams {
-  /// Narrower than the default of RateModelParams in two priors, since a stream answers before the data outweigh
-  /// them: 2 mg of bias as after a factory calibration, and the inertia of a box rather than of any body (per
-  /// coordinate; sides of 3 : 2 : 2 lie at one deviation of the whole shape, a disc at 1.8, a rod at 3.6).
+  /// Narrower than by default in two priors, since a stream answers before the data outweigh them: 2 mg of bias as
+  /// after a factory calibration, the inertia of a box (3 : 2 : 2 is one deviation off, a disc 1.8, a rod 3.6).
   RateModelParams model = {.accel_bias_sigma_m_s2 = 0.02, .inertia_sigma = 0.15};
   RailDetector::Params rails = {};
   double period_s = 0.01;                    ///< nominal time between samples
@@ -68,13 +67,11 @@ struct RateStreamParams {
 /// proportion to the rate of the samples beyond 200 Hz, to its square below; no allocation after the State is made.
 /// Rails, upright ones and the tilted planes of a gyro's elements, are learnt as they show themselves (RailWatch); with
 /// each that becomes known the window is read again, so that a clipped sample that was believed counts as believed only
-/// where it left the window before its rail was seen. With the calibration of an earlier run the error is 1.1 times that
-/// of the batch and 99 % lie within three deviations; without it the rig is learnt in the tumble that needs it: 1.6
-/// times, 1.2 with 0.5 s of lag (docs/maths/rate_stream.md has the draws).
-///
-/// The samples of a flight err together, so that what has left the window makes the covariance of the rig too small: it
-/// is widened while few have been learnt from (`rig_doubt`), and that of the rates contains it so. What it does not
-/// model: see RateSmoother.
+/// where it left the window before its rail was seen. With the calibration of an earlier run the error is 1.1 times
+/// that of the batch and 99 % lie within three deviations; without it the rig is learnt in the tumble that needs
+/// it: 1.6 times, 1.2 with 0.5 s of lag (docs/maths/rate_stream.md has the draws). The samples of a flight err
+/// together: the covariance of the rig, and of the rates with it, is widened while few have been learnt from
+/// (`rig_doubt`). What it does not model: see RateSmoother.
 class RateStream {
  public:
   using Params = RateStreamParams;
@@ -103,9 +100,8 @@ class RateStream {
   /// Estimates of the samples still in the window that push() has not given out, oldest first, appended to `out`.
   void flush(const State& state, std::vector<RateState>& out) const;
 
-  /// Whether the IMU can be believed just now: `out_of_range` with the axis by name that has frozen (FrozenAxes), whose
-  /// rates state the fastest rate that was read as their deviation, or where the accelerometer has the other sense than
-  /// the nominal lever arm (FlightSense).
+  /// Whether the IMU can be believed just now: `out_of_range` with the name of an axis that has frozen (FrozenAxes; its
+  /// rates state the fastest rate read as their deviation), or of an accelerometer of the other sense (FlightSense).
   Status doubt(const State& state) const;
 
   /// What has been learnt of the rig.
