@@ -24,6 +24,7 @@ Registration::Params coarse_params(const LidarInertialOdometry::Params& params) 
   out.expert.step_rad = 2e-3;
   out.matches_min = std::min<std::size_t>(params.expert.matching.least, params.expert.effort.coarse_matches_min);
   out.expert.fitting_share_min = 0.2;
+  out.expert.agreeing_min = out.matches_min;  // there is no prior for it to agree with
   return out;
 }
 
@@ -94,6 +95,7 @@ Registration::Params registration_params(const LidarInertialOdometry::Params& pa
   out.correction_max_m = params.expert.matching.correction_max_m;
   out.correction_max_rad = params.expert.matching.correction_max_rad;
   out.matches_min = params.expert.matching.least;
+  out.expert.agreeing_min = params.expert.matching.agreeing_least;
   out.parallel_for = params.parallel_for;
   return out;
 }

@@ -35,6 +35,16 @@ void add_prior(const Registration::Prior& prior, const Matrix& information, cons
   g += J.transpose() * (information * away);
 }
 
+/// Whether the motion is within what the prior says it may be off by: mapping.md (R59).
+bool agrees(const Registration::Prior& prior, const Registration::Estimate& now) {
+  constexpr int kMotion = Registration::kMotion;
+  constexpr double kLargest = 16.9;  // chi-square of nine unknowns, exceeded by one in twenty
+  const auto away = now.minus(prior.mean).head<kMotion>().eval();
+  Eigen::Matrix<double, kMotion, kMotion> P = prior.covariance.topLeftCorner<kMotion, kMotion>();
+  P.diagonal().array() += mapping::unknowns::kLeastVariance;
+  return away.dot(P.ldlt().solve(away)) <= kLargest;
+}
+
 bool is_small(const Vector& step, double span_s, const Registration::Params& params) {
   constexpr int kCal = Registration::kCalibration;
   const bool lengths = step.segment<3>(0).norm() < params.expert.step_m &&
@@ -96,7 +106,7 @@ Status Registration::align(const Prior& prior, std::span<const MotionSample> sam
   Matrix H = Matrix::Zero();
   double kernel_m = params_.expert.kernel_min_m;
   const auto refuse = [&](RegistrationVerdict verdict) {
-    result.verdict = verdict;
+    result.verdict = result.matches < matches_needed ? RegistrationVerdict::too_few : verdict;
     return build(prior.mean);
   };
   bool settled = false;
@@ -112,7 +122,8 @@ Status Registration::align(const Prior& prior, std::span<const MotionSample> sam
     accumulate(points, trajectory, now.calibration, unknowns, kernel_m, sum);
     result.matches = sum.matches;
     result.inliers = sum.inliers;
-    if (sum.matches < matches_needed) return refuse(RegistrationVerdict::too_few);
+    if (sum.matches < std::min(matches_needed, params_.expert.agreeing_min))
+      return refuse(RegistrationVerdict::too_few);
 
     Vector g;
     unknowns.expand(sum, H, g);
@@ -133,6 +144,7 @@ Status Registration::align(const Prior& prior, std::span<const MotionSample> sam
   const bool fits =
       static_cast<double>(sum.inliers) >= params_.expert.fitting_share_min * static_cast<double>(sum.matches);
   if (!settled || !fits) return refuse(RegistrationVerdict::diverged);
+  if (sum.matches < matches_needed && !agrees(prior, now)) return refuse(RegistrationVerdict::too_few);
 
   const Matrix posterior = H.ldlt().solve(Matrix::Identity());  // mapping.md (R22)
   result.covariance = 0.5 * (posterior + posterior.transpose());

@@ -281,6 +281,44 @@ TEST(Registration, NeverTakesNoMatchesForSuccess) {
   EXPECT_EQ(result.verdict, RegistrationVerdict::too_few);
 }
 
+/// A sweep of which the map holds little: some sixty points.
+Registration::Result align_few(const Registration::Prior& prior, std::size_t agreeing_min) {
+  const test::Room room = test::Room::box_with_pillars();
+  std::vector<SweepPoint> points;
+  for (const SweepPoint& point : still_points(room)) {
+    if (points.size() < 60 && point.ring % 4 == 0) points.push_back(point);
+  }
+  Registration::Params params;
+  params.expert.agreeing_min = agreeing_min;
+  params.expert.correlation_discount = 1.0;  // the room has no noise to share
+  Registration registration(params);
+  SweepTrajectory trajectory;
+  Registration::Result result;
+  EXPECT_TRUE(
+      registration.align(prior, still_samples(), test::kSweep_ns, points, map_of(room), trajectory, result).ok());
+  EXPECT_LT(result.matches, params.matches_min);
+  return result;
+}
+
+TEST(Registration, BelievesFewMatchesWhereThePriorExpectsThem) {
+  Registration::Prior prior = loose_prior(0.1, 0.03);
+  prior.mean.state.p_WI_m = Eigen::Vector3d(0.08, -0.06, 0.04);
+  const Registration::Result result = align_few(prior, 30);
+  ASSERT_EQ(result.verdict, RegistrationVerdict::converged);
+  EXPECT_LT(result.mean.state.p_WI_m.norm(), 0.3 * prior.mean.state.p_WI_m.norm());
+  // fewer than enough, as they are unless told otherwise
+  EXPECT_EQ(align_few(prior, 1000).verdict, RegistrationVerdict::too_few);
+  EXPECT_EQ(align_few(prior, Registration::Params{}.expert.agreeing_min).verdict, RegistrationVerdict::too_few);
+}
+
+TEST(Registration, BelievesNoFewMatchesWhereThePriorExpectsNone) {
+  Registration::Prior prior = loose_prior(0.05, 0.03);  // and yet off by seven deviations
+  prior.mean.state.p_WI_m = Eigen::Vector3d(0.25, -0.2, 0.15);
+  const Registration::Result result = align_few(prior, 30);
+  EXPECT_EQ(result.verdict, RegistrationVerdict::too_few);
+  EXPECT_EQ(result.mean.state.p_WI_m, prior.mean.state.p_WI_m);
+}
+
 TEST(Registration, RefusesACorrectionBeyondItsBound) {
   Registration::Prior prior = loose_prior(1.0, 0.3);
   prior.mean.state.p_WI_m = Eigen::Vector3d(0.25, -0.2, 0.1);

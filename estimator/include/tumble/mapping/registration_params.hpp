@@ -19,6 +19,9 @@ struct RegistrationExpertParams {
   double correlation_discount = 0.1;
   double cluster_m = 1.0;          ///< points of one cube of this edge are not independent
   double matched_share_min = 0.1;  ///< of the points
+  /// Fewer matches than matches_min and matched_share_min ask for are enough if they are this many and the result lies
+  /// where the prior expects it; as here: never.
+  std::size_t agreeing_min = 1'000'000'000;
   /// Of the matches within three standard deviations; below it the result is refused.
   double fitting_share_min = 0.6;
   PlaneBounds plane;
@@ -34,6 +37,8 @@ struct RegistrationExpertParams {
                                    "weight of a point's information: neighbouring returns are not independent"});
     visit(p.cluster_m, {"cluster_m", "m", 0.01, 100.0, "points of one cube of this edge are not independent"});
     visit(p.matched_share_min, {"matched_share_min", "1", 0.0, 1.0, "fewer of the points matched refuse the result"});
+    visit(p.agreeing_min,
+          {"agreeing_min", "1", 1, 1e9, "so many matches are enough for a result where the prior expects it"});
     visit(p.fitting_share_min, {"fitting_share_min", "1", 0.0, 1.0,
                                 "fewer of the matches within three standard deviations refuse the result"});
     visit.group("plane_", p.plane);

@@ -29,9 +29,10 @@ struct LocalMapParams {
 
 /// A sweep against the map.
 struct MatchingParams {
-  int neighbours = 12;      ///< k of the plane fit
-  double distance_m = 1.0;  ///< farther map points are no match
-  std::size_t least = 100;  ///< fewer matched points reject a sweep
+  int neighbours = 12;              ///< k of the plane fit
+  double distance_m = 1.0;          ///< farther map points are no match
+  std::size_t least = 100;          ///< fewer matched points reject a sweep
+  std::size_t agreeing_least = 30;  ///< unless they are this many and put it where the prior expects it
   /// Of a registration; one with all points has at most eight, what has not settled goes on with a thousand of them.
   int iterations_max = 30;
   double correction_max_m = 15.0;   ///< a larger correction of the prior is rejected
@@ -47,6 +48,7 @@ struct MatchingParams {
     visit(p.neighbours, {"neighbours", "1", 3, 32, "map points per plane fit", Rank::first});
     visit(p.distance_m, {"match_distance_m", "m", 1e-3, 10.0, "farther map points are no match", Rank::first});
     visit(p.least, {"matches_min", "1", 0, 1e9, "fewer matches are too few"});
+    visit(p.agreeing_least, {"matches_agreeing_min", "1", 1, 1e9, "unless so many put it where the prior expects it"});
     visit(p.iterations_max,
           {"iterations_max", "1", 1, 200, "most iterations of a registration; one with all points has at most eight"});
     visit(p.correction_max_m, {"correction_max_m", "m", 0.0, 1e6, "a larger correction of the prior is refused"});
