@@ -32,9 +32,10 @@ enum class GyroUnit { rad_s, deg_s };
 /// and z, as tools that flatten ROS messages write them. A first line of numbers is a sample, and columns stand by
 /// place (from 0): 0 stamp s, 1 stamp ns, 8-10 rate, 12-14 specific force. `device` gives what the file does not state:
 /// name, device, ranges, noise, T_BI; its period and readings are replaced. Times are counted from the first stamp; the
-/// period is the median step. Units are held against gravity: its size, and how it turns (a note says so where the
-/// motion tells). Throws BadInput with file and line: unknown, doubled or missing columns, differing numbers of them,
-/// not a number, not finite, a stamp that does not rise, a last line without its end; fewer than two samples; a median
+/// period is the median step; stamps in whole milliseconds of a faster beat are put on it, and said
+/// (rounded_stamps.hpp). Units are held against gravity: its size, and how it turns (a note says so where the motion
+/// tells). Throws BadInput with file and line: unknown, doubled or missing columns, differing numbers of them, not a
+/// number, not finite, a stamp that does not rise, a last line without its end; fewer than two samples; a median
 /// specific force outside 3 to 30 m/s^2, a period outside 20 us to 2 s, more than 1 % of the rates beyond twice the
 /// device's range (100 rad/s where none is stated), or gravity that turns 57 times too fast or too slow for the rates.
 Imported import_imu_csv(const std::filesystem::path& path, const sim::ImuRecord& device,
