@@ -4,6 +4,7 @@
 #include "sim/engine/model.hpp"
 #include "sim/motion/motion_type.hpp"
 #include "sim/sensor_type.hpp"
+#include "sim/truth/above_ground.hpp"
 #include "sim/truth/record_truth.hpp"
 
 namespace tumble::sim {
@@ -58,6 +59,8 @@ Recording simulate(const BuiltSituation& built, int threads) {
   recording.sensors.sphere_radius_m = world.sphere_radius_m;
   recording.sensors.gravity_m_s2 = -world.model->opt.gravity[2];
   recording.truth = record_truth(world, *motion, situation.duration_s);
+  for (std::size_t i = 0; i < mountings.size(); ++i)
+    require_above_ground(world, recording.truth, situation.sensors[i].name, mountings[i].translation());
   for (std::size_t i = 0; i < situation.sensors.size(); ++i) {
     const SensorSpec& sensor = situation.sensors[i];
     const Eigen::Isometry3d given_T_BX = given_pose(world, sensor, mountings[i]);

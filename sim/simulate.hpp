@@ -11,7 +11,8 @@ namespace tumble::sim {
 
 /// Thrown when a draw is rejected, by these rules: a warning of the engine; a state that is not finite; faster than 5
 /// mm/s after the second of settling before the start; beyond the half extent of its world or 60 m below its origin;
-/// never 5 cm away from the start. The message names the reason and the simulated time; sweeps count such draws apart.
+/// never 5 cm away from the start; a sensor more than 1 cm below a height field for longer than 0.05 s
+/// (sim/truth/above_ground.hpp). The message names the reason and the simulated time; sweeps count such draws apart.
 class SimulationFailure : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;

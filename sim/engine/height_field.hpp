@@ -32,6 +32,22 @@ struct Field {
   double x_m(int column) const { return cell_x_m * column - half_x_m; }
   double y_m(int row) const { return cell_y_m * row - half_y_m; }
   double height_m(int row, int column) const { return scale_m * heights[row * columns + column]; }
+
+  /// How far a point is below the plane of the triangle of ground over it; negative above, and 0 beyond the rim. The
+  /// engine divides a cell along its diagonal from the first corner to the last.
+  double depth_m(const Eigen::Vector3d& p_m) const {
+    const double across = (p_m.x() + half_x_m) / cell_x_m, along = (p_m.y() + half_y_m) / cell_y_m;
+    if (!(across >= 0.0 && across <= columns - 1 && along >= 0.0 && along <= rows - 1)) return 0.0;
+    const int column = std::min(static_cast<int>(across), columns - 2),
+              row = std::min(static_cast<int>(along), rows - 2);
+    const bool upper = along - row > across - column;
+    const double first_m = height_m(row, column), last_m = height_m(row + 1, column + 1);
+    const double rise_x_m = upper ? last_m - height_m(row + 1, column) : height_m(row, column + 1) - first_m;
+    const double rise_y_m = upper ? height_m(row + 1, column) - first_m : last_m - height_m(row, column + 1);
+    const double slope_x = rise_x_m / cell_x_m, slope_y = rise_y_m / cell_y_m;
+    const double ground_m = first_m + rise_x_m * (across - column) + rise_y_m * (along - row);
+    return (ground_m - p_m.z()) / std::sqrt(1.0 + slope_x * slope_x + slope_y * slope_y);
+  }
 };
 
 /// A capsule: its axis from one end to the other, its radius, and how far from its axis it is asked for.

@@ -160,6 +160,22 @@ TEST(Simulate, NeverMovingFailsTheDraw) {
   EXPECT_THROW(simulate(built(situation)), SimulationFailure);
 }
 
+TEST(Simulate, StayingInTheGroundFailsTheDraw) {
+  Situation situation = tumble_down(4.0, 100.0);
+  situation.motion.values.set("lift_m_s", 10.0);
+  situation.robot.values.set("contact_time_s", 0.15);  // padding so soft that the ground swallows the cage
+  EXPECT_THROW(
+      {
+        try {
+          simulate(built(situation));
+        } catch (const SimulationFailure& error) {
+          EXPECT_THAT(error.what(), testing::HasSubstr("'imu' was below the ground for"));
+          throw;
+        }
+      },
+      SimulationFailure);
+}
+
 TEST(Simulate, StartPoseIsWhereTheTruthBegins) {
   const Situation situation = tumble_down(3.0, 100.0);
   const Truth truth = simulate(built(situation)).truth;
