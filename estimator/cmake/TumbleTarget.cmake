@@ -1,5 +1,4 @@
 # What compiles and links in less time and gives the same. The settings of ccache stand in its launcher.
-set(TUMBLE_CCACHE_LAUNCHER ${CMAKE_CURRENT_LIST_DIR}/ccache_launcher)
 function(tumble_accelerate target)
   if(NOT TUMBLE_ACCELERATE)
     return()
@@ -8,7 +7,7 @@ function(tumble_accelerate target)
   find_program(TUMBLE_MOLD mold)
   if(TUMBLE_CCACHE AND NOT CMAKE_CXX_COMPILER_LAUNCHER)
     set_target_properties(${target} PROPERTIES CXX_COMPILER_LAUNCHER
-      "sh;${TUMBLE_CCACHE_LAUNCHER};${TUMBLE_CCACHE};${CMAKE_SOURCE_DIR}")
+      "sh;${CMAKE_CURRENT_FUNCTION_LIST_DIR}/ccache_launcher;${TUMBLE_CCACHE};${CMAKE_SOURCE_DIR}")
   endif()
   if(TUMBLE_MOLD AND CMAKE_CXX_COMPILER_ID STREQUAL GNU AND CMAKE_CXX_COMPILER_VERSION VERSION_GREATER_EQUAL 12.1)
     target_link_options(${target} PRIVATE -fuse-ld=mold)
