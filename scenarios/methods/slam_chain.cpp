@@ -297,6 +297,12 @@ Eigen::AlignedBox3d rig_body_L() {
 LidarInertialOdometry::Params SlamParams::on_the_rig() {
   LidarInertialOdometry::Params params;
   params.own_body_L = rig_body_L();
+  params.expert.matching.agreeing_least = params.expert.matching.least;  // with_few_matches
+  return params;
+}
+
+SlamParams with_few_matches(SlamParams params) {
+  params.odometry.expert.matching.agreeing_least = MatchingParams().agreeing_least;
   return params;
 }
 

@@ -9,7 +9,7 @@ namespace tumble::scenarios {
 namespace {
 
 const Settings<SlamParams>& settings() {
-  static const Settings<SlamParams> all = slam_settings(with_calibration({}));
+  static const Settings<SlamParams> all = slam_settings(with_few_matches(with_calibration({})));
   return all;
 }
 

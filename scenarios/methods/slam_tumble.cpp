@@ -11,7 +11,8 @@ namespace tumble::scenarios {
 namespace {
 
 const Settings<SlamParams>& chain_settings() {
-  static const Settings<SlamParams> all = slam_settings(with_calibration(with_saturation_deficit({})));
+  static const Settings<SlamParams> all =
+      slam_settings(with_few_matches(with_calibration(with_saturation_deficit({}))));
   return all;
 }
 

@@ -61,7 +61,9 @@ class Tumble(needed_bindings().Feed):
             if parameter.name in _STATED:
                 continue
             if isinstance(parameter.default, tuple):
-                out |= {_coordinate(parameter, axis): value for axis, value in zip("xyz", parameter.default, strict=True)}
+                # the lever arm has no default, and no data set states it: zero unless it is given
+                known = [0.0 if np.isnan(value) else value for value in parameter.default]
+                out |= {_coordinate(parameter, axis): value for axis, value in zip("xyz", known, strict=True)}
             else:
                 out[parameter.name] = parameter.default
         return out
