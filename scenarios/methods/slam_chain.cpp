@@ -12,6 +12,7 @@
 #include "tumble/angular_velocity/clipping_finder.hpp"
 #include "tumble/mapping/detail/sweep_scale.hpp"
 #include "tumble/mapping/lidar_inertial_odometry.hpp"
+#include "tumble/mapping/registration_params.hpp"
 #include "tumble/odometry/tumbling_odometry.hpp"
 
 namespace tumble::scenarios {
@@ -297,7 +298,7 @@ Eigen::AlignedBox3d rig_body_L() {
 LidarInertialOdometry::Params SlamParams::on_the_rig() {
   LidarInertialOdometry::Params params;
   params.own_body_L = rig_body_L();
-  params.expert.matching.agreeing_least = params.expert.matching.least;  // with_few_matches
+  params.expert.matching.agreeing_least = RegistrationParams().expert.agreeing_min;  // none: with_few_matches
   return params;
 }
 
