@@ -1,0 +1,74 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Rates and stamps in another unit than is said, as a rolling sphere's readings tell it.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <cstdint>
+#include <sstream>
+
+#include "scenarios/recordings/fixture_recording.hpp"
+#include "scenarios/recordings/import.hpp"
+#include "scenarios/recordings/tables/imu_readings.hpp"
+
+namespace tumble::scenarios {
+namespace {
+
+using testing::HasSubstr;
+
+/// A sphere that turns about y, gravity in its axes turning against it; stamps in steps of `step_ns`.
+std::string rolled(double rate_rad_s, double written_for_one, std::int64_t step_ns = 4'000'000) {
+  std::ostringstream text;
+  text << "sec,nsec,wx,wy,wz,fx,fy,fz\n";
+  for (std::int64_t k = 0; k < 1000; ++k) {
+    const double angle = rate_rad_s * 0.004 * static_cast<double>(k);
+    text << k * step_ns / 1'000'000'000 << ',' << k * step_ns % 1'000'000'000 << ",0," << rate_rad_s * written_for_one
+         << ",0," << -9.81 * std::sin(angle) << ",0," << 9.81 * std::cos(angle) << '\n';
+  }
+  return text.str();
+}
+
+class ImportSphere : public fixture::Folder {
+ protected:
+  Imported import(const std::string& text, double range_rad_s, GyroUnit unit = GyroUnit::rad_s) {
+    fixture::put(folder_ / "sphere.csv", text);
+    sim::ImuRecord device;
+    device.name = "imu";
+    device.stated_gyro_range_rad_s = range_rad_s;
+    return import_imu_csv(folder_ / "sphere.csv", device, AccelUnit::m_s2, unit);
+  }
+  std::string complaint_of(const std::string& text, double range_rad_s, GyroUnit unit = GyroUnit::rad_s) {
+    return fixture::complaint([&] { import(text, range_rad_s, unit); });
+  }
+};
+
+// within 0.2 s it turns too far for even windows; a range of 150 rad/s lets 229 pass
+TEST_F(ImportSphere, RatesInDegreesAreMetByTheTurning) {
+  constexpr double kDegrees = 57.29577951308232;
+  const Imported good = import(rolled(4.0, 1.0), 150.0);
+  EXPECT_EQ(gravity_turn(good.sensors.imus[0], TurnWindows::even).windows, 0);
+  EXPECT_THAT(good.notes, testing::Contains(HasSubstr("units and axes agree")));
+  EXPECT_THAT(complaint_of(rolled(4.0, kDegrees), 150.0), HasSubstr("are the rates in deg/s?"));
+  EXPECT_EQ(complaint_of(rolled(4.0, kDegrees), 150.0, GyroUnit::deg_s), "");
+  EXPECT_THAT(complaint_of(rolled(4.0, 1.0), 150.0, GyroUnit::deg_s), HasSubstr("are the rates in rad/s?"));
+}
+
+TEST_F(ImportSphere, RatesBeyondTheRangeAreAnotherUnit) {
+  EXPECT_THAT(
+      complaint_of(rolled(5.0, 57.3), 7.854),
+      testing::AllOf(HasSubstr("100 % of the rates lie beyond 15.7 rad/s"), HasSubstr("are the rates in deg/s?")));
+  EXPECT_THAT(complaint_of(rolled(5.0, 57.3), 0.0), HasSubstr("beyond 100 rad/s, more than any robot turns"));
+  EXPECT_THAT(complaint_of(rolled(5.0, 7505.0), 7.854), HasSubstr("are the rates in raw counts of the sensor?"));
+  EXPECT_EQ(complaint_of(rolled(5.0, 1.0), 7.854), "");
+}
+
+TEST_F(ImportSphere, StampsInAnotherUnitAreMet) {
+  // ms, and us, where seconds are looked for; us where nanoseconds are
+  for (const std::int64_t step_ns : {4'000'000'000, 4'000'000'000'000})
+    EXPECT_THAT(complaint_of(rolled(2.5, 1.0, step_ns), 7.854), HasSubstr("are the stamps in another unit"));
+  EXPECT_THAT(complaint_of(rolled(2.5, 1.0, 4'000), 7.854),
+              HasSubstr("the median step of the stamps is 4e-06 s, must be within 2e-05 and 2:"));
+}
+
+}  // namespace
+}  // namespace tumble::scenarios
