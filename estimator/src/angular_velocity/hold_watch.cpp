@@ -4,14 +4,16 @@
 #include <algorithm>
 #include <cmath>
 
+#include "sample_hold.hpp"
+
 namespace tumble {
 
 namespace {
 
-// As find_held: samples in motion, how many of them are looked at before anything is said, the share that repeats, and
-// the steps of the log beyond which what repeats itself stands still, is blind or frozen.
-constexpr double kMoving_rad_s = 0.3, kMovingMin = 30.0, kRepeatsMin = 0.05, kSlowest = 10.0;
-constexpr double kMemory = 1000.0;  // samples in motion
+using sample_hold::kMoving_rad_s, sample_hold::kRepeatsMin, sample_hold::kSlowest;
+
+constexpr double kMovingMin = static_cast<double>(sample_hold::kMovingMin);
+constexpr double kMemory = static_cast<double>(sample_hold::kMovingMax);
 
 HeldReading held_reading(const HoldWatch::Memory& memory, const Eigen::Vector3d& reading) {
   HeldReading out;
@@ -30,12 +32,6 @@ Eigen::Vector3d HeldReading::stale() const {
   if (!held()) return Eigen::Vector3d::Zero();
   const double behind = age_samples + 0.5 * (period_samples - 1.0);
   return behind / period_samples * change;
-}
-
-bool HoldWatch::Memory::operator==(const Memory& o) const {
-  return reading == o.reading && said == o.said && moving == o.moving && repeated == o.repeated &&
-         now.repeats == o.now.repeats && now.age_samples == o.now.age_samples &&
-         now.period_samples == o.now.period_samples && now.change == o.now.change;
 }
 
 void HoldWatch::observe(const ImuSample& sample, State& state) const {

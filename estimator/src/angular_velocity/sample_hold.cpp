@@ -12,8 +12,9 @@ namespace tumble {
 
 namespace {
 
-constexpr double kMoving_rad_s = 0.3, kRepeatsMin = 0.05, kAgreementMin = 0.9;
-constexpr std::size_t kMovingMin = 30, kMovingMax = 1000;
+using sample_hold::kMoving_rad_s, sample_hold::kRepeatsMin, sample_hold::kMovingMin, sample_hold::kMovingMax;
+
+constexpr double kAgreementMin = 0.9;
 // Clocks tried: periods about the mean one (as a share of it), phases; the same again about the best.
 constexpr int kPeriods = 100, kPhases = 24, kFine = 10;
 constexpr double kPeriodShare = 0.03;

@@ -45,7 +45,6 @@ double since_s(std::span<const ImuSample> samples, std::size_t from, std::size_t
 }
 
 constexpr double kSteady = 0.9;  // agreement of a steady clock from which on repeated readings are believed to be held
-constexpr double kSlowest = 10.0;  // steps of the log: what repeats itself longer stands still, is blind or frozen
 // Nodes: longer windows may have met the rail in a part. Measured: those of 20 ms of the pendulums did, of the wand's,
 // of 10 ms, none does that shows.
 constexpr double kLongWindow = 1.5;
@@ -205,7 +204,7 @@ void recovered_readings(const CarriedSmoother::Params& params, const ClippedElem
 OwnReadings own_readings(std::span<const ImuSample> samples, const ClippedElements& clipped, Triad triad,
                          TimeNs origin_ns, double period_s) {
   std::optional<HeldReadings> held = find_held(samples, triad);
-  if (held && (held->agreement < kSteady || held->period_s > kSlowest * period_s)) held.reset();
+  if (held && (held->agreement < kSteady || held->period_s > sample_hold::kSlowest * period_s)) held.reset();
   OwnReadings out;
   for (std::size_t k = 0; k < samples.size(); ++k) {
     out.of_sample.push_back(out.samples.size());

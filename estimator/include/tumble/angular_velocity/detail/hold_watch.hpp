@@ -21,6 +21,7 @@ struct HeldReading {
   /// What the triad may have changed by since the middle of the reading's own window, beyond the half of a sample that
   /// a reading of each sample is behind; zero where each sample has its own. At the slope of the last change.
   Eigen::Vector3d stale() const;
+  bool operator==(const HeldReading&) const = default;
 };
 
 /// Tells a log that is faster than its sensor as the samples arrive: the causal form of find_held, without the phase of
@@ -33,7 +34,7 @@ class HoldWatch {
     double said = 0.0;                    ///< samples in a row that say it
     double moving = 0.0, repeated = 0.0;  ///< samples in motion, those of them that repeat; forgotten slowly
     HeldReading now;
-    bool operator==(const Memory& other) const;
+    bool operator==(const Memory&) const = default;
   };
   struct State {
     std::array<Memory, 2> memory;  ///< by Triad
