@@ -22,7 +22,7 @@ NUMBERS = {2: "<u1", 4: "<u2", 6: "<u4", 7: "<f4", 8: "<f8"}  # of sensor_msgs/P
 WANTED = {"dlio": ("recording.bag", "/os_cloud_node/imu", "/os_cloud_node/points", "t", "<u4", 1),
           "fast-lio": ("recording.bag", "/imu/data", "/velodyne_points", "time", "<f4", 1e9),
           "glim": ("bag", "/os_cloud_node/imu", "/os_cloud_node/points", "t", "<u4", 1),
-          "kiss-icp": ("recording.mcap", "/imu", "/lidar/points", "t", "<u4", 1),
+          "kiss-icp": ("recording.bag", "/imu", "/lidar/points", "t", "<u4", 1),
           "lio-sam": ("recording.bag", "/imu_raw", "/points_raw", "time", "<f4", 1e9),
           "norlab": ("bag", "/imu/data", "/points_in", "t", "<u4", 1),
           "point-lio": ("recording.bag", "/imu/data", "/velodyne_points", "time", "<f4", 1e9),

@@ -18,7 +18,7 @@ std::vector<ConfigurationFile> configuration(const SensorFacts& facts, const Rea
 deskew: true
 max_range: {}   # m, farthest return
 min_range: {}   # m: the robot itself is nearer
-timestamps:
+lidar_timestamps:
   multiplier_to_seconds: 1.0e-9   # t is in ns
   force_absolute: false
   force_relative: true            # since the stamp, also where the first return comes late

@@ -35,7 +35,7 @@ constexpr Wanted kWanted[] = {
     {"dlio", "recording.bag", true, "/os_cloud_node/imu", "/os_cloud_node/points", "t", 6, 1.0},
     {"fast-lio", "recording.bag", true, "/imu/data", "/velodyne_points", "time", 7, 1e9},
     {"glim", "bag", false, "/os_cloud_node/imu", "/os_cloud_node/points", "t", 6, 1.0},
-    {"kiss-icp", "recording.mcap", false, "/imu", "/lidar/points", "t", 6, 1.0},
+    {"kiss-icp", "recording.bag", true, "/imu", "/lidar/points", "t", 6, 1.0},
     {"lio-sam", "recording.bag", true, "/imu_raw", "/points_raw", "time", 7, 1e9},
     {"norlab", "bag", false, "/imu/data", "/points_in", "t", 6, 1.0},
     {"point-lio", "recording.bag", true, "/imu/data", "/velodyne_points", "time", 7, 1e9},
@@ -260,6 +260,15 @@ TEST_F(Configuration, SensorsAreThisRecordings) {
   const YAML::Node sam = yaml("lio-sam", "params.yaml", recording_)["lio_sam"];
   EXPECT_EQ(sam["imuAccNoise"].as<double>(), 6e-4);
   EXPECT_EQ(sam["imuRPYWeight"].as<double>(), 0.0);
+}
+
+// the keys that the released programs know: tests/peers/programs_checks.py starts them
+TEST_F(Configuration, KeysAreThoseOfTheReleasedPrograms) {
+  const YAML::Node rko = yaml("rko-lio", "rko_lio.yaml", recording_);
+  EXPECT_EQ(rko["lidar_timestamps"]["multiplier_to_seconds"].as<double>(), 1e-9);
+  EXPECT_FALSE(rko["timestamps"]);
+  // a hundredth of it would be the size of the map's voxels
+  EXPECT_FALSE(yaml("kiss-icp", "kiss_icp.yaml", recording_)["data"]["max_range"]);
 }
 
 TEST_F(Configuration, ALivoxComesAsItsDriversMessage) {
