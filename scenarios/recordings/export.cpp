@@ -16,10 +16,10 @@ using std::filesystem::path;
 
 struct Format {
   const char* name;
-  void (*write)(const path& recording, const path& out, const BesideSensors& beside);
+  void (*write)(const path& recording, const path& out, const ExportChoices& choices);
 };
 
-void write_csv(const path& recording, const path& out, const BesideSensors&) {
+void write_csv(const path& recording, const path& out, const ExportChoices&) {
   const sim::Sensors sensors = read_sensors(recording);
   if (!read_info(recording).has_truth) return export_csv(sensors, nullptr, out);
   const sim::Truth truth = read_truth(recording);
@@ -27,29 +27,29 @@ void write_csv(const path& recording, const path& out, const BesideSensors&) {
 }
 
 template <void (*kExport)(const sim::Sensors&, const BagWriting&, const path&)>
-void write_bag(const path& recording, const path& out, const BesideSensors& beside) {
+void write_bag(const path& recording, const path& out, const ExportChoices& choices) {
   const path scratch = scratch_folder_of(out);
   std::optional<StoredTruth> truth;
-  if (beside.truth) truth = read_truth(recording, scratch);
+  if (choices.truth) truth = read_truth(recording, scratch);
   std::vector<PointStore> points;
   const sim::Sensors sensors = read_sensors(recording, scratch, points);
   BagWriting writing{read_info(recording).origin_ns, truth ? &*truth : nullptr};
-  writing.sweeps = beside.sweeps;
+  writing.sweeps = choices.sweeps;
   writing.points = &points;
-  if (beside.more) beside.more(sensors, writing);
+  if (choices.more) choices.more(sensors, writing);
   kExport(sensors, writing, out);
 }
 
-void write_tum(const path& recording, const path& out, const BesideSensors&) {
-  export_tum(read_truth(recording, scratch_folder_of(out)), out);
+void write_tum(const path& recording, const path& out, const ExportChoices& choices) {
+  export_tum(read_truth(recording, scratch_folder_of(out)), out, 0, choices.frame);
 }
 
-void write_kitti(const path& recording, const path& out, const BesideSensors&) {
-  export_kitti(read_truth(recording), out);
+void write_kitti(const path& recording, const path& out, const ExportChoices& choices) {
+  export_kitti(read_truth(recording), out, choices.frame);
 }
 
 template <void (*kExport)(const sim::Sensors&, const path&)>
-void write_sensors(const path& recording, const path& out, const BesideSensors&) {
+void write_sensors(const path& recording, const path& out, const ExportChoices&) {
   kExport(read_sensors(recording), out);
 }
 
@@ -83,9 +83,9 @@ std::string format_of_ending(const path& out) {
   return ending == ".mcap" ? "mcap" : ending == ".bag" ? "rosbag1" : ending == ".tum" ? "tum" : "";
 }
 
-void export_recording(const path& recording, const std::string& format, const path& out, const BesideSensors& beside) {
+void export_recording(const path& recording, const std::string& format, const path& out, const ExportChoices& choices) {
   for (const Format& each : kFormats) {
-    if (format == each.name) return each.write(recording, out, beside);
+    if (format == each.name) return each.write(recording, out, choices);
   }
   std::string known;
   for (const std::string& name : export_formats()) known += " " + name;

@@ -16,7 +16,7 @@ namespace {
 
 struct Options {
   std::filesystem::path recording, out;
-  std::string format, peer, points;
+  std::string format, peer, points, frame;
   bool with_truth = false;
   std::vector<std::filesystem::path> estimates;
 };
@@ -44,6 +44,7 @@ int export_for_peer(const Session& session, const Options& options) {
   };
   refuse(!options.format.empty(), "--format");
   refuse(!options.points.empty(), "--points");
+  refuse(!options.frame.empty(), "--frame");
   refuse(!options.estimates.empty(), "--estimate");
   prepare_output(options.out, std::vector<std::filesystem::path>{options.recording});
   scenarios::export_for(options.recording, options.peer, options.out, options.with_truth);
@@ -62,17 +63,20 @@ int export_as(const Session& session, const Options& options) {
     if (!bag) throw scenarios::BadInput("--points is for bags (mcap, rosbag1, rosbag2, rosbag2_mcap)");
     require_known("kind of points", options.points, std::vector<std::string>{"livox", "pointcloud2"});
   }
+  if (!options.frame.empty() && format != "tum" && format != "kitti")
+    throw scenarios::BadInput("--frame is for trajectories (kitti, tum)");
   std::vector<std::filesystem::path> inputs = options.estimates;
   inputs.push_back(options.recording);
   prepare_output(options.out, inputs);
-  scenarios::BesideSensors beside{options.with_truth};
-  if (options.points == "livox") beside.sweeps = scenarios::livox_sweep_layout();
+  scenarios::ExportChoices choices{options.with_truth};
+  if (!options.frame.empty()) choices.frame = options.frame;
+  if (options.points == "livox") choices.sweeps = scenarios::livox_sweep_layout();
   if (!options.estimates.empty()) {
-    beside.more = [&](const sim::Sensors& sensors, scenarios::BagWriting& writing) {
+    choices.more = [&](const sim::Sensors& sensors, scenarios::BagWriting& writing) {
       scenarios::add_estimates(options.estimates, sensors, writing);
     };
   }
-  scenarios::export_recording(options.recording, format, options.out, beside);
+  scenarios::export_recording(options.recording, format, options.out, choices);
   return said(session, options, "format", format);
 }
 
@@ -90,6 +94,9 @@ Action declare_export(VerbOptions& verb, const Session& session) {
            "a published estimator, one of:" + peers +
                "; a folder with the bag that it reads, its own configuration with this recording's sensors, and "
                "manifest.json");
+  verb.add("--frame", options->frame,
+           "tum, kitti: whose true poses, body (centre of mass), centre (of a sphere's shell) or a sensor's name; "
+           "estimates of the rig are of imu [body]");
   verb.add("--points", options->points,
            "of a bag: pointcloud2, or livox for the CustomMsg of Livox' drivers [pointcloud2]");
   verb.add("-o,--output", options->out,

@@ -17,53 +17,87 @@ bool known(const sim::Truth& truth, std::size_t i) {
   return truth.q_WB[i].coeffs().allFinite() && truth.p_WB_m[i].allFinite();
 }
 
-constexpr const char* kTumHead = "# t[s] x y z[m] qx qy qz qw: true pose of the body (centre of mass) in the world\n";
+std::string tum_head(const std::string& frame) {
+  return "# t[s] x y z[m] qx qy qz qw: true pose of " +
+         (frame == "body" ? std::string("the body (centre of mass)") : "'" + frame + "'") + " in the world\n";
+}
+
+struct Pose {
+  Eigen::Vector3d p_WA_m;
+  Eigen::Quaterniond q_WA;
+};
+
+Pose pose(const sim::Truth& truth, std::size_t i, const Eigen::Isometry3d& T_BA) {
+  const Eigen::Quaterniond& q_WB = truth.q_WB[i];
+  return {truth.p_WB_m[i] + q_WB * T_BA.translation(), q_WB * Eigen::Quaterniond(T_BA.linear())};
+}
 
 /// `first_ns`: stamp of the first of them.
-void append_poses(const sim::Truth& truth, std::int64_t first_ns, std::string& text) {
+void append_poses(const sim::Truth& truth, const Eigen::Isometry3d& T_BA, std::int64_t first_ns, std::string& text) {
   for (std::size_t i = 0; i < truth.p_WB_m.size(); ++i) {
     if (!known(truth, i)) continue;
+    const Pose each = pose(truth, i, T_BA);
     append_seconds(text, first_ns + static_cast<std::int64_t>(i) * truth.period_ns);
-    for (const double x : truth.p_WB_m[i]) append_number(text += ' ', x);
-    for (const double x : truth.q_WB[i].coeffs()) append_number(text += ' ', x);
+    for (const double x : each.p_WA_m) append_number(text += ' ', x);
+    for (const double x : each.q_WA.coeffs()) append_number(text += ' ', x);
     text += '\n';
   }
 }
 
 }  // namespace
 
-void export_tum(const sim::Truth& truth, const std::filesystem::path& file, std::int64_t origin_ns) {
-  std::string text = kTumHead;
-  append_poses(truth, origin_ns, text);
+Eigen::Isometry3d true_mounting(const sim::Truth& truth, const std::string& frame) {
+  if (frame == "body") return Eigen::Isometry3d::Identity();
+  if (frame == "centre") return Eigen::Isometry3d(Eigen::Translation3d(truth.p_BG_m));
+  std::string known = "body centre";
+  for (const sim::ImuTruth& imu : truth.imus) {
+    if (imu.name == frame) return imu.T_BI;
+    known += " " + imu.name;
+  }
+  for (const sim::LidarTruth& lidar : truth.lidars) {
+    if (lidar.name == frame) return lidar.T_BL;
+    known += " " + lidar.name;
+  }
+  throw BadInput("the truth has no frame '" + frame + "' (known: " + known + ")");
+}
+
+void export_tum(const sim::Truth& truth, const std::filesystem::path& file, std::int64_t origin_ns,
+                const std::string& frame) {
+  std::string text = tum_head(frame);
+  append_poses(truth, true_mounting(truth, frame), origin_ns, text);
   replace_file(file, text);
 }
 
-void export_tum(const StoredTruth& truth, const std::filesystem::path& file, std::int64_t origin_ns) {
+void export_tum(const StoredTruth& truth, const std::filesystem::path& file, std::int64_t origin_ns,
+                const std::string& frame) {
   constexpr std::size_t kStretch = 4096;
+  const Eigen::Isometry3d T_BA = true_mounting(truth.states(0, 0), frame);
   OutputFile output(file);
-  std::string text = kTumHead;
+  std::string text = tum_head(frame);
   for (std::size_t first = 0; first <= truth.size(); first += kStretch) {
     const sim::Truth states = truth.states(first, std::min(first + kStretch, truth.size()));
-    append_poses(states, origin_ns + static_cast<std::int64_t>(first) * truth.period_ns, text);
+    append_poses(states, T_BA, origin_ns + static_cast<std::int64_t>(first) * truth.period_ns, text);
     output.write(std::as_bytes(std::span(text)));
     text.clear();
   }
   output.move_into_place();
 }
 
-void export_kitti(const sim::Truth& truth, const std::filesystem::path& file) {
+void export_kitti(const sim::Truth& truth, const std::filesystem::path& file, const std::string& frame) {
+  const Eigen::Isometry3d T_BA = true_mounting(truth, frame);
   std::string text;
   for (std::size_t i = 0; i < truth.p_WB_m.size(); ++i) {
     if (!known(truth, i))
       throw BadInput("the reference has gaps, and KITTI's format has no time to leave them out; use tum");
-    const Eigen::Matrix3d R_WB = truth.q_WB[i].toRotationMatrix();
+    const Pose each = pose(truth, i, T_BA);
+    const Eigen::Matrix3d R_WA = each.q_WA.toRotationMatrix();
     for (int row = 0; row < 3; ++row) {
       if (row > 0) text += ' ';
       for (int column = 0; column < 3; ++column) {
-        append_number(text, R_WB(row, column));
+        append_number(text, R_WA(row, column));
         text += ' ';
       }
-      append_number(text, truth.p_WB_m[i](row));
+      append_number(text, each.p_WA_m(row));
     }
     text += '\n';
   }

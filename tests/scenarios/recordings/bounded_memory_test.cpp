@@ -157,7 +157,7 @@ TEST_F(BoundedExport, DoesNotGrowWithTruthAndEstimates) {
   for (const char* format : {"rosbag1", "rosbag2", "mcap"}) {
     const double growth = growth_mib([&](int sweeps) {
       const std::filesystem::path estimate[] = {file(sweeps, ".tum")};
-      const BesideSensors beside{true, own_sweep_layout(), [&](const sim::Sensors& sensors, BagWriting& writing) {
+      const ExportChoices beside{true, own_sweep_layout(), [&](const sim::Sensors& sensors, BagWriting& writing) {
                                    add_estimates(estimate, sensors, writing);
                                  }};
       export_recording(file(sweeps, ".h5"), format, folder_ / (format + std::to_string(sweeps)), beside);

@@ -43,6 +43,43 @@ TEST_F(Export, TumHoldsTimeAndPoseExactly) {
   }
 }
 
+TEST_F(Export, ATrajectoryIsOfTheFrameThatIsAskedFor) {
+  sim::Truth& truth = recording_.truth;
+  truth.p_BG_m = {0.01, 0.0, -0.02};
+  const auto expect = [&](const std::string& frame, const Eigen::Isometry3d& T_BA) {
+    export_tum(truth, folder_ / "a.tum", 0, frame);
+    export_kitti(truth, folder_ / "a.txt", frame);
+    const auto poses = rows_of(folder_ / "a.tum"), matrices = rows_of(folder_ / "a.txt");
+    ASSERT_EQ(poses.size(), 40u);
+    for (const std::size_t i : {std::size_t{0}, std::size_t{23}}) {
+      const Eigen::Isometry3d T_WA = Eigen::Translation3d(truth.p_WB_m[i]) * truth.q_WB[i] * T_BA;
+      const Eigen::Quaterniond q(poses[i][7], poses[i][4], poses[i][5], poses[i][6]);
+      EXPECT_TRUE(T_WA.translation().isApprox(Eigen::Vector3d(poses[i][1], poses[i][2], poses[i][3]), 1e-12)) << frame;
+      EXPECT_TRUE(T_WA.linear().isApprox(q.toRotationMatrix(), 1e-12)) << frame;
+      EXPECT_NEAR(matrices[i][3], T_WA.translation().x(), 1e-12) << frame;
+      EXPECT_NEAR(matrices[i][6], T_WA.linear()(1, 2), 1e-12) << frame;
+    }
+  };
+  truth.imus[0].T_BI = Eigen::Translation3d(0.1, -0.2, 0.3) * Eigen::AngleAxisd(0.7, Eigen::Vector3d::UnitY());
+  truth.lidars[0].T_BL = Eigen::Translation3d(-0.3, 0.0, 0.1) * Eigen::AngleAxisd(-1.1, Eigen::Vector3d::UnitZ());
+  expect("body", Eigen::Isometry3d::Identity());
+  expect("centre", Eigen::Isometry3d(Eigen::Translation3d(truth.p_BG_m)));
+  expect(truth.imus[0].name, truth.imus[0].T_BI);
+  expect(truth.lidars[0].name, truth.lidars[0].T_BL);
+  // from the file, a stretch at a time, and with what it is of in its first line
+  write_recording(folder_ / "a.h5", fixture::info(), recording_.sensors, &truth);
+  ExportChoices choices;
+  choices.frame = truth.imus[0].name;
+  export_recording(folder_ / "a.h5", "tum", folder_ / "b.tum", choices);
+  export_tum(truth, folder_ / "a.tum", 0, choices.frame);
+  EXPECT_EQ(fixture::bytes_of(folder_ / "b.tum"), fixture::bytes_of(folder_ / "a.tum"));
+  EXPECT_THAT(fixture::bytes_of(folder_ / "b.tum"), HasSubstr("true pose of '" + choices.frame + "' in the world"));
+  choices.frame = "wheel";
+  EXPECT_THAT(fixture::complaint([&] { export_recording(folder_ / "a.h5", "kitti", folder_ / "c", choices); }),
+              HasSubstr("the truth has no frame 'wheel' (known: body centre " + truth.imus[0].name));
+  EXPECT_FALSE(std::filesystem::exists(folder_ / "c"));
+}
+
 TEST_F(Export, TumTimesStayExactInLongRecordings) {
   recording_.truth.period_ns = 1234567891;
   export_tum(recording_.truth, folder_ / "truth.tum");
