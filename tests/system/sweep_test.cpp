@@ -154,6 +154,29 @@ TEST(Sweep, AShardWithoutSeedsKeepsByTheRuleOfTheOthers) {
   EXPECT_EQ(json_of(merged)["kept"], 1);
 }
 
+// 'slip' is a suite, and a scenario of it
+TEST(Sweep, OfASuiteSomeScenariosAlone) {
+  const fs::path folder = test_folder(), database = folder / "a.db";
+  const std::vector<std::string> words = {"sweep", "slip",   "--seeds",    "1", "--method", "rate/raw",
+                                          "--db",  database, "--examples", "0", "--json"};
+  const auto with = [&](const std::vector<std::string>& more) {
+    std::vector<std::string> arguments = words;
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    return run(arguments);
+  };
+  const Ended one = with({"--scenario", "roll"});
+  EXPECT_EQ(one.status, 0) << one.err;
+  EXPECT_EQ(json_of(one)["draws_total"], 1);
+  EXPECT_THAT(one.err, Not(HasSubstr("for that one alone")));
+  EXPECT_EQ(report_json(database)["draws"], (json{{"roll", 1}}));
+  const Ended unknown = with({"--scenario", "slib"});
+  EXPECT_EQ(unknown.status, 2);
+  EXPECT_THAT(unknown.err, HasSubstr("unknown scenario of suite 'slip' 'slib'"));
+  const Ended all = with({"--shard", "2/2"});  // which has nothing to do
+  EXPECT_EQ(all.status, 0) << all.err;
+  EXPECT_THAT(all.err, HasSubstr("--scenario slip for that one alone"));
+}
+
 // seeds in a row are asked for where a suite has but some of them
 TEST(Sweep, NamedDrawsAreNoSeedsInARow) {
   const fs::path folder = test_folder(), suite = folder / "named.yaml";
@@ -168,6 +191,7 @@ TEST(Sweep, NamedDrawsAreNoSeedsInARow) {
   refused({"sweep", suite.string(), "--db", database, "--until", "rate/raw:rate/saave:rate_error_clipped_median_rad_s"},
           "--until");
   refused({"triage", suite.string(), "--method", "rate/raw", "--seeds", "1..2"}, "--seeds");
+  refused({"sweep", suite.string(), "--db", database, "--scenario", "roll"}, "--scenario");
   refused({"gate", suite.string(), "--against", (folder / "g.yaml").string(), "--accept"}, "a gate holds");
 }
 

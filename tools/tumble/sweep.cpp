@@ -32,7 +32,7 @@ constexpr std::uint64_t kExamplesMax = 3, kDrawsPerExample = 8;
 struct Options {
   std::string suite;
   std::string seeds, shard;
-  std::vector<std::string> methods, again;
+  std::vector<std::string> scenarios, methods, again;
   int jobs = available_processors();
   std::optional<std::size_t> examples;  ///< as many as the sweep can bear, where it is not told
   std::filesystem::path database, recordings;
@@ -42,9 +42,28 @@ struct Options {
   double risk = 0.05;
 };
 
+/// Of the suite's scenarios those that are named, in the suite's order.
+void take_scenarios(const std::vector<std::string>& named, scenarios::Suite& suite) {
+  if (named.empty()) return;
+  if (!suite.recordings.empty() || !suite.classes.empty())
+    throw scenarios::BadInput("--scenario: suite '" + suite.name + "' names its " +
+                              (suite.recordings.empty() ? "draws" : "recordings"));
+  for (const std::string& name : named) require_known("scenario of suite '" + suite.name + "'", name, suite.scenarios);
+  std::erase_if(suite.scenarios, [&](const std::string& name) { return std::ranges::count(named, name) == 0; });
+}
+
+/// Whoever means a scenario and names a suite of the same name waits for others.
+void say_what_it_holds(const Session& session, const Options& options, const scenarios::Suite& suite) {
+  if (!options.scenarios.empty() || suite.scenarios.size() < 2) return;
+  if (std::ranges::count(suite.scenarios, options.suite) == 0) return;
+  session.note(fmt::format("suite '{0}': {1}; --scenario {0} for that one alone", options.suite,
+                           fmt::join(suite.scenarios, " ")));
+}
+
 /// The suite with what the command line changes of it. Returns false when this shard has no seed.
 bool select(const scenarios::DataRoot& data, const Options& options, scenarios::Suite& suite) {
   suite = scenarios::load_suite(data, options.suite);
+  take_scenarios(options.scenarios, suite);
   const bool recorded = !suite.recordings.empty();
   if (recorded && (!options.seeds.empty() || !options.shard.empty()))
     throw scenarios::BadInput("--seeds, --shard: a suite of recordings has no seeds");
@@ -83,6 +102,7 @@ void certify(const Session& session, const scenarios::DataRoot& data, const std:
 std::string command_of(const Options& options) {
   using scenarios::shell_word;
   std::string words = shell_word(options.suite);
+  for (const std::string& scenario : options.scenarios) words += " --scenario " + shell_word(scenario);
   if (!options.seeds.empty()) words += " --seeds " + shell_word(options.seeds);
   for (const std::string& method : options.methods) words += " --method " + shell_word(method);
   if (!options.recordings.empty()) words += " --data " + shell_word(options.recordings.string());
@@ -181,6 +201,7 @@ int run_sweep(const Session& session, const Options& options) {
   const scenarios::DataRoot data = session.data();
   scenarios::Suite suite;
   const bool any = select(data, options, suite);
+  say_what_it_holds(session, options, suite);
   if (options.database.has_parent_path()) make_folder(options.database.parent_path());
   const scenarios::DatabaseOwner owner(options.database);
   if (!any) {
@@ -229,6 +250,8 @@ int run_sweep(const Session& session, const Options& options) {
 Action declare_sweep(VerbOptions& verb, const Session& session) {
   auto options = std::make_shared<Options>();
   verb.add("SUITE", options->suite, "a suite, a suite file, or a scenario").required().check(a_suite(session));
+  verb.add("--scenario", options->scenarios, "of the suite's scenarios this one; repeat for more [all of them]")
+      .one_at_a_time();
   verb.add("--seeds", options->seeds, "A..B, both included [the suite's]")
       .filled();  // an empty word would mean all of them
   verb.add("--method", options->methods, "a method; repeat for more [the suite's]")
