@@ -21,8 +21,8 @@ bool is_bag_format(const std::string& format);
 /// The format that the ending of a file tells (.mcap, .bag, .tum); empty for others.
 std::string format_of_ending(const std::filesystem::path& out);
 
-/// What is chosen of a format: of a bag what it holds besides the sensors and how its sweeps are written, of a trajectory
-/// whose it is.
+/// What is chosen of a format: of a bag what it holds besides the sensors and how its sweeps are written, of a
+/// trajectory whose it is.
 struct ExportChoices {
   bool truth = false;
   SweepLayout sweeps = own_sweep_layout();
@@ -40,8 +40,8 @@ struct ExportChoices {
 void export_recording(const std::filesystem::path& recording, const std::string& format,
                       const std::filesystem::path& out, const ExportChoices& choices = {});
 
-/// T_BA of a frame A as it truly is, calibration errors included: `body`, `centre` (of the sphere's shell), or a sensor by
-/// its name. Throws BadInput for another name, with those that there are.
+/// T_BA of a frame A as it truly is, calibration errors included: `body`, `centre` (of the sphere's shell), or a sensor
+/// by its name. Throws BadInput for another name, with those that there are.
 Eigen::Isometry3d true_mounting(const sim::Truth& truth, const std::string& frame);
 
 /// "t x y z qx qy qz qw" per physics sample: T_WA of the frame, seconds from the start with nine decimals, numbers that

@@ -14,21 +14,21 @@ ReaderNames names(const SensorFacts&) {
 }
 
 std::vector<ConfigurationFile> configuration(const SensorFacts& facts, const ReaderNames&) {
-  const std::string text =
-      fmt::format(R"(# what stands not here is as the authors have it
+  const std::string text = fmt::format(R"(# what stands not here is as the authors have it
 data:
   deskew: {}
   min_range: {}   # m: the robot itself is nearer
 )",
-                  facts.lidar->timed, decimal(facts.lidar->own_body_m));
+                                       facts.lidar->timed, decimal(facts.lidar->own_body_m));
   return {{"kiss_icp.yaml", text}};
 }
 
 }  // namespace
 
 Dialect kiss_icp_dialect() {
-  // ROS 1: the one bag that its version 1.3.0 reads of PyPI's packages alone. Its fields of points are not found with those of
-  // mcap-ros2-support 0.5.7 and 0.6.0, and a ROS 2 bag it reads where the bag brings definitions, which SQLite's has not.
+  // ROS 1: the one bag that its version 1.3.0 reads of PyPI's packages alone. Its fields of points are not found with
+  // those of mcap-ros2-support 0.5.7 and 0.6.0, and a ROS 2 bag it reads where the bag brings definitions, which
+  // SQLite's has not.
   Dialect out{"kiss-icp", "rosbag1", "recording.bag"};
   out.needs_imu = out.needs_times = false;
   out.names = names;
