@@ -2,6 +2,7 @@
 #include "scenarios/summary/selection.hpp"
 
 #include <algorithm>
+#include <iterator>
 #include <map>
 #include <set>
 #include <utility>
@@ -23,30 +24,55 @@ void require_known(const std::string& what, std::span<const std::string> names, 
   }
 }
 
-/// Rising.
-std::vector<std::uint64_t> every_nth(const std::set<std::uint64_t>& seeds, std::size_t most) {
-  std::vector<std::uint64_t> out;
+using Seeds = std::vector<std::uint64_t>;  // rising
+
+Seeds every_nth(const Seeds& seeds, std::size_t most) {
+  Seeds out;
   const std::size_t step = (seeds.size() + most - 1) / std::max<std::size_t>(most, 1);
-  std::size_t place = 0;
-  for (const std::uint64_t seed : seeds) {
-    if (place++ % std::max<std::size_t>(step, 1) == 0) out.push_back(seed);
-  }
+  for (std::size_t place = 0; place < seeds.size(); place += std::max<std::size_t>(step, 1))
+    out.push_back(seeds[place]);
   return out;
 }
 
-void keep(const std::vector<std::uint64_t>& kept, MethodSummary& method) {
-  const auto is_left_out = [&](std::uint64_t seed) { return !std::binary_search(kept.begin(), kept.end(), seed); };
-  std::erase_if(method.seeds, is_left_out);
-  std::erase_if(method.not_ok_seeds, is_left_out);
-  for (auto& [name, metric] : method.metrics) {
-    std::vector<double> values;
-    for (std::size_t i = 0; i < metric.seeds.size(); ++i) {
-      if (!is_left_out(metric.seeds[i])) values.push_back(metric.values[i]);
-    }
-    metric.values = std::move(values);
-    std::erase_if(metric.seeds, is_left_out);
-    std::erase_if(metric.failed, is_left_out);
+/// Calls `visit` with the places of those of `seeds` that are kept.
+template <typename Visit>
+void for_kept(const Seeds& kept, const Seeds& seeds, Visit visit) {
+  auto at = kept.begin();
+  for (std::size_t i = 0; i < seeds.size(); ++i) {
+    while (at != kept.end() && *at < seeds[i]) ++at;
+    if (at == kept.end()) return;
+    if (*at == seeds[i]) visit(i);
   }
+}
+
+Seeds of_kept(const Seeds& kept, const Seeds& seeds) {
+  Seeds out;
+  for_kept(kept, seeds, [&](std::size_t i) { out.push_back(seeds[i]); });
+  return out;
+}
+
+/// Without a copy of what is left out, which is most.
+MethodSummary of_kept(const Seeds& kept, const MethodSummary& method) {
+  MethodSummary out{method.method,
+                    method.needs_truth,
+                    method.outcomes,
+                    method.not_ok,
+                    method.not_ok_share,
+                    of_kept(kept, method.seeds),
+                    of_kept(kept, method.not_ok_seeds),
+                    {}};
+  for (const auto& [name, metric] : method.metrics) {
+    MetricSummary& own = out.metrics[name];
+    own.centre = metric.centre;
+    own.quantile_95 = metric.quantile_95;
+    own.wins = metric.wins;
+    own.failed = of_kept(kept, metric.failed);
+    for_kept(kept, metric.seeds, [&](std::size_t i) {
+      own.seeds.push_back(metric.seeds[i]);
+      own.values.push_back(metric.values[i]);
+    });
+  }
+  return out;
 }
 
 }  // namespace
@@ -75,15 +101,21 @@ void require_held(const Summary& summary, std::span<const std::string> methods, 
 }
 
 Summary at_most_draws(const Summary& summary, std::size_t most) {
-  std::map<std::string, std::set<std::uint64_t>> seeds;
+  std::map<std::string, Seeds> seeds;
   for (const Section& section : summary.sections) {
-    for (const MethodSummary& method : section.methods)
-      seeds[section.scenario].insert(method.seeds.begin(), method.seeds.end());
+    Seeds& own = seeds[section.scenario];
+    for (const MethodSummary& method : section.methods) {
+      Seeds all;
+      std::set_union(own.begin(), own.end(), method.seeds.begin(), method.seeds.end(), std::back_inserter(all));
+      own = std::move(all);
+    }
   }
-  Summary out = summary;
-  for (Section& section : out.sections) {
-    const std::vector<std::uint64_t> kept = every_nth(seeds.at(section.scenario), most);
-    for (MethodSummary& method : section.methods) keep(kept, method);
+  Summary out{{}, summary.scenarios, summary.draws, summary.rejected};
+  for (const Section& section : summary.sections) {
+    const Seeds kept = every_nth(seeds.at(section.scenario), most);
+    Section& own =
+        out.sections.emplace_back(Section{section.scenario, section.kind, section.baseline, {}, section.metrics});
+    for (const MethodSummary& method : section.methods) own.methods.push_back(of_kept(kept, method));
   }
   return out;
 }

@@ -49,8 +49,10 @@ struct Results::Impl {
 
   Impl(const std::filesystem::path& file, Mode mode)
       : path(file),
+        // one thread's alone: each value that is read would else lock and unlock it several times
         database(file.string(),
-                 mode == Mode::read_only ? SQLite::OPEN_READONLY : SQLite::OPEN_READWRITE | SQLite::OPEN_CREATE,
+                 SQLite::OPEN_NOMUTEX |
+                     (mode == Mode::read_only ? SQLite::OPEN_READONLY : SQLite::OPEN_READWRITE | SQLite::OPEN_CREATE),
                  kBusyTimeoutMs) {
     // a rollback journal: one file, readable from a read-only folder; a store is on the disk before it returns
     if (mode == Mode::create_or_append) database.exec("PRAGMA foreign_keys = ON; PRAGMA synchronous = FULL;");

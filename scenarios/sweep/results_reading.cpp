@@ -133,10 +133,13 @@ void Results::each(Rows rows, Names& names, const std::function<void(const Outco
       const std::int64_t id = outcomes.getColumn(0).getInt64();
       while (more && scores.getColumn(0).getInt64() < id) more = scores.executeStep();
       values.clear();
+      auto name = names.begin();
       for (; more && scores.getColumn(0).getInt64() == id; more = scores.executeStep()) {
         const std::string_view metric = text(scores, 1);
-        auto name = names.find(metric);
-        if (name == names.end()) name = names.emplace(metric).first;
+        // of an outcome they rise, as the names do: mostly the next one, if not the one after
+        for (int ahead = 0; ahead < 2 && name != names.end() && *name < metric; ++ahead) ++name;
+        if (name == names.end() || *name != metric) name = names.lower_bound(metric);
+        if (name == names.end() || *name != metric) name = names.emplace_hint(name, metric);
         values.push_back(
             {&*name, stored_value(scores.getColumn(2), impl_->path, [&] {
                return draw_text(outcomes.getColumn(1).getString(), read_seed(outcomes.getColumn(2).getInt64())) + ", " +

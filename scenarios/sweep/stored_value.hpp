@@ -15,9 +15,10 @@ namespace tumble::scenarios {
 /// too, and would give these as 0: throws BadInput with the path and `row()`, which says whose value it is.
 template <typename Row>
 double stored_value(const SQLite::Column& column, const std::filesystem::path& path, const Row& row) {
-  if (column.isNull()) return std::numeric_limits<double>::quiet_NaN();
-  if (column.isFloat() || column.isInteger()) return column.getDouble();
-  throw BadInput(path.string() + ": " + row() + ": is " + (column.isText() ? "text" : "a blob") +
+  const int type = column.getType();
+  if (type == SQLite::FLOAT || type == SQLite::INTEGER) return column.getDouble();
+  if (type == SQLite::Null) return std::numeric_limits<double>::quiet_NaN();
+  throw BadInput(path.string() + ": " + row() + ": is " + (type == SQLite::TEXT ? "text" : "a blob") +
                  ", must be a number or null");
 }
 

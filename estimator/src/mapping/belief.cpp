@@ -56,6 +56,20 @@ Matrix unknowns_at(const SweepTrajectory& trajectory, double t_s) {
   return F;
 }
 
+/// Blocks of whole packets, so that each sum has the order that it has in the whole product. Rows of F beyond the
+/// motion are those of the identity: mapping.md (R12).
+Matrix pose_and_mounting(const Matrix& F, const Matrix& errors) {
+  constexpr int kSize = 8, kMounting = 16;
+  static_assert(kMounting >= Registration::kMotion && kMounting <= Registration::kCalibration &&
+                Registration::kCalibration + 6 <= kMounting + kSize);
+  Matrix out = Matrix::Zero();
+  const Eigen::Matrix<double, kSize, Registration::kUnknowns> moved = F.topRows<kSize>() * errors;
+  out.topRows<kSize>() = moved * F.transpose();
+  out.block<kSize, kSize>(kMounting, 0) = errors.middleRows<kSize>(kMounting) * F.topRows<kSize>().transpose();
+  out.block<kSize, kSize>(kMounting, kMounting) = errors.block<kSize, kSize>(kMounting, kMounting);
+  return out;
+}
+
 /// mapping.md (R42).
 Belief at_end(const Belief& at_start, const SweepTrajectory& trajectory, const Matrix& end_by_start, TimeNs end_ns) {
   const Matrix weight = end_by_start * at_start.weight * end_by_start.transpose();

@@ -23,6 +23,10 @@ Belief belief_at_start(const LidarInertialOdometry::Params& params, const Motion
 /// Effect, to first order, on the unknowns with their motion taken `t_s` after the start, of the unknowns at the start.
 Registration::Matrix unknowns_at(const SweepTrajectory& trajectory, double t_s);
 
+/// Of F errors F^T, F of unknowns_at, what has to do with the pose or the mounting; zero where neither has. To the bit
+/// what the whole product has there, for a third of it: each pose of a recording asks.
+Registration::Matrix pose_and_mounting(const Registration::Matrix& F, const Registration::Matrix& errors);
+
 /// Of the unknowns at the end of the stretch, which is at `end_ns`; the trajectory is that of the mean.
 Belief at_end(const Belief& at_start, const SweepTrajectory& trajectory, const Registration::Matrix& end_by_start,
               TimeNs end_ns);

@@ -51,11 +51,7 @@ void apply_calibration(const SweepCalibration& calibration, double later_s, std:
 void compute_levers(const SweepTrajectory& trajectory, std::span<const SweepPoint> points,
                     std::vector<Eigen::Vector3f>& levers_W_m) {
   levers_W_m.resize(points.size());
-  std::size_t hint = 0;
-  for (std::size_t i = 0; i < points.size(); ++i) {
-    const SweepTrajectory::Instant now = trajectory.at(points[i].t_s, hint);
-    levers_W_m[i] = (now.preintegrated_position_m + now.q_WI * points[i].x_I_m.cast<double>()).cast<float>();
-  }
+  trajectory.levers(points, levers_W_m);
 }
 
 /// mapping.md (R13).

@@ -26,62 +26,85 @@ float square(float x) {
   return x * x;
 }
 
-/// Squared sine of the angle between two beams; 1 from a right angle on.
-float sine2_between(const SweepPoint& a, const SweepPoint& b) {
+}  // namespace
+
+/// Squared sine of the angle between two beams, in either order; 1 from a right angle on.
+float LoneReturns::sine2_between(const Beam& a, const Beam& b) {
   if (a.x_L_m.dot(b.x_L_m) <= 0.0f) return 1.0f;
   return a.x_L_m.cross(b.x_L_m).squaredNorm() / (square(a.range_m) * square(b.range_m));
 }
 
-float variance_m2(const RangeNoise& noise, const SweepPoint& point) {
-  return square(std::max(static_cast<float>(noise.sigma_m), static_cast<float>(noise.share) * point.range_m));
+float LoneReturns::variance_m2(const RangeNoise& noise, const Beam& beam) {
+  return square(std::max(static_cast<float>(noise.sigma_m), static_cast<float>(noise.share) * beam.range_m));
 }
 
 /// Whether two returns lie at one range: mapping.md (R56).
-bool same_range(const RangeNoise& noise, const SweepPoint& a, const SweepPoint& b) {
+bool LoneReturns::same_range(const RangeNoise& noise, const Beam& a, const Beam& b) {
   return square(a.range_m - b.range_m) <= square(kDeviations) * (variance_m2(noise, a) + variance_m2(noise, b));
 }
 
 /// Whether the line between two returns stands against the beam at this angle at least: mapping.md (R57).
-bool stands(float sine, const SweepPoint& a, const SweepPoint& b) {
+bool LoneReturns::stands(float sine, const Beam& a, const Beam& b) {
   const float farther = std::max(a.range_m, b.range_m);
   return a.x_L_m.cross(b.x_L_m).squaredNorm() >= square(sine * farther) * (a.x_L_m - b.x_L_m).squaredNorm();
 }
 
 /// Whether a return lies where its beam meets the line between one before and one after it: mapping.md (R58).
-bool between(const RangeNoise& noise, const SweepPoint& before, const SweepPoint& point, const SweepPoint& after) {
+bool LoneReturns::between(const RangeNoise& noise, const Beam& before, const Beam& beam, const Beam& after) {
   if (!stands(kGrazingSine, before, after)) return false;
-  const float to_before = std::sqrt(sine2_between(before, point)), to_after = std::sqrt(sine2_between(point, after));
+  const float to_before = std::sqrt(sine2_between(before, beam)), to_after = std::sqrt(sine2_between(beam, after));
   const float share = to_before / std::max(to_before + to_after, 1e-9f);
   const float expected_m = 1.0f / ((1.0f - share) / before.range_m + share / after.range_m);
-  const float variance = variance_m2(noise, point) + square(1.0f - share) * variance_m2(noise, before) +
+  const float variance = variance_m2(noise, beam) + square(1.0f - share) * variance_m2(noise, before) +
                          square(share) * variance_m2(noise, after);
   const float bend_m = kBend * std::abs(before.range_m - after.range_m);
-  return square(point.range_m - expected_m) <= std::max(square(kDeviations) * variance, square(bend_m));
+  return square(beam.range_m - expected_m) <= std::max(square(kDeviations) * variance, square(bend_m));
 }
 
-/// The neighbours of a return along its ring: up to kNeighbours to each side.
-struct Beside {
-  std::array<const SweepPoint*, kNeighbours> before, after;
-  int before_count = 0, after_count = 0;
+/// The neighbours of a return to one side of its ring, the next one first.
+struct LoneReturns::Beside {
+  std::array<const Beam*, kNeighbours> beam;
+  int count = 0;
+
+  auto begin() const { return beam.begin(); }
+  auto end() const { return beam.begin() + count; }
 };
 
-bool is_borne_out(const RangeNoise& noise, const SweepPoint& point, const Beside& beside) {
-  if (beside.before_count > 0 && stands(kSurfaceSine, point, *beside.before[0])) return true;
-  if (beside.after_count > 0 && stands(kSurfaceSine, point, *beside.after[0])) return true;
-  const auto at_its_range = [&](const SweepPoint* other) { return same_range(noise, point, *other); };
-  const auto before_end = beside.before.begin() + beside.before_count;
-  const auto after_end = beside.after.begin() + beside.after_count;
-  if (std::any_of(beside.before.begin(), before_end, at_its_range)) return true;
-  if (std::any_of(beside.after.begin(), after_end, at_its_range)) return true;
-  return std::any_of(beside.before.begin(), before_end, [&](const SweepPoint* before) {
-    return std::any_of(beside.after.begin(), after_end,
-                       [&](const SweepPoint* after) { return between(noise, *before, point, *after); });
+/// Of two beams of the sorted ones: on one ring, and within reach of each other.
+bool LoneReturns::is_neighbour(std::size_t at, std::size_t other, float reach2) const {
+  if (other >= beams_.size() || beams_[other].ring != beams_[at].ring) return false;
+  const bool next = other + 1 == at || at + 1 == other;
+  const float sine2 = next ? steps2_[std::max(at, other)] : sine2_between(beams_[at], beams_[other]);
+  return !(sine2 > reach2);
+}
+
+bool LoneReturns::is_borne_out(const RangeNoise& noise, std::size_t at, float reach2) const {
+  const Beam& beam = beams_[at];
+  // most stand against the beam before them; an index below 0 wraps, beyond the end
+  const bool has_before = is_neighbour(at, at - 1, reach2);
+  if (has_before && stands(kSurfaceSine, beam, beams_[at - 1])) return true;
+  const bool has_after = is_neighbour(at, at + 1, reach2);
+  if (has_after && stands(kSurfaceSine, beam, beams_[at + 1])) return true;
+  const auto collect = [&](bool has_next, std::size_t direction) {
+    Beside beside;
+    std::size_t other = at + direction;
+    for (bool goes_on = has_next; goes_on; goes_on = beside.count < kNeighbours && is_neighbour(at, other, reach2)) {
+      beside.beam[static_cast<std::size_t>(beside.count++)] = &beams_[other];
+      other += direction;
+    }
+    return beside;
+  };
+  const Beside before = collect(has_before, ~std::size_t{0}), after = collect(has_after, 1);
+  const auto at_its_range = [&](const Beam* other) { return same_range(noise, beam, *other); };
+  if (std::any_of(before.begin(), before.end(), at_its_range)) return true;
+  if (std::any_of(after.begin(), after.end(), at_its_range)) return true;
+  return std::any_of(before.begin(), before.end(), [&](const Beam* one) {
+    return std::any_of(after.begin(), after.end(),
+                       [&](const Beam* other) { return between(noise, *one, beam, *other); });
   });
 }
 
-}  // namespace
-
-/// Indices of the points ring after ring, in order inside of each. Uses up the places where rings begin.
+/// The points as beams ring after ring, in order inside of each. Uses up the places where rings begin.
 void LoneReturns::sort_by_ring(const std::vector<SweepPoint>& points) {
   ring_next_.assign(1, 0);
   for (const SweepPoint& point : points) {
@@ -90,47 +113,42 @@ void LoneReturns::sort_by_ring(const std::vector<SweepPoint>& points) {
   }
   for (std::size_t ring = 1; ring < ring_next_.size(); ++ring) ring_next_[ring] += ring_next_[ring - 1];
   order_.resize(points.size());
-  for (std::uint32_t i = 0; i < points.size(); ++i) order_[ring_next_[points[i].ring]++] = i;
+  beams_.resize(points.size());
+  for (std::uint32_t i = 0; i < points.size(); ++i) {
+    const std::uint32_t at = ring_next_[points[i].ring]++;
+    order_[at] = i;
+    beams_[at] = {points[i].x_L_m, points[i].range_m, points[i].ring};
+  }
 }
 
-/// Of the squared sines between returns that follow each other on a ring; 1 where there are none.
-float LoneReturns::median_step2(const std::vector<SweepPoint>& points) {
-  steps2_.clear();
-  for (std::size_t i = 1; i < order_.size(); ++i) {
-    const SweepPoint &a = points[order_[i - 1]], &b = points[order_[i]];
-    if (a.ring == b.ring) steps2_.push_back(sine2_between(a, b));
+/// From each beam to the one before it on its ring; 1 where there is none.
+void LoneReturns::measure_steps() {
+  steps2_.assign(beams_.size(), 1.0f);
+  sorted_steps2_.clear();
+  for (std::size_t at = 1; at < beams_.size(); ++at) {
+    if (beams_[at - 1].ring != beams_[at].ring) continue;
+    steps2_[at] = sine2_between(beams_[at - 1], beams_[at]);
+    sorted_steps2_.push_back(steps2_[at]);
   }
-  if (steps2_.empty()) return 1.0f;
-  const auto middle = steps2_.begin() + static_cast<std::ptrdiff_t>(steps2_.size() / 2);
-  std::nth_element(steps2_.begin(), middle, steps2_.end());
+}
+
+/// Of the steps along the rings; 1 where there are none.
+float LoneReturns::median_step2() {
+  if (sorted_steps2_.empty()) return 1.0f;
+  const auto middle = sorted_steps2_.begin() + static_cast<std::ptrdiff_t>(sorted_steps2_.size() / 2);
+  std::nth_element(sorted_steps2_.begin(), middle, sorted_steps2_.end());
   return *middle;
 }
 
 std::size_t LoneReturns::drop(const RangeNoise& noise, std::vector<SweepPoint>& points) {
   if (points.size() < 3) return 0;
   sort_by_ring(points);
-  const float step2 = median_step2(points);
+  measure_steps();
+  const float step2 = median_step2();
   if (step2 > square(kStepMax)) return 0;
   const float reach2 = square(kReachSteps) * step2;
-  alone_.assign(points.size(), 0);
-  const auto collect = [&](std::size_t at, int direction, std::array<const SweepPoint*, kNeighbours>& found) {
-    const SweepPoint& point = points[order_[at]];
-    int count = 0;
-    for (int step = 1; step <= kNeighbours; ++step) {
-      const std::size_t other = at + static_cast<std::size_t>(direction * step);  // wraps below 0: beyond the end
-      if (other >= order_.size() || points[order_[other]].ring != point.ring) break;
-      const SweepPoint& neighbour = points[order_[other]];
-      if (sine2_between(point, neighbour) > reach2) break;
-      found[static_cast<std::size_t>(count++)] = &neighbour;
-    }
-    return count;
-  };
-  for (std::size_t at = 0; at < order_.size(); ++at) {
-    Beside beside;
-    beside.before_count = collect(at, -1, beside.before);
-    beside.after_count = collect(at, 1, beside.after);
-    alone_[order_[at]] = !is_borne_out(noise, points[order_[at]], beside);
-  }
+  alone_.resize(points.size());
+  for (std::size_t at = 0; at < beams_.size(); ++at) alone_[order_[at]] = !is_borne_out(noise, at, reach2);
   const auto dropped = static_cast<std::size_t>(std::count(alone_.begin(), alone_.end(), 1));
   if (static_cast<float>(dropped) <= kClearShare * static_cast<float>(points.size())) return 0;
   std::size_t kept = 0;

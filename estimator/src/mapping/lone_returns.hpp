@@ -30,11 +30,28 @@ class LoneReturns {
   std::size_t drop(const RangeNoise& noise, std::vector<SweepPoint>& points);
 
  private:
+  /// What is asked of a return; of a ring they lie side by side.
+  struct Beam {
+    Eigen::Vector3f x_L_m;
+    float range_m;
+    std::uint16_t ring;
+  };
+  struct Beside;
+
+  static float sine2_between(const Beam& a, const Beam& b);
+  static float variance_m2(const RangeNoise& noise, const Beam& beam);
+  static bool same_range(const RangeNoise& noise, const Beam& a, const Beam& b);
+  static bool stands(float sine, const Beam& a, const Beam& b);
+  static bool between(const RangeNoise& noise, const Beam& before, const Beam& beam, const Beam& after);
   void sort_by_ring(const std::vector<SweepPoint>& points);
-  float median_step2(const std::vector<SweepPoint>& points);
+  void measure_steps();
+  float median_step2();
+  bool is_neighbour(std::size_t at, std::size_t other, float reach2) const;
+  bool is_borne_out(const RangeNoise& noise, std::size_t at, float reach2) const;
 
   std::vector<std::uint32_t> ring_next_, order_;
-  std::vector<float> steps2_;
+  std::vector<Beam> beams_;                    // ring after ring, in order inside of each
+  std::vector<float> steps2_, sorted_steps2_;  // squared sines from the beam before on the ring
   std::vector<std::uint8_t> alone_;
 };
 

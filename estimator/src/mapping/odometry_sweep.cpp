@@ -188,7 +188,7 @@ PoseState LidarInertialOdometry::Impl::pose_along(const SweepTrajectory& motion,
                                                   const Registration::Matrix& errors) const {
   const Registration::Matrix F = mapping::unknowns_at(motion, t_s);
   PoseState pose = motion.state(t_s).pose();
-  pose.covariance = world.in_world(F * errors * F.transpose(), pose.p_WA_m);
+  pose.covariance = world.in_world(mapping::pose_and_mounting(F, errors), pose.p_WA_m);
   return pose;
 }
 

@@ -153,10 +153,8 @@ Status Registration::align(const Prior& prior, std::span<const MotionSample> sam
   result.mean.state.covariance = result.covariance.topLeftCorner<kMotion, kMotion>();
   result.verdict = RegistrationVerdict::converged;
   if (Status status = build(result.mean); !status.ok()) return status;
-  result.errors_in_variables_information =
-      errors_in_variables_information(trajectory, now.calibration, unknowns, points, kernel_m);
+  describe_errors(points, trajectory, now.calibration, unknowns, kernel_m, result);
   describe_shape(points, kernel_m, sum, result);
-  result.score_covariance = score_covariance(points, trajectory, now.calibration, unknowns, kernel_m);
   return {};
 }
 

@@ -3,8 +3,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
-#include "tumble/common/so3.hpp"
+#include "point_motion.hpp"
 
 namespace tumble {
 
@@ -12,6 +13,8 @@ namespace {
 
 constexpr int kRigid = Registration::kMotion;
 constexpr std::size_t kBlock = 128;  // points whose sums are formed together; however many threads there are
+
+constexpr float kRounding = 1.0001f;
 
 std::size_t block_count(std::size_t points) {
   return (points + kBlock - 1) / kBlock;
@@ -76,86 +79,30 @@ double Registration::point_variance_m2(const SweepPoint& point) const {
   return range * range + skew * skew;
 }
 
-/// mapping.md (R15), which is linear in the normal.
-void Registration::derivative_along(const SweepTrajectory& trajectory, const SweepCalibration& calibration,
-                                    const SweepPoint& point, const Eigen::Vector3d& n, std::size_t& hint,
-                                    Vector& derivative) {
-  const SweepTrajectory::Instant now = trajectory.at(point.t_s, hint);
-  const Eigen::Vector3d x_I = point.x_I_m.cast<double>();
-  const Eigen::Vector3d turned = now.q_WI * x_I;
-  const Eigen::Vector3d lever = now.preintegrated_position_m + turned;
-  const Eigen::Vector3d n_I = now.q_WI.conjugate() * n;
-  const double t = point.t_s;
-  derivative.segment<3>(0) = n;
-  derivative.segment<3>(3) = lever.cross(n);
-  derivative.segment<3>(6) = t * n;
-  if (trajectory.clipped_axes() != 0) {
-    const SweepTrajectory::ExcessDerivative by_excess = trajectory.excess_derivative(t, hint);
-    derivative.segment<SweepTrajectory::kExcess>(kExcess) =
-        by_excess.preintegrated_position_m_s.transpose() * n + by_excess.attitude_s.transpose() * turned.cross(n);
-  } else {
-    derivative.segment<SweepTrajectory::kExcess>(kExcess).setZero();
-  }
-  derivative.tail<SweepCalibration::kErrors>() << (x_I - calibration.T_IL.translation()).cross(n_I), n_I,
-      n.dot(trajectory.velocity_m_s(t, x_I, hint)), (0.5 * t * t) * n;
-}
-
 /// mapping.md (R14) and (R15), the distance and its derivative.
 double Registration::residual(const SweepTrajectory& trajectory, const SweepCalibration& calibration,
                               const SweepPoint& point, const PlaneFit& plane, std::size_t& hint, Vector& derivative) {
   const Eigen::Vector3d n = plane.normal_W.cast<double>();
-  derivative_along(trajectory, calibration, point, n, hint, derivative);
-  const SweepTrajectory::Instant now = trajectory.at(point.t_s, hint);
-  const Eigen::Vector3d lever = now.preintegrated_position_m + now.q_WI * point.x_I_m.cast<double>();
-  return n.dot(trajectory.base_m(point.t_s) + lever - plane.centre_W_m.cast<double>());
-}
-
-/// mapping.md (R25), (R26), of all that is free: of the motion alone it would hold what only motion and calibration
-/// together leave open, as an attitude that a turned mounting makes up for, and (R41) would grow there without bound.
-Registration::Matrix Registration::errors_in_variables_information(const SweepTrajectory& trajectory,
-                                                                   const SweepCalibration& calibration,
-                                                                   const Unknowns& unknowns,
-                                                                   std::span<const SweepPoint> points,
-                                                                   double kernel_m) const {
-  const int n = unknowns.count;
-  Eigen::Matrix<double, kUnknowns, 2 * static_cast<int>(kBlock)> columns;
-  Matrix lower = Matrix::Zero();
-  int count = 0;
-  std::size_t hint = 0;
-  const auto add_up = [&] {
-    lower.topLeftCorner(n, n).selfadjointView<Eigen::Lower>().rankUpdate(columns.topLeftCorner(n, count));
-    count = 0;
-  };
-  for (std::size_t i = 0; i < points.size(); ++i) {
-    const Match& match = matches_[i];
-    if (match.plane.verdict != PlaneVerdict::plane) continue;
-    const double root = std::sqrt(weigh(points[i], match, distances_[i], kernel_m).information);
-    for (int axis = 0; axis < 2; ++axis) {
-      Vector derivative;
-      derivative_along(trajectory, calibration, points[i], match.plane.tilt_W.col(axis).cast<double>(), hint,
-                       derivative);
-      for (int k = 0; k < n; ++k) columns(k, count) = root * derivative[unknowns.free[static_cast<std::size_t>(k)]];
-      ++count;
-    }
-    if (count == columns.cols()) add_up();
-  }
-  add_up();
-  Matrix out = Matrix::Zero();
-  for (int a = 0; a < n; ++a) {
-    for (int b = 0; b < n; ++b)
-      out(unknowns.free[static_cast<std::size_t>(a)], unknowns.free[static_cast<std::size_t>(b)]) =
-          lower(std::max(a, b), std::min(a, b));
-  }
-  return out;
+  const mapping::PointMotion motion(trajectory, calibration, point, hint);
+  motion.along(n, derivative);
+  return n.dot(trajectory.base_m(point.t_s) + motion.lever_m() - plane.centre_W_m.cast<double>());
 }
 
 void Registration::find_match(const VoxelMap& map, std::size_t point, Neighbours& found) {
   Match& match = matches_[point];
   const float rematch2 = static_cast<float>(params_.expert.rematch_m * params_.expert.rematch_m);
-  if (match.searched && (positions_[point] - match.searched_at_W_m).squaredNorm() <= rematch2) return;
+  float radius_m = static_cast<float>(params_.match_distance_m);
+  if (match.searched) {
+    const float moved2 = (positions_[point] - match.searched_at_W_m).squaredNorm();
+    if (moved2 <= rematch2) return;
+    // those that were nearest are still no farther than that, so that none of the new ones is; a hair more for rounding
+    radius_m = std::min(radius_m, kRounding * (match.reach_m + std::sqrt(moved2)));
+  }
   match.searched = true;
   match.searched_at_W_m = positions_[point];
-  map.nearest(positions_[point], params_.neighbours, static_cast<float>(params_.match_distance_m), found);
+  map.nearest(positions_[point], params_.neighbours, radius_m, found);
+  match.reach_m = found.count == params_.neighbours ? std::sqrt(found.distance2_m2[found.count - 1])
+                                                    : std::numeric_limits<float>::infinity();
   match.plane = fit_plane(map, found, params_.expert.plane);
   if (match.plane.verdict != PlaneVerdict::plane) return;
   float variance = 0.0f;
@@ -183,12 +130,10 @@ void Registration::place(const SweepTrajectory& trajectory, std::span<const Swee
   positions_.resize(points.size());
   distances_.resize(points.size());
   run_parallel(params_.parallel_for, block_count(points.size()), [&](std::size_t block) {
-    std::size_t hint = 0;
     Neighbours found;
-    const std::size_t end = std::min(points.size(), (block + 1) * kBlock);
-    for (std::size_t i = block * kBlock; i < end; ++i) {
-      const SweepTrajectory::Instant now = trajectory.at(points[i].t_s, hint);
-      levers_[i] = (now.preintegrated_position_m + now.q_WI * points[i].x_I_m.cast<double>()).cast<float>();
+    const std::size_t begin = block * kBlock, end = std::min(points.size(), (block + 1) * kBlock);
+    trajectory.levers(points.subspan(begin, end - begin), std::span(levers_).subspan(begin, end - begin));
+    for (std::size_t i = begin; i < end; ++i) {
       positions_[i] = (trajectory.base_m(points[i].t_s) + levers_[i].cast<double>()).cast<float>();
       find_match(map, i, found);
       distances_[i] = matches_[i].plane.normal_W.dot(positions_[i] - matches_[i].plane.centre_W_m);
@@ -234,7 +179,7 @@ void Registration::accumulate_block(std::span<const SweepPoint> points, std::siz
       rows.col(count).head<kRigid>() = root * j;
     } else {
       Vector full;
-      residual(trajectory, calibration, points[i], match.plane, hint, full);
+      mapping::PointMotion(trajectory, calibration, points[i], hint).along(n, full);
       for (int k = 0; k < unknowns.count; ++k) {
         rows(k, count) = root * full[unknowns.free[static_cast<std::size_t>(k)]];
       }
@@ -261,33 +206,92 @@ void Registration::accumulate(std::span<const SweepPoint> points, const SweepTra
   sum.H = lower.selfadjointView<Eigen::Lower>();
 }
 
+/// mapping.md (R25), (R26), of all that is free: of the motion alone it would hold what only motion and calibration
+/// together leave open, as an attitude that a turned mounting makes up for, and (R41) would grow there without bound.
+struct Registration::NoiseOfNormals {
+  const Unknowns& unknowns;
+  Eigen::Matrix<double, kUnknowns, 2 * static_cast<int>(kBlock)> columns;
+  int count = 0;
+  Matrix lower = Matrix::Zero();
+
+  explicit NoiseOfNormals(const Unknowns& of) : unknowns(of) {}
+
+  void add(const mapping::PointMotion& motion, const PlaneFit& plane, double root) {
+    for (int axis = 0; axis < 2; ++axis) {
+      Vector derivative;
+      motion.along(plane.tilt_W.col(axis).cast<double>(), derivative);
+      for (int k = 0; k < unknowns.count; ++k)
+        columns(k, count) = root * derivative[unknowns.free[static_cast<std::size_t>(k)]];
+      ++count;
+    }
+    if (count == columns.cols()) sum_up();
+  }
+
+  void sum_up() {
+    const int n = unknowns.count;
+    lower.topLeftCorner(n, n).selfadjointView<Eigen::Lower>().rankUpdate(columns.topLeftCorner(n, count));
+    count = 0;
+  }
+
+  Matrix information() {
+    sum_up();
+    Matrix out = Matrix::Zero();
+    for (int a = 0; a < unknowns.count; ++a) {
+      for (int b = 0; b < unknowns.count; ++b)
+        out(unknowns.free[static_cast<std::size_t>(a)], unknowns.free[static_cast<std::size_t>(b)]) =
+            lower(std::max(a, b), std::min(a, b));
+    }
+    return out;
+  }
+};
+
 /// mapping.md (R23).
-Registration::Matrix Registration::score_covariance(std::span<const SweepPoint> points,
-                                                    const SweepTrajectory& trajectory,
-                                                    const SweepCalibration& calibration, const Unknowns& unknowns,
-                                                    double kernel_m) {
+struct Registration::Pulls {
+  SpatialHash& cluster_of;
+  std::vector<Vector>& pulls;
+  float cubes_per_m;
+
+  void add(const mapping::PointMotion& motion, const PlaneFit& plane, const Eigen::Vector3f& position_W_m,
+           double weighted_m) {
+    const Eigen::Vector3f cube = (position_W_m * cubes_per_m).array().floor();
+    if (!(cube.cwiseAbs().maxCoeff() < static_cast<float>(SpatialHash::kLimit - 2))) return;
+    const std::uint32_t cluster =
+        cluster_of.insert(SpatialHash::key(cube.cast<int>()), static_cast<std::uint32_t>(pulls.size()));
+    if (cluster == pulls.size()) pulls.emplace_back(Vector::Zero());
+    Vector derivative;
+    motion.along(plane.normal_W.cast<double>(), derivative);
+    pulls[cluster] += weighted_m * derivative;
+  }
+
+  Matrix covariance(const Unknowns& unknowns) const {
+    Matrix lower = Matrix::Zero();
+    for (const Vector& pull : pulls) lower.selfadjointView<Eigen::Lower>().rankUpdate(pull);
+    Matrix out = lower.selfadjointView<Eigen::Lower>();
+    unknowns.cut_held(out);
+    return out;
+  }
+};
+
+/// One look at each match where the result has put its point.
+void Registration::describe_errors(std::span<const SweepPoint> points, const SweepTrajectory& trajectory,
+                                   const SweepCalibration& calibration, const Unknowns& unknowns, double kernel_m,
+                                   Result& result) {
   cluster_of_.clear();
   pulls_.clear();
-  const float cubes_per_m = static_cast<float>(1.0 / params_.expert.cluster_m);
+  NoiseOfNormals noise(unknowns);
+  Pulls pulls{cluster_of_, pulls_, static_cast<float>(1.0 / params_.expert.cluster_m)};
   std::size_t hint = 0;
   for (std::size_t i = 0; i < points.size(); ++i) {
     const Match& match = matches_[i];
     if (match.plane.verdict != PlaneVerdict::plane) continue;
-    const Eigen::Vector3f cube = (positions_[i] * cubes_per_m).array().floor();
-    if (!(cube.cwiseAbs().maxCoeff() < static_cast<float>(SpatialHash::kLimit - 2))) continue;
-    const std::uint32_t cluster =
-        cluster_of_.insert(SpatialHash::key(cube.cast<int>()), static_cast<std::uint32_t>(pulls_.size()));
-    if (cluster == pulls_.size()) pulls_.emplace_back(Vector::Zero());
-    Vector derivative;
-    residual(trajectory, calibration, points[i], match.plane, hint, derivative);
     const double r = distances_[i];
-    pulls_[cluster] += (weigh(points[i], match, r, kernel_m).information * r) * derivative;
+    const double information = weigh(points[i], match, r, kernel_m).information;
+    const mapping::PointMotion motion(trajectory, calibration, points[i], hint);
+    noise.add(motion, match.plane, std::sqrt(information));
+    pulls.add(motion, match.plane, positions_[i], information * r);
   }
-  Matrix lower = Matrix::Zero();
-  for (const Vector& pull : pulls_) lower.selfadjointView<Eigen::Lower>().rankUpdate(pull);
-  Matrix out = lower.selfadjointView<Eigen::Lower>();
-  unknowns.cut_held(out);
-  return out;
+  result.errors_in_variables_information = noise.information();
+  result.score_covariance = pulls.covariance(unknowns);
 }
 
 }  // namespace tumble

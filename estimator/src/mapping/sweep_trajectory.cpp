@@ -3,9 +3,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <utility>
 
 #include "tumble/common/so3.hpp"
+#include "turn_series.hpp"
 
 namespace tumble {
 
@@ -44,21 +44,14 @@ Eigen::Matrix<double, SweepTrajectory::kKnots, 1> knot_weights(double share) {
   return weights;
 }
 
-// Beyond it the series below would need more terms.
-constexpr double kSeriesAngle_rad = 1.0;
-// ratios of successive terms of cos and of sin(x) / x, last first
-constexpr std::pair<double, double> kTurnSeries[] = {
-    {1.0 / 182, 1.0 / 210}, {1.0 / 132, 1.0 / 156}, {1.0 / 90, 1.0 / 110}, {1.0 / 56, 1.0 / 72},
-    {1.0 / 30, 1.0 / 42},   {1.0 / 12, 1.0 / 20},   {1.0 / 2, 1.0 / 6}};
-
 /// so3::exp(rate_rad_s * s) by its series, exact to rounding: each point of a sweep asks for it, at the small angles
 /// that a body turns by within a sample.
 Eigen::Quaterniond turned_by(const Eigen::Vector3d& rate_rad_s, double s) {
   const double angle2 = s * s * rate_rad_s.squaredNorm();
-  if (!(angle2 <= kSeriesAngle_rad * kSeriesAngle_rad)) return so3::exp(rate_rad_s * s);
+  if (!(angle2 <= turn_series::kAngle2_rad2)) return so3::exp(rate_rad_s * s);
   const double h = 0.25 * angle2;  // half the angle, squared
   double cosine = 1.0, sinc = 1.0;
-  for (const auto& [of_cosine, of_sinc] : kTurnSeries) {
+  for (const auto& [of_cosine, of_sinc] : turn_series::kRatios) {
     cosine = 1.0 - (h * of_cosine) * cosine;
     sinc = 1.0 - (h * of_sinc) * sinc;
   }
@@ -97,7 +90,7 @@ Status SweepTrajectory::build(const MotionState& start, std::span<const MotionSa
   Interval next{};
   next.q_WI = start.q_WI;
   next.preintegrated_v = next.preintegrated_p = next.w_I = next.a_W = next.excess_share = Eigen::Vector3d::Zero();
-  next.excess_attitude = next.excess_v = next.excess_p = ByExcess::Zero();
+  next.excess_attitude = next.excess_v = next.excess_p = next.excess_a = ByExcess::Zero();
   for (const MotionSample& sample : samples) {
     const TimeNs from = std::max(sample.from_ns, start.time_ns);
     const TimeNs to = std::min(sample.time_ns, end_ns);
@@ -121,6 +114,7 @@ Status SweepTrajectory::build(const MotionState& start, std::span<const MotionSa
     next.preintegrated_v = now.preintegrated_v + now.a_W * dt;
     next.preintegrated_p = now.preintegrated_p + now.preintegrated_v * dt + now.a_W * (0.5 * dt * dt);
     if (clipped_axes_ == 0) continue;
+    now.excess_a = -so3::hat(now.a_W) * now.excess_attitude;
     next.excess_attitude = now.excess_attitude + gained_by_excess(now, dt);
     // the force turns with the mean attitude error of the interval, mapping.md (R11)
     const ByExcess turn = -so3::hat(now.a_W) * (0.5 * (now.excess_attitude + next.excess_attitude));
@@ -147,12 +141,15 @@ SweepTrajectory::Instant SweepTrajectory::at(double t_s, std::size_t& hint) cons
   return {now.q_WI * turned_by(now.w_I, s), now.preintegrated_p + s * now.preintegrated_v + (0.5 * s * s) * now.a_W};
 }
 
-Eigen::Vector3d SweepTrajectory::velocity_m_s(double t_s, const Eigen::Vector3d& x_I_m, std::size_t& hint) const {
+SweepTrajectory::Instant SweepTrajectory::at(double t_s, const Eigen::Vector3d& x_I_m, std::size_t& hint,
+                                             Eigen::Vector3d& velocity_m_s) const {
   const double t = std::clamp(t_s, -kBeyond_s, duration_s_ + kBeyond_s);
   const Interval& now = interval_at(t, hint);
   const double s = t - now.start_s;
-  return start_.v_WI_m_s + t * gravity_W_m_s2_ + now.preintegrated_v + s * now.a_W +
-         now.q_WI * (turned_by(now.w_I, s) * now.w_I.cross(x_I_m));
+  const Eigen::Quaterniond turned = turned_by(now.w_I, s);
+  velocity_m_s = start_.v_WI_m_s + t * gravity_W_m_s2_ + now.preintegrated_v + s * now.a_W +
+                 now.q_WI * (turned * now.w_I.cross(x_I_m));
+  return {now.q_WI * turned, now.preintegrated_p + s * now.preintegrated_v + (0.5 * s * s) * now.a_W};
 }
 
 /// Attitude that the excess adds up to `s` seconds into an interval, per unit of each knot's axes: mapping.md (R10).
@@ -170,6 +167,8 @@ SweepTrajectory::ExcessDerivative SweepTrajectory::excess_derivative(double t_s,
   const double t = std::clamp(t_s, 0.0, duration_s_);
   const Interval& now = interval_at(t, hint);
   const double s = t - now.start_s;
+  if (now.excess_share.isZero(0.0))
+    return {now.excess_attitude, now.excess_p + s * now.excess_v + now.excess_a * (0.5 * s * s)};
   const ByExcess gained = gained_by_excess(now, s);
   const ByExcess turn = -so3::hat(now.a_W) * (now.excess_attitude + 0.5 * gained);
   return {now.excess_attitude + gained, now.excess_p + s * now.excess_v + turn * (0.5 * s * s)};

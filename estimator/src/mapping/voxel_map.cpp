@@ -39,6 +39,16 @@ void slab_distances(float fraction, float voxel_m, int reach, float* distance2) 
   }
 }
 
+/// Of sixteen, four at a time: without a branch for each.
+template <int Count>
+inline float least_of(const float (&values)[Count]) {
+  float least[4] = {values[0], values[1], values[2], values[3]};
+  for (int i = 4; i < Count; i += 4) {
+    for (int j = 0; j < 4; ++j) least[j] = values[i + j] < least[j] ? values[i + j] : least[j];
+  }
+  return std::min(std::min(least[0], least[1]), std::min(least[2], least[3]));
+}
+
 /// Offsets 0, 1, -1, 2, -2 ...: near cells first, so that the search radius shrinks early.
 inline int alternating(int i) {
   return (i & 1) ? (i + 1) / 2 : -i / 2;
@@ -195,6 +205,7 @@ void VoxelMap::nearest(const Eigen::Vector3f& query, int k, float radius_m, Neig
             const float ex = chunk.x[i] - query.x(), ey = chunk.y[i] - query.y(), ez = chunk.z[i] - query.z();
             distance2[i] = ex * ex + ey * ey + ez * ez;
           }
+          if (least_of(distance2) > worst) continue;
           for (std::uint32_t i = 0; i < chunk.count; ++i) {
             if (distance2[i] > worst || (found.count == k && distance2[i] == worst)) continue;
             keep(distance2[i], c * kChunk + i, k, found);

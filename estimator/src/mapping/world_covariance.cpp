@@ -51,7 +51,7 @@ void WorldCovariance::add_drawing(double drawn_share, const SweepTrajectory& tra
   const double middle_s = 0.5 * trajectory.duration_s();
   const Registration::Matrix F = unknowns_at(trajectory, middle_s);
   map_ += drawn_share * drawn_share *
-          less_mounting(F * errors * F.transpose(), pose_by_mounting(trajectory.state(middle_s).q_WI, p_IL_m));
+          less_mounting(pose_and_mounting(F, errors), pose_by_mounting(trajectory.state(middle_s).q_WI, p_IL_m));
 }
 
 }  // namespace tumble::mapping

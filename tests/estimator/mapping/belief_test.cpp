@@ -4,6 +4,7 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <vector>
 
 #include "estimator/src/mapping/prediction.hpp"
@@ -51,6 +52,21 @@ Belief uncertain() {
 Belief carried(const Belief& belief, const std::vector<MotionSample>& samples, TimeNs end_ns) {
   const SweepTrajectory trajectory = along(belief, samples, end_ns);
   return at_end(belief, trajectory, unknowns_at(trajectory, trajectory.duration_s()), end_ns);
+}
+
+/// Bit for bit, of a covariance without a zero in it.
+TEST(Unknowns, PoseAndMountingAreThoseOfTheWholeProduct) {
+  const std::vector<MotionSample> samples = pushed();
+  const Matrix F = unknowns_at(along(uncertain(), samples, 500'000'000), 0.37);
+  Matrix root;
+  for (int i = 0; i < root.size(); ++i) root(i) = std::sin(1.0 + 0.7 * i);
+  const Matrix errors = symmetric((root * root.transpose()).eval());
+  const Matrix whole = F * errors * F.transpose(), part = pose_and_mounting(F, errors);
+  EXPECT_EQ(u::block(part, u::pose), u::block(whole, u::pose));
+  EXPECT_EQ(u::block(part, u::pose, u::mounting), u::block(whole, u::pose, u::mounting));
+  EXPECT_EQ(u::block(part, u::mounting, u::pose), u::block(whole, u::mounting, u::pose));
+  EXPECT_EQ(u::block(part, u::mounting), u::block(whole, u::mounting));
+  EXPECT_NE(u::block(part, u::pose), u::block(errors, u::pose));  // F did something
 }
 
 TEST(Unknowns, BlocksCoverEachUnknownOnce) {

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <vector>
 
 #include "tests/estimator/mapping/synthetic_room.hpp"
 #include "tumble/common/so3.hpp"
@@ -47,6 +48,36 @@ TEST(SweepTrajectory, FollowsTheTrueMotionAtAnyInstant) {
     EXPECT_LT(so3::log(state.q_WI * motion.q(at).conjugate()).norm(), 5e-5) << "t " << t;
     EXPECT_LT((state.p_WI_m - motion.p_m(at)).norm(), 1e-4) << "t " << t;
     EXPECT_LT((state.v_WI_m_s - motion.v_m_s(at)).norm(), 1e-3) << "t " << t;
+  }
+}
+
+/// Bit for bit: of points in any order, beyond both ends, and at angles beyond the series.
+TEST(SweepTrajectory, SaysTheSameOfManyPointsAsOfEach) {
+  for (const double spin_rad_s : {15.0, 300.0}) {
+    test::Motion motion;
+    motion.spin_rad_s = spin_rad_s;
+    const std::vector<MotionSample> samples = test::motion_samples(test::make_imu(motion, 1.3, 100.0));
+    SweepTrajectory trajectory;
+    ASSERT_TRUE(trajectory.build(true_state(motion, 1'003'000'000), samples, 1'102'000'000, kGravity).ok());
+    std::vector<SweepPoint> points;
+    for (std::uint64_t i = 0; i < 3000; ++i) {
+      SweepPoint& point = points.emplace_back();
+      const auto share = static_cast<float>(test::uniform(4 * i));
+      // in time order first, then anyhow
+      point.t_s = i < 2000 ? 0.16f * static_cast<float>(i) / 2000.0f - 0.03f : 0.16f * share - 0.03f;
+      point.x_I_m = 40.0f * Eigen::Vector3f(static_cast<float>(test::uniform(4 * i + 1)) - 0.5f,
+                                            static_cast<float>(test::uniform(4 * i + 2)) - 0.5f,
+                                            static_cast<float>(test::uniform(4 * i + 3)) - 0.5f);
+    }
+    std::vector<Eigen::Vector3f> levers;
+    compute_levers(trajectory, points, levers);
+    ASSERT_EQ(levers.size(), points.size());
+    std::size_t hint = 0;
+    for (std::size_t i = 0; i < points.size(); ++i) {
+      const SweepTrajectory::Instant now = trajectory.at(points[i].t_s, hint);
+      const Eigen::Vector3d lever = now.preintegrated_position_m + now.q_WI * points[i].x_I_m.cast<double>();
+      ASSERT_EQ(levers[i], lever.cast<float>()) << "spin " << spin_rad_s << ", point " << i;
+    }
   }
 }
 

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <map>
 #include <vector>
 
 #include "tests/estimator/mapping/synthetic_room.hpp"
@@ -74,6 +75,43 @@ INSTANTIATE_TEST_SUITE_P(Densities, NeighbourSearch,
                                          Density{5000, 2.0f, 0.5, 1.0f}, Density{2000, 6.0f, 1.0, 1.0f},
                                          Density{2000, 6.0f, 0.3, 2.0f}),
                          [](const auto& test) { return "n" + std::to_string(test.index); });
+
+/// What the registration relies on where it searches anew: a radius that holds all of them changes none of them.
+TEST(VoxelMap, FindsTheSameWithinANarrowerRadiusThatHoldsThem) {
+  VoxelMap map({0.5, 0.0});
+  for (std::uint64_t i = 0; i < 4000; ++i) ASSERT_TRUE(map.insert(random_point(i, 5.0f), 0.02f, 0));
+  Neighbours before, wide, narrow;
+  for (std::uint64_t q = 0; q < 500; ++q) {
+    const Eigen::Vector3f from = random_point(2'000'000 + q, 4.0f);
+    const Eigen::Vector3f to = from + random_point(3'000'000 + q, 0.4f);
+    map.nearest(from, 12, 1.0f, before);
+    ASSERT_EQ(before.count, 12);
+    map.nearest(to, 12, 1.0f, wide);
+    const float reach_m = 1.0001f * (std::sqrt(before.distance2_m2[11]) + (to - from).norm());
+    map.nearest(to, 12, std::min(reach_m, 1.0f), narrow);
+    ASSERT_EQ(narrow.count, wide.count);
+    for (int i = 0; i < wide.count; ++i) ASSERT_EQ(narrow.index[i], wide.index[i]) << "query " << q;
+  }
+}
+
+TEST(SpatialHash, HoldsWhatAMapHolds) {
+  SpatialHash hash(16);
+  std::map<std::uint64_t, std::uint32_t> expected;
+  for (std::uint32_t i = 0; i < 20'000; ++i) {
+    // a crowded surface about the origin, so that keys of either sign meet again and share blocks
+    const Eigen::Vector3i cube = random_point(i, 120.0f).cast<int>().cwiseProduct(Eigen::Vector3i(1, 1, 0)) +
+                                 Eigen::Vector3i(0, 0, static_cast<int>(i % 3) - 1);
+    const std::uint64_t key = SpatialHash::key(cube);
+    ASSERT_EQ(hash.insert(key, i), expected.emplace(key, i).first->second);
+  }
+  ASSERT_EQ(hash.size(), expected.size());
+  EXPECT_LT(expected.size(), 20'000u);
+  for (const auto& [key, value] : expected) ASSERT_EQ(hash.find(key), value);
+  EXPECT_EQ(hash.find(SpatialHash::key({500, 0, 0})), SpatialHash::kAbsent);
+  const std::vector<std::uint64_t> keys = hash.keys();
+  EXPECT_TRUE(std::equal(keys.begin(), keys.end(), expected.begin(), expected.end(),
+                         [](std::uint64_t key, const auto& entry) { return key == entry.first; }));
+}
 
 TEST(VoxelMap, KeepsOnePointPerCubeOfTheSpacing) {
   VoxelMap map({0.5, 0.1});

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <limits>
 #include <span>
 #include <vector>
 
@@ -53,6 +54,7 @@ class Registration {
     PlaneFit plane;
     Eigen::Vector3f searched_at_W_m;
     float map_variance_m2 = 0.0f;
+    float reach_m = std::numeric_limits<float>::infinity();  // to the farthest neighbour, where there are all
     bool searched = false;
   };
   /// Over the matches of one iteration, of the free unknowns alone.
@@ -74,14 +76,10 @@ class Registration {
   void accumulate_block(std::span<const SweepPoint> points, std::size_t block, const SweepTrajectory& trajectory,
                         const SweepCalibration& calibration, const Unknowns& unknowns, double kernel_m, Sums& sum);
 
-  static void derivative_along(const SweepTrajectory& trajectory, const SweepCalibration& calibration,
-                               const SweepPoint& point, const Eigen::Vector3d& direction_W, std::size_t& hint,
-                               Vector& derivative);
-  Matrix errors_in_variables_information(const SweepTrajectory& trajectory, const SweepCalibration& calibration,
-                                         const Unknowns& unknowns, std::span<const SweepPoint> points,
-                                         double kernel_m) const;
-  Matrix score_covariance(std::span<const SweepPoint> points, const SweepTrajectory& trajectory,
-                          const SweepCalibration& calibration, const Unknowns& unknowns, double kernel_m);
+  struct NoiseOfNormals;
+  struct Pulls;
+  void describe_errors(std::span<const SweepPoint> points, const SweepTrajectory& trajectory,
+                       const SweepCalibration& calibration, const Unknowns& unknowns, double kernel_m, Result& result);
   struct Weight {
     double variance_m2, robust, information;
   };

@@ -15,6 +15,8 @@
 
 namespace tumble {
 
+struct SweepPoint;
+
 /// One window of an IMU with the angular velocity of a rate method: both are means over (from_ns, time_ns].
 struct MotionSample {
   TimeNs from_ns = 0;
@@ -90,6 +92,8 @@ class SweepTrajectory {
   /// calls in time order and may hold anything in [0, intervals()); any order is right.
   static constexpr double kBeyond_s = 0.02;
   Instant at(double t_s, std::size_t& hint) const;
+  /// S(t) + R(t) x of each point: what at() says, bit for bit, of several at a time.
+  void levers(std::span<const SweepPoint> points, std::span<Eigen::Vector3f> levers_W_m) const;
   ExcessDerivative excess_derivative(double t_s, std::size_t& hint) const;
   std::size_t intervals() const { return intervals_.size(); }
   /// End of interval i in seconds after the start.
@@ -100,8 +104,8 @@ class SweepTrajectory {
     return start_.p_WI_m + t_s * start_.v_WI_m_s + (0.5 * t_s * t_s) * gravity_W_m_s2_;
   }
 
-  /// Velocity in W of a point that is fixed at x_I in the IMU's axes.
-  Eigen::Vector3d velocity_m_s(double t_s, const Eigen::Vector3d& x_I_m, std::size_t& hint) const;
+  /// The same as at(), and the velocity in W of a point that is fixed at x_I in the IMU's axes.
+  Instant at(double t_s, const Eigen::Vector3d& x_I_m, std::size_t& hint, Eigen::Vector3d& velocity_m_s) const;
 
   /// Full state at t_s within the stretch, its covariance propagated from the start's without noise added.
   MotionState state(double t_s) const;
@@ -115,8 +119,7 @@ class SweepTrajectory {
   };
   Transition transition(double t_s) const;
 
-  /// Magnitude of the saturation deficit's share in the first and the last interval, 0 on axes that were not clipped
-  /// there.
+  /// Magnitude of the saturation deficit's share in the first and the last interval, 0 on axes not clipped there.
   Eigen::Vector3d excess_share_at_start() const { return intervals_.front().excess_share.cwiseAbs(); }
   Eigen::Vector3d excess_share_at_end() const { return intervals_.back().excess_share.cwiseAbs(); }
 
@@ -131,8 +134,8 @@ class SweepTrajectory {
     Eigen::Vector3d preintegrated_v, preintegrated_p;  // integrals of the specific force up to start_s
     Eigen::Vector3d excess_share;                      // s_j where axis j is clipped, 0 elsewhere
     Eigen::Matrix<double, kKnots, 1> knot_weight =
-        Eigen::Matrix<double, kKnots, 1>::Zero();  // of each knot's excess in this interval
-    ByExcess excess_attitude, excess_v, excess_p;  // derivatives at start_s
+        Eigen::Matrix<double, kKnots, 1>::Zero();            // of each knot's excess in this interval
+    ByExcess excess_attitude, excess_v, excess_p, excess_a;  // derivatives at start_s; of the force by the attitude
   };
   const Interval& interval_at(double t_s, std::size_t& hint) const;
   static ByExcess gained_by_excess(const Interval& now, double s);

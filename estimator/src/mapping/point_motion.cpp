@@ -1,0 +1,33 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "point_motion.hpp"
+
+namespace tumble::mapping {
+
+PointMotion::PointMotion(const SweepTrajectory& trajectory, const SweepCalibration& calibration,
+                         const SweepPoint& point, std::size_t& hint)
+    : t_s_(point.t_s), clipped_(trajectory.clipped_axes() != 0) {
+  const Eigen::Vector3d x_I = point.x_I_m.cast<double>();
+  now_ = trajectory.at(t_s_, x_I, hint, velocity_m_s_);
+  turned_ = now_.q_WI * x_I;
+  lever_ = now_.preintegrated_position_m + turned_;
+  from_lidar_I_ = x_I - calibration.T_IL.translation();
+  if (clipped_) by_excess_ = trajectory.excess_derivative(t_s_, hint);
+}
+
+void PointMotion::along(const Eigen::Vector3d& n, SweepUnknowns::Vector& derivative) const {
+  const Eigen::Vector3d n_I = now_.q_WI.conjugate() * n;
+  derivative.segment<3>(0) = n;
+  derivative.segment<3>(3) = lever_.cross(n);
+  derivative.segment<3>(6) = t_s_ * n;
+  auto of_excess = derivative.segment<SweepTrajectory::kExcess>(SweepUnknowns::kExcess);
+  if (clipped_) {
+    of_excess =
+        by_excess_.preintegrated_position_m_s.transpose() * n + by_excess_.attitude_s.transpose() * turned_.cross(n);
+  } else {
+    of_excess.setZero();
+  }
+  derivative.tail<SweepCalibration::kErrors>() << from_lidar_I_.cross(n_I), n_I, n.dot(velocity_m_s_),
+      (0.5 * t_s_ * t_s_) * n;
+}
+
+}  // namespace tumble::mapping

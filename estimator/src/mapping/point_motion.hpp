@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <Eigen/Core>
+#include <cstddef>
+
+#include "tumble/mapping/calibration.hpp"
+#include "tumble/mapping/deskew.hpp"
+#include "tumble/mapping/detail/sweep_unknowns.hpp"
+#include "tumble/mapping/sweep_trajectory.hpp"
+
+namespace tumble::mapping {
+
+/// What the unknowns of a sweep move one of its points by; asked for one direction after the other.
+class PointMotion {
+ public:
+  PointMotion(const SweepTrajectory& trajectory, const SweepCalibration& calibration, const SweepPoint& point,
+              std::size_t& hint);
+
+  /// Derivative of the point's position along a direction of the world by all unknowns: mapping.md (R15), which is
+  /// linear in the direction.
+  void along(const Eigen::Vector3d& direction_W, SweepUnknowns::Vector& derivative) const;
+
+  /// u of SweepTrajectory::base_m, in W.
+  const Eigen::Vector3d& lever_m() const { return lever_; }
+
+ private:
+  double t_s_;
+  bool clipped_;
+  SweepTrajectory::Instant now_;
+  Eigen::Vector3d turned_, lever_, from_lidar_I_, velocity_m_s_;
+  SweepTrajectory::ExcessDerivative by_excess_;  // where an axis clips
+};
+
+}  // namespace tumble::mapping
