@@ -152,7 +152,7 @@ void report_end(const CalibrationVerdict& calibration, const Localisation& local
   const double share = moving > 0 ? static_cast<double>(held) / static_cast<double>(moving) : 1.0;
   estimate.health["held_share"] = share;
   estimate.health["sigma_largest_m"] = localisation.largest_sigma_m();
-  estimate.health["innovation_largest"] = localisation.largest_innovation();
+  estimate.health["innovation_second"] = localisation.second_innovation();
   const bool elsewhere = !calibration.converged && calibration.moved > kBelieved;
   estimate.health["localised"] = localisation.verdict().ok() && !elsewhere ? 1.0 : 0.0;
 }

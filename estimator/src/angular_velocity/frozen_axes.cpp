@@ -14,7 +14,8 @@ constexpr double kExtremeShare = 0.5;  // and from which on where it is the high
 constexpr double kQuanta = 50.0;       // of the axis, by which another moves: a part of 2 % in this axis is one quantum
 constexpr double kTurning_rad_s = 0.3;  // by which another axis of a gyro changes, for the body to move
 constexpr double kPushed_m_s2 = 1.0;    // and of an accelerometer
-constexpr double kChanging = 0.5;       // of the samples of a hold, in which another axis changes
+constexpr double kChanging =
+    0.2;  // of the samples of a hold, in which another axis changes: read at a fifth of their rate
 // A body that rests: no other axis turns, and forces stay where they were.
 constexpr double kStill_rad_s = 0.2, kStill_m_s2 = 0.5;
 // What a sound axis reads of one at most: its bias, gravity.
@@ -112,8 +113,8 @@ void FrozenAxes::hold(std::size_t channel, const std::array<double, 6>& now, dou
   const double most = is_gyro(channel) ? kRestMost_rad_s : kRestMost_m_s2;
   // nothing turns for so long beyond a rail and about the very axis; how often the others are read tells nothing there
   const bool at_its_rail = at_rail(channel, axis);
-  const bool of_no_motion = axis.still_s >= params_.rail_still_s ||
-                            (axis.held_s >= params_.rail_held_s && others_move(channel, 0.0, axis));
+  const bool of_no_motion =
+      axis.still_s >= params_.rail_still_s || (axis.held_s >= params_.rail_held_s && others_move(channel, 0.0, axis));
   const bool froze = at_its_rail ? of_no_motion && std::abs(axis.reading) >= most
                                  : axis.moved_s >= params_.frozen_s &&
                                        axis.held_s >= std::max(params_.frozen_s, kLonger * axis.longest_s) &&

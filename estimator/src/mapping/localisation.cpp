@@ -8,15 +8,15 @@ namespace tumble {
 
 namespace {
 
-// Of chi-square of the motion's nine unknowns: exceeded as rarely as five deviations of a normal one, once in 1.7
-// million. Per root of nine 2.27.
-constexpr double kUnknowns = 9.0, kInnovationMax = 46.2;
+// As a result agrees with its prior: chi-square of the motion's nine unknowns exceeds it once in twenty.
+constexpr double kUnknowns = 9.0, kAgrees = 16.9;
 
 }  // namespace
 
 void Localisation::add(const SweepReport& sweep) {
   const double variance_m2 = sweep.pose.covariance.topLeftCorner<3, 3>().trace();
   largest_sigma_m_ = std::max(largest_sigma_m_, std::sqrt(variance_m2));
+  second_innovation_ = std::max(second_innovation_, std::min(largest_innovation_, sweep.innovation));
   largest_innovation_ = std::max(largest_innovation_, sweep.innovation);
 }
 
@@ -24,9 +24,9 @@ void Localisation::add(const SweepReport& sweep) {
 Status Localisation::verdict() const {
   if (largest_sigma_m_ > matched_m_)
     return {Trouble::out_of_range, "deviation of a sweep's position", largest_sigma_m_, matched_m_};
-  const double innovation_max = std::sqrt(kInnovationMax / kUnknowns);
-  if (largest_innovation_ > innovation_max)
-    return {Trouble::out_of_range, "innovation of a sweep", largest_innovation_, innovation_max};
+  const double innovation_max = std::sqrt(kAgrees / kUnknowns);
+  if (second_innovation_ > innovation_max)
+    return {Trouble::out_of_range, "innovation of two sweeps", second_innovation_, innovation_max};
   return {};
 }
 

@@ -111,7 +111,7 @@ TEST(FrozenAxes, NamesAnAxisThatStandsAtItsRailOnABodyAtRest) {
 
 // A pendulum never lies still: what its axis goes on to read is its rail, and no swing lasts so long.
 TEST(FrozenAxes, NamesAnAxisThatStandsAtItsRailOnABodyThatNeverRests) {
-  const auto swinging = [](double railed_s) {
+  const auto swinging = [](double railed_s, double reading = kRail_rad_s) {
     std::mt19937 random(2);
     std::normal_distribution<double> noise;
     std::vector<ImuSample> out;
@@ -121,7 +121,7 @@ TEST(FrozenAxes, NamesAnAxisThatStandsAtItsRailOnABodyThatNeverRests) {
       sample.time_ns = static_cast<TimeNs>(k) * 10'000'000;
       sample.angular_velocity_rad_s = {2.0 * std::sin(4.0 * read_t), std::cos(3.0 * read_t), 6.0 * std::sin(2.0 * t)};
       sample.specific_force_m_s2 = {3.0 * std::sin(4.0 * t), 0.1 * noise(random), 9.81 + 0.1 * noise(random)};
-      if (t > 4.0 && t < 4.0 + railed_s) sample.angular_velocity_rad_s.z() = kRail_rad_s;
+      if (t > 4.0 && t < 4.0 + railed_s) sample.angular_velocity_rad_s.z() = reading;
       out.push_back(sample);
     }
     return clipped(std::move(out));
@@ -131,6 +131,8 @@ TEST(FrozenAxes, NamesAnAxisThatStandsAtItsRailOnABodyThatNeverRests) {
   const Found found = watch(swinging(20.0), stated());
   EXPECT_NE(found.first.find("gyro z"), std::string::npos) << found.first;
   EXPECT_LT(found.told_ns, 10'000'000'000) << "told while it lasts";
+  EXPECT_NE(watch(swinging(20.0, 1.7), stated()).first.find("gyro z"), std::string::npos)
+      << "beside axes that are held";
 }
 
 // The element meets its rail and is flagged, while what is read out stays at another value.

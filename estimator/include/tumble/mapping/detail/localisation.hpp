@@ -10,7 +10,8 @@ namespace tumble {
 /// section 11. Two things speak against it, once for good:
 ///  - the deviation of a position grew beyond the distance at which surfaces are matched. From there on a sweep fits
 ///    whichever surface is nearest, and a place that is found again is one of many;
-///  - surfaces moved a sweep further than its prior allows, by five deviations: one of the two is not what it claims.
+///  - surfaces moved two sweeps or more further than their priors allow. One alone may be a rail that hid more than the
+///    rates knew, which is what surfaces are for; an IMU or a lidar that is not what it claims does so again.
 /// How many sweeps were held, and in which directions, is no evidence: it is in the deviation. Not seen: a map of
 /// another scale, which SweepScale tells, and clocks or mountings that are off by what the calibration explains.
 class Localisation {
@@ -22,13 +23,14 @@ class Localisation {
   void add(const SweepReport& sweep);
 
   double largest_sigma_m() const { return largest_sigma_m_; }
-  double largest_innovation() const { return largest_innovation_; }  ///< of SweepReport::innovation
+  /// The largest but one of SweepReport::innovation.
+  double second_innovation() const { return second_innovation_; }
   /// `out_of_range` with what was seen and the bound that it broke.
   Status verdict() const;
 
  private:
   double matched_m_;
-  double largest_sigma_m_ = 0.0, largest_innovation_ = 0.0;
+  double largest_sigma_m_ = 0.0, largest_innovation_ = 0.0, second_innovation_ = 0.0;
 };
 
 }  // namespace tumble
