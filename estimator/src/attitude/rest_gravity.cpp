@@ -11,7 +11,7 @@ namespace tumble {
 
 namespace {
 
-constexpr double kRested_s = 1.0;  // in all, for its size to be asked
+constexpr double kRested_s = 1.0;                     // in all, for its size to be asked
 constexpr double kAnywhere_rad = 1.4142135623730951;  // between two directions drawn at random, root of the mean square
 
 }  // namespace

@@ -21,9 +21,9 @@ namespace tumble {
 /// A reading at the rail (0.9 of the stated range, flagged by the device, or the highest or lowest of the axis so far
 /// from 0.5 of the range on) may repeat. It has frozen where all other axes of both triads say for `rail_still_s` that
 /// the body rests: one that turns or is pushed so hard does not. On a body that never comes to rest it has frozen where
-/// it repeats the rail for `rail_held_s` while another axis of its triad moves: either that, or the range is not one for
-/// such a spin, and of either nothing is known of the axis. Not told: one on a body that spins about this axis so evenly
-/// that no other one moves.
+/// it repeats the rail for `rail_held_s` while another axis of its triad moves: either that, or the range is not one
+/// for such a spin, and of either nothing is known of the axis. Not told: one on a body that spins about this axis so
+/// evenly that no other one moves.
 class FrozenAxes {
  public:
   struct Params {

@@ -58,10 +58,10 @@ class RestGravity {
     double way_rad = 0.0, variance_rad2 = 0.0;                   ///< likewise
     double least_rad2 = 0.0;                       ///< the variance where no error lasts longer than `correlation_s`
     double stretch_s = 0.0, stretch_rad2_s = 0.0;  ///< of samples in a row that the gyro did not measure
-    double rest_s = 0.0, force_sum_m = 0.0;                      ///< of all rests, and of force by time
-    double miss_rad = 0.0, miss_sigma_rad = 0.0;                 ///< of the worst of the ways between two rests
-    double least_sigma_rad = 0.0;                                ///< of the least known way, by `least_rad2`
-    std::size_t ways = 0;                                        ///< that were compared
+    double rest_s = 0.0, force_sum_m = 0.0;        ///< of all rests, and of force by time
+    double miss_rad = 0.0, miss_sigma_rad = 0.0;   ///< of the worst of the ways between two rests
+    double least_sigma_rad = 0.0;                  ///< of the least known way, by `least_rad2`
+    std::size_t ways = 0;                          ///< that were compared
     TimeNs last_time_ns = 0;
     bool started = false, rests = false;
   };
