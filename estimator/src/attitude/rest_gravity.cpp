@@ -11,8 +11,7 @@ namespace tumble {
 
 namespace {
 
-constexpr double kRested_s = 1.0;                     // in all, for its size to be asked
-constexpr double kAnywhere_rad = 1.4142135623730951;  // between two directions drawn at random, root of the mean square
+constexpr double kRested_s = 1.0;  // in all, for its size to be asked
 
 }  // namespace
 
@@ -44,7 +43,6 @@ void RestGravity::step(const ImuSample& sample, const RateState& rate, State& st
     } else {
       end_stretch(state);
       state.variance_rad2 += dt_s * params_.correlation_s * rate.covariance_rad2_s2.trace();
-      state.least_rad2 += dt_s * params_.correlation_s * rate.covariance_rad2_s2.trace();
     }
     return;
   }
@@ -53,13 +51,12 @@ void RestGravity::step(const ImuSample& sample, const RateState& rate, State& st
   state.force_sum_m += dt_s * sample.specific_force_m_s2.norm();
   state.from = state.rest.mean_force_m_s2().normalized();
   state.turned.setIdentity();
-  state.way_rad = state.variance_rad2 = state.least_rad2 = state.stretch_s = state.stretch_rad2_s = 0.0;
+  state.way_rad = state.variance_rad2 = state.stretch_s = state.stretch_rad2_s = 0.0;
 }
 
 /// What a rail hid of a stretch hangs together as long as the stretch lasts: imu_merge.md (I19).
 void RestGravity::end_stretch(State& state) const {
   state.variance_rad2 += std::max(params_.correlation_s, state.stretch_s) * state.stretch_rad2_s;
-  state.least_rad2 += params_.correlation_s * state.stretch_rad2_s;
   state.stretch_s = state.stretch_rad2_s = 0.0;
 }
 
@@ -71,7 +68,6 @@ void RestGravity::arrive(State& state) const {
   const double miss_rad = (state.turned.conjugate() * state.from - here).norm();
   const double sigma_rad = std::sqrt(state.variance_rad2);
   ++state.ways;
-  state.least_sigma_rad = std::max(state.least_sigma_rad, std::sqrt(state.least_rad2));
   if (miss_rad / allowed_rad(sigma_rad) < state.miss_rad / allowed_rad(state.miss_sigma_rad)) return;
   state.miss_rad = miss_rad;
   state.miss_sigma_rad = sigma_rad;
@@ -101,10 +97,6 @@ Status RestGravity::verdict(const State& state) const {
   if (state.miss_rad > allowed) {
     return {Trouble::out_of_range, "angle by which the rates miss gravity's direction from one rest to the next",
             state.miss_rad, allowed};
-  }
-  if (state.least_sigma_rad > kAnywhere_rad) {
-    return {Trouble::out_of_range, "deviation of gravity's direction at a rest by the rates since the last",
-            state.least_sigma_rad, kAnywhere_rad};
   }
   return {};
 }

@@ -108,14 +108,6 @@ TEST(RestGravity, ErrorsOfAClippedStretchLastAsLongAsIt) {
   EXPECT_TRUE(status.ok()) << status.message();
 }
 
-// Rates that lead gravity there by luck, and state that it may be anywhere.
-TEST(RestGravity, RatesThatSayNothingAreNotBelieved) {
-  const RestGravity gravity({});
-  EXPECT_TRUE(gravity.verdict(after({.rate_sigma_rad_s = 1.0}, kNone)).ok());
-  EXPECT_STREQ(gravity.verdict(after({.rate_sigma_rad_s = 2.0}, kNone)).field,
-               "deviation of gravity's direction at a rest by the rates since the last");
-}
-
 TEST(RestGravity, OfOneRestOrATurnAboutTheVerticalNothingIsSaid) {
   const RestGravity gravity({});
   EXPECT_TRUE(gravity.verdict({}).ok());

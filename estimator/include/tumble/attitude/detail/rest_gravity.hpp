@@ -16,8 +16,7 @@ namespace tumble {
 /// between one rest and the next must turn its direction there into that here, u_1 = R^T u_0, whatever happened in
 /// between, flight, impacts and clipped axes. A gyro of another sense, scale or naming of the axes than it says misses
 /// by any angle, after a tumble of several turns by less than `miss_least_rad` in one of fifty; an accelerometer of
-/// another unit shows in the size. The rates are those of an estimate, whose covariance makes the bound wider; rates by
-/// which gravity may be anywhere are not believed either.
+/// another unit shows in the size. The rates are those of an estimate, whose covariance makes the bound wider.
 ///
 /// The equations are imu_merge.md (I19), (I20). Not seen: a body that comes to rest as it lay (a pendulum), turns about
 /// the vertical, an accelerometer with all three axes flipped, a run with less than two rests.
@@ -56,12 +55,10 @@ class RestGravity {
     Eigen::Vector3d from = Eigen::Vector3d::Zero();  ///< unit, gravity's at the last rest in the sensor's axes; 0: none
     Eigen::Quaterniond turned = Eigen::Quaterniond::Identity();  ///< since then
     double way_rad = 0.0, variance_rad2 = 0.0;                   ///< likewise
-    double least_rad2 = 0.0;                       ///< the variance where no error lasts longer than `correlation_s`
-    double stretch_s = 0.0, stretch_rad2_s = 0.0;  ///< of samples in a row that the gyro did not measure
-    double rest_s = 0.0, force_sum_m = 0.0;        ///< of all rests, and of force by time
-    double miss_rad = 0.0, miss_sigma_rad = 0.0;   ///< of the worst of the ways between two rests
-    double least_sigma_rad = 0.0;                  ///< of the least known way, by `least_rad2`
-    std::size_t ways = 0;                          ///< that were compared
+    double stretch_s = 0.0, stretch_rad2_s = 0.0;                ///< of samples in a row that the gyro did not measure
+    double rest_s = 0.0, force_sum_m = 0.0;                      ///< of all rests, and of force by time
+    double miss_rad = 0.0, miss_sigma_rad = 0.0;                 ///< of the worst of the ways between two rests
+    std::size_t ways = 0;                                        ///< that were compared
     TimeNs last_time_ns = 0;
     bool started = false, rests = false;
   };
