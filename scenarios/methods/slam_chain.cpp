@@ -10,6 +10,7 @@
 #include "scenarios/methods/slam_settings.hpp"
 #include "scenarios/methods/sweep_log.hpp"
 #include "tumble/angular_velocity/clipping_finder.hpp"
+#include "tumble/mapping/detail/localisation.hpp"
 #include "tumble/mapping/detail/sweep_scale.hpp"
 #include "tumble/mapping/lidar_inertial_odometry.hpp"
 #include "tumble/mapping/registration_params.hpp"
@@ -19,14 +20,9 @@ namespace tumble::scenarios {
 
 namespace {
 
-// Of the sweeps in motion, those that the surfaces held in every direction: below it the run did not localise itself.
-constexpr double kLocalisedShare = 0.2;
 constexpr double kRests_m = 0.01, kRests_rad = 0.01;  // from one end of a sweep to the other
-// Of what a tenth of the sweeps exceed: IMU and lidar contradict each other beyond what either says it may be off by.
-// tests/bench/verdicts: 0.09 to 0.38 on good runs, 0.6 and more on wrong ones that still hold to surfaces.
-constexpr double kInnovationMax = 0.5;
-constexpr double kBelieved = 5.0;  // standard deviations that a calibration may move by in one run
-constexpr int kSearches = 3;       // runs more for one that moves further
+constexpr double kBelieved = 5.0;                     // standard deviations that a calibration may move by in one run
+constexpr int kSearches = 3;                          // runs more for one that moves further
 
 LidarInertialOdometry::Params odometry_params(const sim::Sensors& sensors, const SlamStage& stage,
                                               const SlamChain& chain) {
@@ -117,16 +113,15 @@ void run_sweeps(const sim::LidarRecord& lidar, std::span<const ImuSample> sample
 }
 
 /// How far sweeps moved from where the IMU put them, in standard deviations: its median and what a tenth exceeds.
-/// The latter is returned; 0 where no sweep was registered.
-double report_innovations(Estimate& estimate) {
+void report_innovations(Estimate& estimate) {
   std::vector<double> all;
   for (const auto& sweep : estimate.sweeps) {
     if (sweep.innovation > 0.0) all.push_back(sweep.innovation);
   }
-  if (all.empty()) return 0.0;
+  if (all.empty()) return;
   std::sort(all.begin(), all.end());
   estimate.health["innovation_median"] = all[all.size() / 2];
-  return estimate.health["innovation_90"] = all[all.size() * 9 / 10];
+  estimate.health["innovation_90"] = all[all.size() * 9 / 10];
 }
 
 /// A sweep in which the rig stands: a lidar draws rings then, that hold it no worse for being degenerate.
@@ -143,7 +138,7 @@ struct CalibrationVerdict {
 };
 
 /// How sure the chain is of where it ended; a world that does not hold it shows here.
-void report_end(const CalibrationVerdict& calibration, double innovation_90, Estimate& estimate) {
+void report_end(const CalibrationVerdict& calibration, const Localisation& localisation, Estimate& estimate) {
   if (estimate.sweeps.empty()) return;
   const Eigen::Matrix<double, 6, 6>& P = estimate.sweeps.back().pose.covariance;
   estimate.health["end_sigma_m"] = std::sqrt(P.topLeftCorner<3, 3>().trace());
@@ -156,8 +151,10 @@ void report_end(const CalibrationVerdict& calibration, double innovation_90, Est
   }
   const double share = moving > 0 ? static_cast<double>(held) / static_cast<double>(moving) : 1.0;
   estimate.health["held_share"] = share;
-  const bool contradicted = (!calibration.converged && calibration.moved > kBelieved) || innovation_90 > kInnovationMax;
-  estimate.health["localised"] = share >= kLocalisedShare && !contradicted ? 1.0 : 0.0;
+  estimate.health["sigma_largest_m"] = localisation.largest_sigma_m();
+  estimate.health["innovation_second"] = localisation.second_innovation();
+  const bool elsewhere = !calibration.converged && calibration.moved > kBelieved;
+  estimate.health["localised"] = localisation.verdict().ok() && !elsewhere ? 1.0 : 0.0;
 }
 
 /// Ranges that the motion contradicts make a map of another size, however well its sweeps agree.
@@ -347,7 +344,10 @@ void run_slam_chain(const sim::Sensors& sensors, std::span<const ImuSample> samp
   estimate = std::move(run);
   if (!estimate.status.ok()) return;
   if (chain.calibration) report_calibration(odometry, sensors, estimate.health);
-  report_end(calibration, report_innovations(estimate), estimate);
+  Localisation localisation(params.expert.matching.distance_m);
+  for (const SweepReport& sweep : estimate.sweeps) localisation.add(sweep);
+  report_innovations(estimate);
+  report_end(calibration, localisation, estimate);
   if (chain.calibration) report_scale(find_sweep_scale(samples, estimate.sweeps, sensors.gravity_m_s2), estimate);
   draw_map(odometry, estimate);
 }
@@ -358,9 +358,11 @@ void settle(std::vector<PoseState> last_word, SweepReport& sweep) {
   sweep.pose = sweep.trajectory.back();
 }
 
-void conclude_sweeps(const LidarInertialOdometry& odometry, const SweepScale& scale, Estimate& estimate) {
+void conclude_sweeps(const LidarInertialOdometry& odometry, const SweepScale& scale, const Localisation& localisation,
+                     Estimate& estimate) {
   gather_poses(estimate);
-  report_end({}, report_innovations(estimate), estimate);
+  report_innovations(estimate);
+  report_end({}, localisation, estimate);
   report_scale(scale, estimate);
   draw_map(odometry, estimate);
 }

@@ -9,6 +9,7 @@
 #include "scenarios/methods/method.hpp"
 #include "scenarios/methods/registry.hpp"
 #include "tumble/common/imu.hpp"
+#include "tumble/mapping/detail/localisation.hpp"
 #include "tumble/mapping/detail/sweep_scale.hpp"
 #include "tumble/mapping/lidar_inertial_odometry.hpp"
 
@@ -44,7 +45,9 @@ Estimate begin_with_rates(const sim::Sensors& sensors, std::vector<ImuSample>& s
 void settle(std::vector<PoseState> last_word, LidarInertialOdometry::SweepReport& sweep);
 
 /// Poses, map and verdict of a run whose sweeps and their ends the estimate holds; `too_few` when none was registered.
-void conclude_sweeps(const LidarInertialOdometry& odometry, const SweepScale& scale, Estimate& estimate);
+/// `localisation`: of the sweeps as the mapper first told of them.
+void conclude_sweeps(const LidarInertialOdometry& odometry, const SweepScale& scale, const Localisation& localisation,
+                     Estimate& estimate);
 
 /// The gyro as it is, with the axes named that are at their rail. One RateState per sample.
 Status railed_rates(const sim::Sensors& sensors, std::span<const ImuSample> samples, std::vector<RateState>& out);

@@ -65,7 +65,8 @@ enum class Word {
 /// Collects what the door says into an estimate.
 class Listener {
  public:
-  Listener(Word word, Estimate& estimate) : word_(word), estimate_(estimate) {}
+  Listener(Word word, const TumblingOdometry::Params& params, Estimate& estimate)
+      : word_(word), localisation_(params.expert.mapping.expert.matching.distance_m), estimate_(estimate) {}
 
   /// A sample has just been taken in.
   void heard(const TumblingOdometry& odometry) {
@@ -80,6 +81,7 @@ class Listener {
       }
       std::vector<PoseState> last_word = std::move(sweep->report.smoothed);
       const TimeNs end_ns = sweep->report.pose.time_ns;
+      localisation_.add(sweep->report);
       append_sweep(sweep->status, end_ns, std::move(sweep->report), estimate_);
       settle_next(std::move(last_word));
     }
@@ -88,7 +90,7 @@ class Listener {
   void conclude(const TumblingOdometry& odometry) {
     for (std::vector<PoseState>& open : odometry.mapper().open_trajectories()) settle_next(std::move(open));
     if (word_ == Word::live) speak_live();
-    conclude_sweeps(odometry.mapper(), odometry.sweep_scale(), estimate_);
+    conclude_sweeps(odometry.mapper(), odometry.sweep_scale(), localisation_, estimate_);
   }
 
  private:
@@ -112,6 +114,7 @@ class Listener {
   }
 
   Word word_;
+  Localisation localisation_;
   Estimate& estimate_;
   std::size_t settled_ = 0;
   std::vector<PoseState> live_;
@@ -154,8 +157,9 @@ Estimate run(const sim::Sensors& sensors, const sim::Values& parameters, Word wo
   (void)check_imu(sensors, samples, estimate);  // a warning, as for attitudes
   (void)check_flights(sensors, samples, estimate);
   tell_frozen_axes(sensors, samples, estimate);
-  TumblingOdometry odometry(stated_params(sensors, parameters));
-  Listener listener(word, estimate);
+  const TumblingOdometry::Params params = stated_params(sensors, parameters);
+  TumblingOdometry odometry(params);
+  Listener listener(word, params, estimate);
   estimate.status = live_through(sensors, samples, odometry, listener);
   if (!estimate.status.ok()) return estimate;
   estimate.health["gaps"] = static_cast<double>(odometry.gaps());

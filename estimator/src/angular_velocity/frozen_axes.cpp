@@ -14,7 +14,8 @@ constexpr double kExtremeShare = 0.5;  // and from which on where it is the high
 constexpr double kQuanta = 50.0;       // of the axis, by which another moves: a part of 2 % in this axis is one quantum
 constexpr double kTurning_rad_s = 0.3;  // by which another axis of a gyro changes, for the body to move
 constexpr double kPushed_m_s2 = 1.0;    // and of an accelerometer
-constexpr double kChanging = 0.5;       // of the samples of a hold, in which another axis changes
+constexpr double kChanging =
+    0.2;  // of the samples of a hold, in which another axis changes: read at a fifth of their rate
 // A body that rests: no other axis turns, and forces stay where they were.
 constexpr double kStill_rad_s = 0.2, kStill_m_s2 = 0.5;
 // What a sound axis reads of one at most: its bias, gravity.
@@ -110,10 +111,14 @@ void FrozenAxes::hold(std::size_t channel, const std::array<double, 6>& now, dou
     }
   }
   const double most = is_gyro(channel) ? kRestMost_rad_s : kRestMost_m_s2;
-  const bool froze = at_rail(channel, axis) ? axis.still_s >= params_.rail_still_s && std::abs(axis.reading) >= most
-                                            : axis.moved_s >= params_.frozen_s &&
-                                                  axis.held_s >= std::max(params_.frozen_s, kLonger * axis.longest_s) &&
-                                                  others_move(channel, axis);
+  // nothing turns for so long beyond a rail and about the very axis; how often the others are read tells nothing there
+  const bool at_its_rail = at_rail(channel, axis);
+  const bool of_no_motion =
+      axis.still_s >= params_.rail_still_s || (axis.held_s >= params_.rail_held_s && others_move(channel, 0.0, axis));
+  const bool froze = at_its_rail ? of_no_motion && std::abs(axis.reading) >= most
+                                 : axis.moved_s >= params_.frozen_s &&
+                                       axis.held_s >= std::max(params_.frozen_s, kLonger * axis.longest_s) &&
+                                       others_move(channel, kChanging, axis);
   axis.frozen = axis.frozen || froze;
   axis.ever_frozen = axis.ever_frozen || froze;
 }
@@ -121,14 +126,17 @@ void FrozenAxes::hold(std::size_t channel, const std::array<double, 6>& now, dou
 bool FrozenAxes::at_rail(std::size_t channel, const Axis& axis) const {
   const double stated = is_gyro(channel) ? params_.gyro_range_rad_s : params_.accel_range_m_s2;
   const double size = std::abs(axis.reading);
-  if (axis.flagged || (stated > 0.0 && size >= kRailShare * stated)) return true;
+  if (stated > 0.0 && size >= kRailShare * stated) return true;
+  // a flag says that the device met its rail, not that what it repeats is that rail
+  if (axis.flagged && size >= kExtremeShare * stated) return true;
   return size >= kExtremeShare * stated && (axis.reading == axis.lowest || axis.reading == axis.highest);
 }
 
-bool FrozenAxes::others_move(std::size_t channel, const Axis& axis) const {
+/// By far more than a quantum of this axis, and with that share of the samples at least.
+bool FrozenAxes::others_move(std::size_t channel, double changing_share, const Axis& axis) const {
   const double least = std::max(is_gyro(channel) ? kTurning_rad_s : kPushed_m_s2, kQuanta * axis.quantum);
   for (std::size_t k = 0; k < 2; ++k) {
-    const bool changes = axis.other_changes[k] >= kChanging * axis.samples;
+    const bool changes = axis.other_changes[k] >= changing_share * axis.samples;
     if (changes && axis.other_high[k] - axis.other_low[k] >= least) return true;
   }
   return false;

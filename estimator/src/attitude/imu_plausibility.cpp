@@ -141,7 +141,6 @@ double ImuPlausibility::turning_slope(const State& state) const {
   return together_rad2(state) / std::max(state.by_gyro_rad2, kStandstillRad2);
 }
 
-/// imu_merge.md (I21).
 double ImuPlausibility::turning_agreement(const State& state) const {
   if (state.by_force_rad2 < params_.expert.turning.turned_min_rad2) return 1.0;
   return together_rad2(state) / std::sqrt(state.by_force_rad2 * std::max(state.by_gyro_rad2, kStandstillRad2));
@@ -158,6 +157,12 @@ std::optional<AxisLabels> ImuPlausibility::other_labels(const State& state) cons
   const auto least = least_unexplained(state);
   if (*least >= params_.expert.naming.unexplained_share_max * state.unexplained_rad2.front()) return std::nullopt;
   return axis_labels()[static_cast<std::size_t>(least - state.unexplained_rad2.begin())];
+}
+
+/// Pushes take from the slope as well, and leave as much unexplained whatever it is: imu_merge.md (I21).
+bool ImuPlausibility::explains_more(const State& state) const {
+  const double left = state.by_force_rad2 * (1.0 - turning_agreement(state) * turning_agreement(state));
+  return left < params_.expert.naming.unexplained_share_max * state.unexplained_rad2.front();
 }
 
 Status ImuPlausibility::verdict(const State& state) const {
@@ -185,18 +190,10 @@ Status ImuPlausibility::verdict(const State& state) const {
     return {Trouble::out_of_range, "turning of a steady force as a share of the gyro's", still,
             params_.expert.turning.still_share};
   }
-  const double slope = turning_slope(state), agreement = turning_agreement(state);
-  // as far as the gyro says, and partly along: its scale is right, and pushes are what hides its sense
-  const double as_far = std::abs(slope / agreement);
-  const bool unsure = agreement > params_.expert.turning.agreeing_min &&
-                      agreement < params_.expert.turning.agreeing_max && as_far > params_.expert.turning.slope_min &&
-                      as_far < params_.expert.turning.slope_max;
-  if (unsure) return {};
-  if (slope < params_.expert.turning.slope_min || slope > params_.expert.turning.slope_max) {
-    return {
-        Trouble::out_of_range, "turning of gravity over that of the gyro", slope,
-        slope < params_.expert.turning.slope_min ? params_.expert.turning.slope_min : params_.expert.turning.slope_max};
-  }
+  const double slope = turning_slope(state);
+  const double least = params_.expert.turning.slope_min, most = params_.expert.turning.slope_max;
+  if (slope > most || (slope < least && explains_more(state)))
+    return {Trouble::out_of_range, "turning of gravity over that of the gyro", slope, slope < least ? least : most};
   return {};
 }
 

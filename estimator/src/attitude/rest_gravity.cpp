@@ -37,7 +37,13 @@ void RestGravity::step(const ImuSample& sample, const RateState& rate, State& st
   if (!state.rests) {
     state.turned = (state.turned * so3::exp(dt_s * rate.w_WI_I_rad_s)).normalized();
     state.way_rad += dt_s * rate.w_WI_I_rad_s.norm();
-    state.variance_rad2 += dt_s * params_.correlation_s * rate.covariance_rad2_s2.trace();
+    if (rate.source != RateSource::measured) {
+      state.stretch_s += dt_s;
+      state.stretch_rad2_s += dt_s * rate.covariance_rad2_s2.trace();
+    } else {
+      end_stretch(state);
+      state.variance_rad2 += dt_s * params_.correlation_s * rate.covariance_rad2_s2.trace();
+    }
     return;
   }
   if (!rested) arrive(state);
@@ -45,11 +51,18 @@ void RestGravity::step(const ImuSample& sample, const RateState& rate, State& st
   state.force_sum_m += dt_s * sample.specific_force_m_s2.norm();
   state.from = state.rest.mean_force_m_s2().normalized();
   state.turned.setIdentity();
-  state.way_rad = state.variance_rad2 = 0.0;
+  state.way_rad = state.variance_rad2 = state.stretch_s = state.stretch_rad2_s = 0.0;
+}
+
+/// What a rail hid of a stretch hangs together as long as the stretch lasts: imu_merge.md (I19).
+void RestGravity::end_stretch(State& state) const {
+  state.variance_rad2 += std::max(params_.correlation_s, state.stretch_s) * state.stretch_rad2_s;
+  state.stretch_s = state.stretch_rad2_s = 0.0;
 }
 
 /// imu_merge.md (I19).
 void RestGravity::arrive(State& state) const {
+  end_stretch(state);
   if (state.from.isZero(0.0) || state.way_rad < params_.turned_least_rad) return;
   const Eigen::Vector3d here = state.rest.mean_force_m_s2().normalized();
   const double miss_rad = (state.turned.conjugate() * state.from - here).norm();

@@ -7,6 +7,7 @@
 #include "scenarios/recordings/hdf5_file.hpp"
 #include "scenarios/recordings/import.hpp"
 #include "scenarios/recordings/recording_check.hpp"
+#include "scenarios/recordings/recording_file.hpp"
 #include "scenarios/recordings/trajectories/reference.hpp"
 #include "scenarios/recordings/trajectories/reference_rate.hpp"
 
@@ -95,6 +96,8 @@ std::optional<sim::Truth> read_reference(const hdf5::Group& root, const sim::Imu
 Imported import_broad(const std::filesystem::path& path) {
   const hdf5::InputFile file(path);
   const hdf5::Group& root = file.root();
+  if (root.has_attribute("format") && root.text_attribute("format") == kRecordingFormat)
+    throw BadInput(path.string() + ": is a recording already, which every verb reads as it is; nothing to import");
   const double rate_hz = root.double_attribute("sampling_rate");
   if (!(rate_hz >= 1.0 && rate_hz <= 1e5)) root.fail("sampling_rate", "must be within 1 and 100000 Hz");
   Imported out;

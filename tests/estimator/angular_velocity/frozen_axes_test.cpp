@@ -109,6 +109,43 @@ TEST(FrozenAxes, NamesAnAxisThatStandsAtItsRailOnABodyAtRest) {
   EXPECT_NE(watch(samples, stated()).first.find("accel x"), std::string::npos);
 }
 
+// A pendulum never lies still: what its axis goes on to read is its rail, and no swing lasts so long.
+TEST(FrozenAxes, NamesAnAxisThatStandsAtItsRailOnABodyThatNeverRests) {
+  const auto swinging = [](double railed_s, double reading = kRail_rad_s) {
+    std::mt19937 random(2);
+    std::normal_distribution<double> noise;
+    std::vector<ImuSample> out;
+    for (int k = 1; k <= 3000; ++k) {
+      const double t = k * kPeriod_s, read_t = kPeriod_s * (k - k % 3);  // read every third time
+      ImuSample sample;
+      sample.time_ns = static_cast<TimeNs>(k) * 10'000'000;
+      sample.angular_velocity_rad_s = {2.0 * std::sin(4.0 * read_t), std::cos(3.0 * read_t), 6.0 * std::sin(2.0 * t)};
+      sample.specific_force_m_s2 = {3.0 * std::sin(4.0 * t), 0.1 * noise(random), 9.81 + 0.1 * noise(random)};
+      if (t > 4.0 && t < 4.0 + railed_s) sample.angular_velocity_rad_s.z() = reading;
+      out.push_back(sample);
+    }
+    return clipped(std::move(out));
+  };
+  EXPECT_EQ(watch(swinging(0.0), stated()).first, "");
+  EXPECT_EQ(watch(swinging(3.0), stated()).first, "") << "a throw spins for half as long";
+  const Found found = watch(swinging(20.0), stated());
+  EXPECT_NE(found.first.find("gyro z"), std::string::npos) << found.first;
+  EXPECT_LT(found.told_ns, 10'000'000'000) << "told while it lasts";
+  EXPECT_NE(watch(swinging(20.0, 1.7), stated()).first.find("gyro z"), std::string::npos)
+      << "beside axes that are held";
+}
+
+// The element meets its rail and is flagged, while what is read out stays at another value.
+TEST(FrozenAxes, AFlagMakesNoRailOfAReadingThatIsFarFromIt) {
+  std::vector<ImuSample> samples = clipped(moving_body());
+  for (std::size_t k = 205; k < samples.size(); ++k) {
+    if (samples[k].angular_velocity_rad_s.z() == kRail_rad_s) samples[k].device_clip_flags = kClipGyroZ;
+    samples[k].angular_velocity_rad_s.z() = samples[205].angular_velocity_rad_s.z();
+  }
+  ASSERT_LT(std::abs(samples[205].angular_velocity_rad_s.z()), 0.5 * kRail_rad_s);
+  EXPECT_NE(watch(samples, stated()).first.find("gyro z"), std::string::npos);
+}
+
 TEST(FrozenAxes, ASensorWithoutNoiseAtRestIsNotFrozen) {
   std::vector<ImuSample> samples = moving_body();
   for (ImuSample& sample : samples) {

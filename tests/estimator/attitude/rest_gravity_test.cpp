@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 #include <functional>
 #include <limits>
 #include <string>
@@ -20,6 +21,7 @@ using Harm = std::function<void(ImuSample&)>;
 struct Way {
   Eigen::Vector3d rate_rad_s = {1.5, 2.0, -0.7};
   double turns_s = 3.0, rate_sigma_rad_s = 0.01;
+  RateSource source = RateSource::measured;
 };
 
 // At rest, turning at a constant rate with forces of any kind, and at rest again: R is known in closed form.
@@ -42,6 +44,7 @@ RestGravity::State after(const Way& way, const Harm& harm, double scale_of_estim
     RateState rate;
     rate.time_ns = sample.time_ns;
     rate.w_WI_I_rad_s = scale_of_estimate * sample.angular_velocity_rad_s;
+    if (turns) rate.source = way.source;
     rate.covariance_rad2_s2 = way.rate_sigma_rad_s * way.rate_sigma_rad_s * Eigen::Matrix3d::Identity();
     gravity.step(sample, rate, state);
   }
@@ -88,6 +91,21 @@ TEST(RestGravity, WhatTheRatesStateIsAllowed) {
   EXPECT_FALSE(gravity.verdict(sure).ok());
   EXPECT_TRUE(gravity.verdict(unsure).ok()) << gravity.verdict(unsure).message();
   EXPECT_FALSE(gravity.verdict(after({.rate_sigma_rad_s = 5.0}, kNone, 0.5)).ok()) << "not of rates that say nothing";
+}
+
+// What a rail hid may have been the same throughout: the deviation of the turn is then that of the rate times the time.
+TEST(RestGravity, ErrorsOfAClippedStretchLastAsLongAsIt) {
+  const RestGravity::State read = after({}, kNone);
+  const RestGravity::State hidden = after({.source = RateSource::bounded_only}, kNone);
+  EXPECT_NEAR(hidden.miss_sigma_rad, std::sqrt(3.0) * 0.01 * 3.0, 0.005);
+  EXPECT_NEAR(hidden.miss_sigma_rad / read.miss_sigma_rad, std::sqrt(3.0 / 0.1), 0.5);
+  // a rate that is 5 % off throughout, which it states
+  const RestGravity gravity({});
+  EXPECT_GT(after({.rate_sigma_rad_s = 0.025}, kNone, 1.05).miss_rad, 0.3);
+  EXPECT_FALSE(gravity.verdict(after({.rate_sigma_rad_s = 0.025}, kNone, 1.05)).ok());
+  const Status status =
+      gravity.verdict(after({.rate_sigma_rad_s = 0.025, .source = RateSource::bounded_only}, kNone, 1.05));
+  EXPECT_TRUE(status.ok()) << status.message();
 }
 
 TEST(RestGravity, OfOneRestOrATurnAboutTheVerticalNothingIsSaid) {

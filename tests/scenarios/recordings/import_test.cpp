@@ -6,12 +6,15 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
 #include <cstdint>
 #include <cstdio>
+#include <span>
 #include <sstream>
 
 #include "scenarios/recordings/export.hpp"
 #include "scenarios/recordings/fixture_recording.hpp"
+#include "scenarios/recordings/hdf5_file.hpp"
 #include "scenarios/recordings/tables/imu_readings.hpp"
 #include "stand_ins/stand_ins.hpp"
 
@@ -352,7 +355,11 @@ using ImportBroadFiles = fixture::Folder;
 TEST_F(ImportBroadFiles, OthersAreRefused) {
   const sim::Recording recording = fixture::recording();
   write_recording(folder_ / "a.h5", {}, recording.sensors, nullptr);
-  EXPECT_THAT(fixture::complaint([&] { import_broad(folder_ / "a.h5"); }),
+  EXPECT_THAT(fixture::complaint([&] { import_broad(folder_ / "a.h5"); }), HasSubstr("is a recording already"));
+  hdf5::MemoryFile of_somebody_else("c.h5");
+  const std::span<const std::byte> bytes = of_somebody_else.close();
+  fixture::put(folder_ / "c.h5", {reinterpret_cast<const char*>(bytes.data()), bytes.size()});
+  EXPECT_THAT(fixture::complaint([&] { import_broad(folder_ / "c.h5"); }),
               HasSubstr("/sampling_rate: attribute is missing"));
   fixture::put(folder_ / "b.h5", "text");
   EXPECT_THAT(fixture::complaint([&] { import_broad(folder_ / "b.h5"); }), StartsWith((folder_ / "b.h5").string()));

@@ -116,6 +116,8 @@ class ImuPlausibility {
   Status verdict(const State& state) const;
 
  private:
+  /// Whether a gyro of the slope's scale leaves far less unexplained than this one.
+  bool explains_more(const State& state) const;
   void take(State& state) const;
   void compare(const Eigen::Vector3d& force_m_s2, State& state) const;
   void hold(const Eigen::Vector3d& reading, double dt_s, Hold& hold) const;

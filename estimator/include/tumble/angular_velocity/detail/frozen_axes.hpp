@@ -20,14 +20,17 @@ namespace tumble {
 ///
 /// A reading at the rail (0.9 of the stated range, flagged by the device, or the highest or lowest of the axis so far
 /// from 0.5 of the range on) may repeat. It has frozen where all other axes of both triads say for `rail_still_s` that
-/// the body rests: one that turns or is pushed so hard does not. Not told: one that is frozen at its rail on a body
-/// that never comes to rest, or that spins about this axis so evenly that no other one moves.
+/// the body rests: one that turns or is pushed so hard does not. On a body that never comes to rest it has frozen where
+/// it repeats the rail for `rail_held_s` while another axis of its triad moves: either that, or the range is not one
+/// for such a spin, and of either nothing is known of the axis. Not told: one on a body that spins about this axis so
+/// evenly that no other one moves.
 class FrozenAxes {
  public:
   struct Params {
     double gyro_range_rad_s = 0.0, accel_range_m_s2 = 0.0;  ///< as the device states them; 0: not stated
     double frozen_s = 0.5;      ///< longest time for which a sound axis repeats its reading while the body moves
     double rail_still_s = 1.5;  ///< of rest by all other axes, while one reads its rail
+    double rail_held_s = 5.0;   ///< of one reading at the rail while the body moves: flights last a third of it
 
     /// Every number of it, stated once.
     template <class Self, class Visitor>
@@ -40,6 +43,8 @@ class FrozenAxes {
                          "longest time for which a sound axis repeats its reading while the body moves"});
       visit(p.rail_still_s,
             {"rail_still_s", "s", 1e-3, 1e4, "of rest by all other axes, while one reads its rail: it is frozen"});
+      visit(p.rail_held_s,
+            {"rail_held_s", "s", 1e-3, 1e4, "of one reading at the rail while others of the triad move: it is frozen"});
     }
   };
   /// One axis of one triad.
@@ -88,7 +93,7 @@ class FrozenAxes {
  private:
   void hold(std::size_t channel, const std::array<double, 6>& now, double dt_s, std::uint8_t flags, State& state) const;
   bool at_rail(std::size_t channel, const Axis& axis) const;
-  bool others_move(std::size_t channel, const Axis& axis) const;
+  bool others_move(std::size_t channel, double changing_share, const Axis& axis) const;
 
   Params params_;
 };

@@ -23,8 +23,6 @@ struct SteadyForceParams {
 struct GravityTurningParams {
   /// Slope of gravity's turning over the gyro's; pendulums and wands leave 0.75 to 1.21.
   double slope_min = 0.65, slope_max = 1.5;
-  /// Correlation of the two between which a slope says nothing: pushes were too strong.
-  double agreeing_min = 0.25, agreeing_max = 0.7;
   double turned_min_rad2 = 0.5;  ///< sum of squares below which nothing is said of it
   double turn_least_rad = 0.15;  ///< of a window, to count as turning
   double still_share = 1e-6;     ///< of the gyro's turning; a spin in flight leaves 0.006 and less
@@ -33,10 +31,6 @@ struct GravityTurningParams {
   static void fields(Self& p, Visitor& visit) {
     visit(p.slope_min, {"turning_min", "1", 0.0, 1.0, "least slope of gravity's turning over the gyro's"});
     visit(p.slope_max, {"turning_max", "1", 1.0, 1e6, "largest slope of gravity's turning over the gyro's"});
-    visit(p.agreeing_min,
-          {"agreeing_min", "1", -1.0, 1.0, "least correlation of the two turnings at which their slope says nothing"});
-    visit(p.agreeing_max, {"agreeing_max", "1", -1.0, 1.0,
-                           "largest correlation of the two turnings at which their slope says nothing"});
     visit(p.turned_min_rad2,
           {"turned_min_rad2", "rad^2", 1e-12, 1e6, "sum of squares below which nothing is said of it"});
     visit(p.turn_least_rad, {"turn_least_rad", "rad", 1e-12, 3.0, "of a window, to count as turning"});

@@ -30,7 +30,7 @@ class RestGravity {
     double miss_deviations = 5.0;   ///< allowed, of what the rates' covariance makes of the way; a chord, and
     double miss_least_rad = 0.3;    ///< at least so much: a bias, pushes at rest
     double miss_most_rad = 0.6;     ///< at most: rates that may be off by more tell nothing of the way
-    double correlation_s = 0.1;     ///< for which errors of a rate last
+    double correlation_s = 0.1;     ///< for which errors of a rate last at least
     double turned_least_rad = 1.0;  ///< of the way between two rests, to count
     double gap_max_s = 1.0;         ///< a longer gap parts the rests
 
@@ -55,6 +55,7 @@ class RestGravity {
     Eigen::Vector3d from = Eigen::Vector3d::Zero();  ///< unit, gravity's at the last rest in the sensor's axes; 0: none
     Eigen::Quaterniond turned = Eigen::Quaterniond::Identity();  ///< since then
     double way_rad = 0.0, variance_rad2 = 0.0;                   ///< likewise
+    double stretch_s = 0.0, stretch_rad2_s = 0.0;                ///< of samples in a row that the gyro did not measure
     double rest_s = 0.0, force_sum_m = 0.0;                      ///< of all rests, and of force by time
     double miss_rad = 0.0, miss_sigma_rad = 0.0;                 ///< of the worst of the ways between two rests
     std::size_t ways = 0;                                        ///< that were compared
@@ -77,6 +78,7 @@ class RestGravity {
   Status verdict(const State& state) const;
 
  private:
+  void end_stretch(State& state) const;
   void arrive(State& state) const;
   double allowed_rad(double sigma_rad) const;
 

@@ -1,0 +1,33 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "tumble/mapping/detail/localisation.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace tumble {
+
+namespace {
+
+// As a result agrees with its prior: chi-square of the motion's nine unknowns exceeds it once in twenty.
+constexpr double kUnknowns = 9.0, kAgrees = 16.9;
+
+}  // namespace
+
+void Localisation::add(const SweepReport& sweep) {
+  const double variance_m2 = sweep.pose.covariance.topLeftCorner<3, 3>().trace();
+  largest_sigma_m_ = std::max(largest_sigma_m_, std::sqrt(variance_m2));
+  second_innovation_ = std::max(second_innovation_, std::min(largest_innovation_, sweep.innovation));
+  largest_innovation_ = std::max(largest_innovation_, sweep.innovation);
+}
+
+/// mapping.md (R98), (R99).
+Status Localisation::verdict() const {
+  if (largest_sigma_m_ > matched_m_)
+    return {Trouble::out_of_range, "deviation of a sweep's position", largest_sigma_m_, matched_m_};
+  const double innovation_max = std::sqrt(kAgrees / kUnknowns);
+  if (second_innovation_ > innovation_max)
+    return {Trouble::out_of_range, "innovation of two sweeps", second_innovation_, innovation_max};
+  return {};
+}
+
+}  // namespace tumble

@@ -1,0 +1,49 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "tumble/mapping/detail/localisation.hpp"
+
+#include <gtest/gtest.h>
+
+#include <string>
+
+namespace tumble {
+namespace {
+
+SweepReport sweep(double sigma_m, double innovation) {
+  SweepReport report;
+  report.pose.covariance.setZero();
+  report.pose.covariance.diagonal().head<3>().setConstant(sigma_m * sigma_m / 3.0);
+  report.innovation = innovation;
+  return report;
+}
+
+Status after(const SweepReport& one) {
+  Localisation localisation(1.0);
+  for (int k = 0; k < 100; ++k) localisation.add(sweep(0.1, 0.3));
+  localisation.add(one);
+  for (int k = 0; k < 100; ++k) localisation.add(sweep(0.1, 0.3));
+  return localisation.verdict();
+}
+
+TEST(Localisation, IsWhatTheDeviationSaysHoweverManySweepsWereHeld) {
+  EXPECT_TRUE(Localisation(1.0).verdict().ok());
+  SweepReport rejected = sweep(0.9, 0.0);
+  rejected.verdict = SweepVerdict::rejected;
+  EXPECT_TRUE(after(rejected).ok());
+  const Status lost = after(sweep(1.1, 0.0));
+  EXPECT_EQ(lost.trouble, Trouble::out_of_range) << "though it was found again";
+  EXPECT_NE(std::string(lost.field).find("deviation"), std::string::npos);
+}
+
+// A rail may hide more of one sweep than the rates knew; what is wrong of an IMU or a mounting comes back.
+TEST(Localisation, TwoSweepsThatContradictTheirPriorsAreNotForgotten) {
+  EXPECT_TRUE(after(sweep(0.1, 3.0)).ok());
+  Localisation localisation(1.0);
+  for (const double innovation : {0.2, 1.4, 0.1, 3.0, 0.2, 0.3}) localisation.add(sweep(0.1, innovation));
+  const Status contradicted = localisation.verdict();
+  EXPECT_NE(std::string(contradicted.field).find("innovation"), std::string::npos);
+  EXPECT_EQ(contradicted.value, 1.4);
+  EXPECT_NEAR(contradicted.bound, 1.370, 1e-3);
+}
+
+}  // namespace
+}  // namespace tumble
