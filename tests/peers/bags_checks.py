@@ -16,6 +16,8 @@ from mcap_ros2.decoder import DecoderFactory
 from rosbags.highlevel import AnyReader
 from rosbags.typesys import Stores, get_types_from_msg, get_typestore
 
+from program import run
+
 TUMBLE = FOLDER = None
 ORIGIN = 10**18  # stamp of a simulated recording's start
 BAGS = {"mcap": "a.mcap", "rosbag1": "a.bag", "rosbag2": "rosbag2", "rosbag2_mcap": "rosbag2_mcap"}
@@ -25,10 +27,7 @@ POINTS = numpy.dtype({"names": ["x", "y", "z", "intensity", "ring", "time", "off
 
 
 def tumble(*words):
-    done = subprocess.run([TUMBLE, *map(str, words), "--quiet"], capture_output=True, text=True)
-    if done.returncode != 0:
-        raise RuntimeError(f"tumble {' '.join(map(str, words))}: {done.stderr}")
-    return done.stdout
+    return run(TUMBLE, *words)
 
 
 def make_files():

@@ -7,13 +7,14 @@ in the peer's own unit against the recording's nanoseconds, which PLY brings apa
 import json
 import pathlib
 import shutil
-import subprocess
 import sys
 import unittest
 
 import numpy
 from rosbags.highlevel import AnyReader
 from rosbags.typesys import Stores, get_types_from_msg, get_typestore
+
+from program import run
 
 TUMBLE = FOLDER = None
 NUMBERS = {2: "<u1", 4: "<u2", 6: "<u4", 7: "<f4", 8: "<f8"}  # of sensor_msgs/PointField
@@ -30,9 +31,7 @@ WANTED = {"dlio": ("recording.bag", "/os_cloud_node/imu", "/os_cloud_node/points
 
 
 def tumble(*words):
-    done = subprocess.run([TUMBLE, *map(str, words), "--quiet"], capture_output=True, text=True)
-    if done.returncode != 0:
-        raise RuntimeError(f"tumble {' '.join(map(str, words))}: {done.stderr}")
+    return run(TUMBLE, *words)
 
 
 def make_files():

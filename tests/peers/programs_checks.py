@@ -15,6 +15,8 @@ import unittest
 import numpy
 import yaml
 
+from program import run
+
 TUMBLE = FOLDER = None
 PACKAGES = pathlib.Path(numpy.__file__).resolve().parent.parent
 # 11 m of way in a hall; measured 0.051 m (kiss-icp 1.3.0) and 0.046 m (rko-lio 0.4.0): the order of their papers, 1 % of the way
@@ -24,9 +26,7 @@ PEERS = {"kiss-icp": "lidar", "rko-lio": "body"}  # whose poses it gives
 
 
 def tumble(*words):
-    done = subprocess.run([TUMBLE, *map(str, words), "--quiet"], capture_output=True, text=True)
-    if done.returncode != 0:
-        raise RuntimeError(f"tumble {' '.join(map(str, words))}: {done.stderr}")
+    return run(TUMBLE, *words)
 
 
 def make_files():
