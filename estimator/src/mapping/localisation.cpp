@@ -4,14 +4,9 @@
 #include <algorithm>
 #include <cmath>
 
+#include "unknowns.hpp"
+
 namespace tumble {
-
-namespace {
-
-// As a result agrees with its prior: chi-square of the motion's nine unknowns exceeds it once in twenty.
-constexpr double kUnknowns = 9.0, kAgrees = 16.9;
-
-}  // namespace
 
 void Localisation::add(const SweepReport& sweep) {
   const double variance_m2 = sweep.pose.covariance.topLeftCorner<3, 3>().trace();
@@ -24,7 +19,7 @@ void Localisation::add(const SweepReport& sweep) {
 Status Localisation::verdict() const {
   if (largest_sigma_m_ > matched_m_)
     return {Trouble::out_of_range, "deviation of a sweep's position", largest_sigma_m_, matched_m_};
-  const double innovation_max = std::sqrt(kAgrees / kUnknowns);
+  const double innovation_max = std::sqrt(mapping::unknowns::kAgrees / SweepUnknowns::kMotion);
   if (second_innovation_ > innovation_max)
     return {Trouble::out_of_range, "innovation of two sweeps", second_innovation_, innovation_max};
   return {};

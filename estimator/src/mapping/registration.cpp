@@ -38,11 +38,10 @@ void add_prior(const Registration::Prior& prior, const Matrix& information, cons
 /// Whether the motion is within what the prior says it may be off by: mapping.md (R59).
 bool agrees(const Registration::Prior& prior, const Registration::Estimate& now) {
   constexpr int kMotion = Registration::kMotion;
-  constexpr double kLargest = 16.9;  // chi-square of nine unknowns, exceeded by one in twenty
   const auto away = now.minus(prior.mean).head<kMotion>().eval();
   Eigen::Matrix<double, kMotion, kMotion> P = prior.covariance.topLeftCorner<kMotion, kMotion>();
   P.diagonal().array() += mapping::unknowns::kLeastVariance;
-  return away.dot(P.ldlt().solve(away)) <= kLargest;
+  return away.dot(P.ldlt().solve(away)) <= mapping::unknowns::kAgrees;
 }
 
 bool is_small(const Vector& step, double span_s, const Registration::Params& params) {

@@ -26,6 +26,10 @@ inline constexpr Block<Registration::kCalibration + 7, 3> gravity;
 
 /// Variance given to an unknown whose prior claims none, so that the prior can be inverted.
 inline constexpr double kLeastVariance = 1e-12;
+/// Up to which a sweep's motion agrees with its prior, its squared distance in deviations: chi-square of the nine
+/// unknowns of a motion exceeds it once in twenty. mapping.md (R59), (R99).
+inline constexpr double kAgrees = 16.9;
+static_assert(SweepUnknowns::kMotion == 9);
 
 /// Place of an axis of the saturation deficit at a knot.
 constexpr int excess_at(int axis, int knot) {
