@@ -159,8 +159,10 @@ std::optional<AxisLabels> ImuPlausibility::other_labels(const State& state) cons
   return axis_labels()[static_cast<std::size_t>(least - state.unexplained_rad2.begin())];
 }
 
-/// Pushes take from the slope as well, and leave as much unexplained whatever it is: imu_merge.md (I21).
+/// Pushes take from the slope as well, and leave as much unexplained whatever it is; to turn it they would have to be
+/// more than gravity: imu_merge.md (I21).
 bool ImuPlausibility::explains_more(const State& state) const {
+  if (turning_slope(state) <= 0.0) return true;
   const double left = state.by_force_rad2 * (1.0 - turning_agreement(state) * turning_agreement(state));
   return left < params_.expert.naming.unexplained_share_max * state.unexplained_rad2.front();
 }

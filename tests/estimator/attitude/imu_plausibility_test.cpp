@@ -223,6 +223,7 @@ TEST(ImuPlausibility, ALowSlopeIsToldWhereItExplainsWhatTheGyroLeaves) {
   EXPECT_TRUE(verdict_at(0.76, 0.245)) << "swing 62045, slope 0.21";
   EXPECT_TRUE(verdict_at(1.0, 0.1)) << "swapped axes are told by the naming that explains them";
   EXPECT_FALSE(verdict_at(1.0, -0.4)) << "another sense";
+  EXPECT_FALSE(verdict_at(4.0, -0.26)) << "another sense, and pushes: swing 81201, slope -0.5";
   EXPECT_FALSE(verdict_at(0.12, 0.78)) << "the first with twice the rate";
   EXPECT_FALSE(verdict_at(4.0, 0.9)) << "half the scale";
   EXPECT_FALSE(verdict_at(0.3 * 0.3, 0.4)) << "a multiple of it";

@@ -116,7 +116,7 @@ class ImuPlausibility {
   Status verdict(const State& state) const;
 
  private:
-  /// Whether a gyro of the slope's scale leaves far less unexplained than this one.
+  /// Whether a gyro of the slope's scale leaves far less unexplained than this one, or is of the other sense.
   bool explains_more(const State& state) const;
   void take(State& state) const;
   void compare(const Eigen::Vector3d& force_m_s2, State& state) const;
