@@ -63,26 +63,68 @@ VoxelMap::VoxelMap(const Params& params) : params_(params) {
   cubes_per_m_ = params.spacing_m > 0.0 ? static_cast<float>(1.0 / params.spacing_m) : cells_per_m_;
 }
 
-std::uint32_t VoxelMap::first_chunk(const Eigen::Vector3i& cell, std::uint64_t& group_key, std::uint32_t& group) const {
-  constexpr int kMask = (1 << kGroupBits) - 1;
-  const std::uint64_t key = SpatialHash::key({cell.x() >> kGroupBits, cell.y() >> kGroupBits, cell.z() >> kGroupBits});
-  if (key != group_key) {
-    group_key = key;
-    group = groups_of_.find(key);
-  }
-  if (group == SpatialHash::kAbsent) return kNone;
-  const int inside = (cell.x() & kMask) | ((cell.y() & kMask) << kGroupBits) | ((cell.z() & kMask) << (2 * kGroupBits));
-  return groups_[group][inside];
+inline std::size_t VoxelMap::Group::row_of(int y, int z) {
+  return static_cast<std::size_t>((y & kMask) | ((z & kMask) << kBits));
 }
 
-/// The first chunk of a cell, to be set.
+inline std::size_t VoxelMap::Group::place_of(const Eigen::Vector3i& cell) {
+  return static_cast<std::size_t>(cell.x() & kMask) | (row_of(cell.y(), cell.z()) << kBits);
+}
+
+inline Eigen::Vector3i VoxelMap::Group::of(const Eigen::Vector3i& cell) {
+  return {cell.x() >> kBits, cell.y() >> kBits, cell.z() >> kBits};
+}
+
+/// The cells that a search may visit, row by row: their groups are looked up once, when first asked for.
+class VoxelMap::Rows {
+ public:
+  Rows(const VoxelMap& map, const Eigen::Vector3i& cell, int reach) : map_(map), first_x_(cell.x() - reach) {
+    low_ = Group::of(cell.array() - reach);
+    across_ = Group::of(cell.array() + reach).x() - low_.x() + 1;
+    groups_.fill(kUnasked);
+  }
+
+  /// A bit for each cell of a row, from the least x on: whether it holds points.
+  std::uint32_t occupied(int y, int z) {
+    const Eigen::Vector3i away = Group::of({first_x_, y, z}) - low_;
+    std::uint32_t bits = 0;
+    for (int x = 0; x < across_; ++x) {
+      const std::uint32_t group = group_of({x, away.y(), away.z()});
+      if (group == SpatialHash::kAbsent) continue;
+      bits |= std::uint32_t{map_.groups_[group].rows[Group::row_of(y, z)]} << (x << Group::kBits);
+    }
+    return bits >> (first_x_ & Group::kMask);
+  }
+
+  /// Of a cell that is occupied.
+  std::uint32_t first_chunk(const Eigen::Vector3i& cell) {
+    return map_.groups_[group_of(Group::of(cell) - low_)].first[Group::place_of(cell)];
+  }
+
+ private:
+  static constexpr int kAcross =
+      (2 * kReachMax + Group::kMask) / (Group::kMask + 1) + 1;  // groups along an axis, at most
+  static constexpr std::uint32_t kUnasked = SpatialHash::kAbsent - 1;
+
+  std::uint32_t group_of(const Eigen::Vector3i& away) {
+    std::uint32_t& group = groups_[static_cast<std::size_t>((away.z() * kAcross + away.y()) * kAcross + away.x())];
+    if (group == kUnasked) group = map_.groups_of_.find(SpatialHash::key(low_ + away));
+    return group;
+  }
+
+  const VoxelMap& map_;
+  int first_x_, across_;
+  Eigen::Vector3i low_;  // the group of the least cell
+  std::array<std::uint32_t, kAcross * kAcross * kAcross> groups_;
+};
+
+/// The first chunk of a cell, to be set: it counts as occupied from here on.
 std::uint32_t& VoxelMap::first_of(const Eigen::Vector3i& cell) {
-  constexpr int kMask = (1 << kGroupBits) - 1;
-  const std::uint64_t key = SpatialHash::key({cell.x() >> kGroupBits, cell.y() >> kGroupBits, cell.z() >> kGroupBits});
-  const std::uint32_t group = groups_of_.insert(key, static_cast<std::uint32_t>(groups_.size()));
-  if (group == groups_.size()) groups_.emplace_back().fill(kNone);
-  const int inside = (cell.x() & kMask) | ((cell.y() & kMask) << kGroupBits) | ((cell.z() & kMask) << (2 * kGroupBits));
-  return groups_[group][inside];
+  const std::uint32_t group =
+      groups_of_.insert(SpatialHash::key(Group::of(cell)), static_cast<std::uint32_t>(groups_.size()));
+  if (group == groups_.size()) groups_.emplace_back().first.fill(kNone);
+  groups_[group].rows[Group::row_of(cell.y(), cell.z())] |= static_cast<std::uint8_t>(1 << (cell.x() & Group::kMask));
+  return groups_[group].first[Group::place_of(cell)];
 }
 
 /// An empty one before the first of a cell.
@@ -168,6 +210,25 @@ std::size_t VoxelMap::bytes() const {
          sigma_m_.capacity() * sizeof(float) + (sweep_.capacity() + line_.capacity()) * sizeof(std::uint32_t);
 }
 
+/// Takes the points of a cell's chunks that are among the k nearest so far; `worst2` is what they must not be beyond.
+void VoxelMap::search(std::uint32_t first, const Eigen::Vector3f& query, int k, float& worst2,
+                      Neighbours& found) const {
+  for (std::uint32_t c = first; c != kNone; c = chunks_[c].next) {
+    const Chunk& chunk = chunks_[c];
+    float distance2[kChunk];
+    for (int i = 0; i < kChunk; ++i) {
+      const float ex = chunk.x[i] - query.x(), ey = chunk.y[i] - query.y(), ez = chunk.z[i] - query.z();
+      distance2[i] = ex * ex + ey * ey + ez * ez;
+    }
+    if (least_of(distance2) > worst2) continue;
+    for (std::uint32_t i = 0; i < chunk.count; ++i) {
+      if (distance2[i] > worst2 || (found.count == k && distance2[i] == worst2)) continue;
+      keep(distance2[i], c * kChunk + i, k, found);
+      if (found.count == k) worst2 = found.distance2_m2[k - 1];
+    }
+  }
+}
+
 void VoxelMap::nearest(const Eigen::Vector3f& query, int k, float radius_m, Neighbours& found) const {
   found.count = 0;
   const float voxel_m = static_cast<float>(params_.voxel_m);
@@ -181,37 +242,24 @@ void VoxelMap::nearest(const Eigen::Vector3f& query, int k, float radius_m, Neig
   float slab[3][2 * kReachMax + 1];
   for (int axis = 0; axis < 3; ++axis) slab_distances(fraction[axis], voxel_m, reach, slab[axis]);
 
-  float worst = std::min(radius_m, static_cast<float>(reach) * voxel_m);
-  worst *= worst;
-  std::uint64_t group_key = ~std::uint64_t{0};
-  std::uint32_t group = SpatialHash::kAbsent;
+  float worst2 = std::min(radius_m, static_cast<float>(reach) * voxel_m);
+  worst2 *= worst2;
+  Rows rows(*this, cell, reach);
   const int steps = 2 * reach + 1;
   for (int iz = 0; iz < steps; ++iz) {
     const int dz = alternating(iz);
     const float to_z = slab[2][dz + reach];
-    if (to_z > worst) continue;
+    if (to_z > worst2) continue;
     for (int iy = 0; iy < steps; ++iy) {
       const int dy = alternating(iy);
       const float to_yz = to_z + slab[1][dy + reach];
-      if (to_yz > worst) continue;
+      if (to_yz > worst2) continue;
+      const std::uint32_t occupied = rows.occupied(cell.y() + dy, cell.z() + dz);
+      if (occupied == 0) continue;
       for (int ix = 0; ix < steps; ++ix) {
         const int dx = alternating(ix);
-        if (to_yz + slab[0][dx + reach] > worst) continue;
-        for (std::uint32_t c = first_chunk({cell.x() + dx, cell.y() + dy, cell.z() + dz}, group_key, group); c != kNone;
-             c = chunks_[c].next) {
-          const Chunk& chunk = chunks_[c];
-          float distance2[kChunk];
-          for (int i = 0; i < kChunk; ++i) {
-            const float ex = chunk.x[i] - query.x(), ey = chunk.y[i] - query.y(), ez = chunk.z[i] - query.z();
-            distance2[i] = ex * ex + ey * ey + ez * ez;
-          }
-          if (least_of(distance2) > worst) continue;
-          for (std::uint32_t i = 0; i < chunk.count; ++i) {
-            if (distance2[i] > worst || (found.count == k && distance2[i] == worst)) continue;
-            keep(distance2[i], c * kChunk + i, k, found);
-            if (found.count == k) worst = found.distance2_m2[k - 1];
-          }
-        }
+        if (!(occupied >> (dx + reach) & 1) || to_yz + slab[0][dx + reach] > worst2) continue;
+        search(rows.first_chunk(cell + Eigen::Vector3i(dx, dy, dz)), query, k, worst2, found);
       }
     }
   }

@@ -97,20 +97,28 @@ class VoxelMap {
 
  private:
   static constexpr int kChunk = 16;
-  static constexpr int kGroupBits = 3;  // 8 cells along each edge of a group
   static constexpr std::uint32_t kNone = 0xffffffffu;
   struct Chunk {
     std::array<float, kChunk> x, y, z;
     std::uint32_t next = kNone;
     std::uint32_t count = 0;
   };
-  using Group = std::array<std::uint32_t, 1u << (3 * kGroupBits)>;  // first chunk of each cell
+  struct Group {
+    static constexpr int kBits = 3, kMask = (1 << kBits) - 1;  // 8 cells along each edge
+    static std::size_t row_of(int y, int z);
+    static std::size_t place_of(const Eigen::Vector3i& cell);
+    static Eigen::Vector3i of(const Eigen::Vector3i& cell);  // which group
+
+    std::array<std::uint32_t, 1u << (3 * kBits)> first;  // chunk of each cell
+    std::array<std::uint8_t, 1u << (2 * kBits)> rows{};  // a bit for each cell along x that holds points
+  };
+  class Rows;
 
   bool has_room_for(const Eigen::Vector3f& position_W_m) const;
   std::uint32_t& first_of(const Eigen::Vector3i& cell);
   std::uint32_t new_chunk(std::uint32_t& first);
+  void search(std::uint32_t chunk, const Eigen::Vector3f& query_W_m, int k, float& worst2, Neighbours& found) const;
   void load_chunk(StateReader& in);
-  std::uint32_t first_chunk(const Eigen::Vector3i& cell, std::uint64_t& group_key, std::uint32_t& group) const;
 
   Params params_;
   float cells_per_m_ = 0.0f;
