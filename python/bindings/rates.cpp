@@ -244,7 +244,13 @@ auto bind_stream(nb::module_& m, const char* name, const char* doc,
           [rate, rate_state](Object& self) {
             return self.run([&](Running<Stream>& at) { return rate(at.filter).calibration(rate_state(at.state)); });
           },
-          "What has been learnt of the rig.");
+          "What has been learnt of the rig.")
+      .def(
+          "doubt",
+          [rate, rate_state](Object& self) {
+            return doubt_of(self.run([&](Running<Stream>& at) { return rate(at.filter).doubt(rate_state(at.state)); }));
+          },
+          nb::sig("def doubt(self) -> tumble.errors.TumbleError | None"), kDoubt);
   bind_copy<Object>(bound);
   return bound;
 }

@@ -194,6 +194,9 @@ void bind_door(nb::module_& m) {
           "take", [](Object& self) { return self.run([](Door& door) { return taken(door.odometry); }); },
           "The poses that have become known since the last call, each once: lag_s old, or live ones without a lag.")
       .def(
+          "doubt", [](Object& self) { return doubt_of(self.run([](Door& door) { return door.odometry.doubt(); })); },
+          nb::sig("def doubt(self) -> tumble.errors.TumbleError | None"), kDoubt)
+      .def(
           "finish", [](Object& self) { self.run([](Door& door) { door.odometry.finish(); }); },
           "Smooths what is still within the lag: the run has ended, until reset(). take() gives it.")
       .def(

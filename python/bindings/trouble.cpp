@@ -51,6 +51,11 @@ void require(const Status& status, std::optional<std::size_t> index, nb::object 
   throw nb::python_error();
 }
 
+nb::object doubt_of(const Status& status) {
+  if (status.ok()) return nb::none();
+  return error_class()(status.message().c_str(), to_string(status.trouble), status.field, status.value, status.bound);
+}
+
 void translate_invalid_params() {
   nb::register_exception_translator([](const std::exception_ptr& thrown, void*) {
     try {

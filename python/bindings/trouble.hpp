@@ -22,6 +22,12 @@ namespace nb = nanobind;
 /// were taken in. `so_far`: what came out of these.
 void require(const Status& status, std::optional<std::size_t> index = std::nullopt, nb::object so_far = nb::none());
 
+/// What doubt() of an estimator gives: nothing where all can be believed, else a TumbleError that is not raised.
+nb::object doubt_of(const Status& status);
+inline constexpr const char* kDoubt =
+    "Whether it can be believed just now: None, or what speaks against a sensor or the place on the map, as a\n"
+    "TumbleError that is not raised (field, value, bound; str() says it). The estimator goes on either way.";
+
 /// From here on InvalidParams, which constructors throw, is a TumbleError too.
 void translate_invalid_params();
 

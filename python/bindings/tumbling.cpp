@@ -137,6 +137,10 @@ void bind_talk(Class& bound) {
             return MapPoints{self.run([](TumblingOdometry& odometry) { return odometry.mapper().map(); })};
           },
           "The map within mapping_map_radius_m of the sensor.")
+      .def(
+          "doubt",
+          [](Object& self) { return doubt_of(self.run([](TumblingOdometry& odometry) { return odometry.doubt(); })); },
+          nb::sig("def doubt(self) -> tumble.errors.TumbleError | None"), kDoubt)
       .def_prop_ro(
           "gaps", [](Object& self) { return self.run([](TumblingOdometry& odometry) { return odometry.gaps(); }); },
           "of the IMU, after which the rates began anew")

@@ -287,6 +287,24 @@ def test_sweeps(hill):
     assert odometry.take() is None or odometry.take() is None
 
 
+def test_doubt_names_what_cannot_be_believed(hill, slip):
+    imu, unit = hill.imus[0], slip.imus[0]
+    from_on = len(imu.time_ns) // 4
+    frozen = imu.gyro.copy()
+    frozen[from_on:, 0] = frozen[from_on, 0]
+    for make in (lambda: tumble.TumblingOdometry(**tumble.tumbling_options(hill)), STREAMS["rate"], STREAMS["regime"]):
+        sound, harmed = make(), make()
+        sound.add_imu(imu.time_ns, imu.gyro, imu.accel)
+        assert sound.doubt() is None
+        harmed.add_imu(imu.time_ns, frozen, imu.accel)
+        doubt = harmed.doubt()
+        assert isinstance(doubt, tumble.TumbleError) and doubt.trouble == "out_of_range" and "gyro x" in str(doubt)
+        assert doubt.value > doubt.bound
+    sphere = tumble.RollingOdometry(units=[(tumble.sheets.phidget1044(), np.eye(4))], radius_m=0.145)
+    sphere.add_imu(unit.time_ns, unit.gyro, unit.accel)
+    assert sphere.doubt() is None
+
+
 def test_mapper_alone(hill):
     """LidarInertialOdometry with rates of a stream; the gyro alone is another thing."""
     imu, until = hill.imus[0], 8

@@ -43,6 +43,7 @@ void widen_frozen(const FrozenAxis& frozen, double sigma_rad_s, std::vector<Rate
 RestGravity rest_gravity(const sim::Sensors& sensors) {
   RestGravity::Params params;
   params.gravity_m_s2 = sensors.gravity_m_s2;
+  params.accel_range_m_s2 = sensors.imus.front().stated_accel_range_m_s2;
   return RestGravity(params);
 }
 
@@ -63,6 +64,8 @@ Status check_turning_between_rests(const sim::Sensors& sensors, std::span<const 
   }
   estimate.health["rest_gravity_missed_rad"] = state.miss_rad;
   estimate.health["rest_gravity_missed_sigma_rad"] = state.miss_sigma_rad;
+  estimate.health["rest_velocity_share"] = state.velocity_share;
+  estimate.health["rest_velocity_allowed_share"] = state.velocity_allowed_share;
   return told(gravity.verdict(state), estimate);
 }
 

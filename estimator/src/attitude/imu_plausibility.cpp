@@ -82,10 +82,10 @@ void ImuPlausibility::take(State& state) const {
     const double start = state.force_start_m_s2.norm();
     state.steady = state.steady && std::abs(force.norm() - start) <= params_.steady_share * start;
     if (state.length_s >= params_.window_s - 0.5 * length_s) {
-      if (state.steady) {
+      if (state.steady && state.in_range) {
         state.force_sum_m_s2 += force.norm();
         state.windows += 1.0;
-        if (state.in_range) compare(force, state);
+        compare(force, state);
       }
       state.open = false;
     }
@@ -116,6 +116,7 @@ void ImuPlausibility::compare(const Eigen::Vector3d& force_m_s2, State& state) c
   if (by_force < least) return;
   state.by_force_rad2 += by_force;
   state.by_gyro_rad2 += by_gyro;
+  state.turned_windows += 1.0;
   const Eigen::Matrix3d back = state.turned.conjugate().toRotationMatrix(), forth = back.transpose();
   for (std::size_t k = 0; k < state.unexplained_rad2.size(); ++k) {
     const AxisLabels& labels = axis_labels()[k];
@@ -130,19 +131,23 @@ double ImuPlausibility::force_share(const State& state) const {
   return state.force_sum_m_s2 / state.windows / params_.gravity_m_s2;
 }
 
+bool ImuPlausibility::turned(const State& state) const {
+  return state.by_force_rad2 >= params_.expert.turning.turned_min_rad2 &&
+         state.turned_windows >= params_.expert.turning.turned_windows_min;
+}
+
 double ImuPlausibility::unexplained_share(const State& state) const {
-  const double turned = std::max(state.by_force_rad2, state.by_gyro_rad2);
-  return turned < params_.expert.turning.turned_min_rad2 ? 0.0 : state.unexplained_rad2.front() / turned;
+  return turned(state) ? state.unexplained_rad2.front() / std::max(state.by_force_rad2, state.by_gyro_rad2) : 0.0;
 }
 
 /// imu_merge.md (I17).
 double ImuPlausibility::turning_slope(const State& state) const {
-  if (state.by_force_rad2 < params_.expert.turning.turned_min_rad2) return 1.0;
+  if (!turned(state)) return 1.0;
   return together_rad2(state) / std::max(state.by_gyro_rad2, kStandstillRad2);
 }
 
 double ImuPlausibility::turning_agreement(const State& state) const {
-  if (state.by_force_rad2 < params_.expert.turning.turned_min_rad2) return 1.0;
+  if (!turned(state)) return 1.0;
   return together_rad2(state) / std::sqrt(state.by_force_rad2 * std::max(state.by_gyro_rad2, kStandstillRad2));
 }
 

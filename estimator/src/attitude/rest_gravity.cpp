@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "tumble/angular_velocity/detail/rail_shares.hpp"
 #include "tumble/attitude/detail/timing.hpp"
 #include "tumble/common/so3.hpp"
 
@@ -12,6 +13,7 @@ namespace tumble {
 namespace {
 
 constexpr double kRested_s = 1.0;  // in all, for its size to be asked
+constexpr unsigned kAccelFlags = kClipAccelX | kClipAccelY | kClipAccelZ;
 
 }  // namespace
 
@@ -29,14 +31,13 @@ void RestGravity::step(const ImuSample& sample, const RateState& rate, State& st
   state.last_time_ns = sample.time_ns;
   if (!follows.ok()) {
     state.rest = {};
-    state.from.setZero();
+    state.from_m_s2.setZero();
     state.rests = false;
   }
   const bool rested = state.rests;
   state.rests = detector_.observe(sample, state.rest);
   if (!state.rests) {
-    state.turned = (state.turned * so3::exp(dt_s * rate.w_WI_I_rad_s)).normalized();
-    state.way_rad += dt_s * rate.w_WI_I_rad_s.norm();
+    turn(sample, rate, dt_s, state);
     if (rate.source != RateSource::measured) {
       state.stretch_s += dt_s;
       state.stretch_rad2_s += dt_s * rate.covariance_rad2_s2.trace();
@@ -49,9 +50,24 @@ void RestGravity::step(const ImuSample& sample, const RateState& rate, State& st
   if (!rested) arrive(state);
   state.rest_s += dt_s;
   state.force_sum_m += dt_s * sample.specific_force_m_s2.norm();
-  state.from = state.rest.mean_force_m_s2().normalized();
+  state.from_m_s2 = state.rest.mean_force_m_s2();
   state.turned.setIdentity();
+  state.velocity_sum_m_s.setZero();
+  state.way_s = state.hidden_m_s = 0.0;
   state.way_rad = state.variance_rad2 = state.stretch_s = state.stretch_rad2_s = 0.0;
+}
+
+/// A reading is a mean over its time, and stands in the middle of it: imu_merge.md (I22).
+void RestGravity::turn(const ImuSample& sample, const RateState& rate, double dt_s, State& state) const {
+  const Eigen::Quaterniond half = so3::exp(0.5 * dt_s * rate.w_WI_I_rad_s);
+  const Eigen::Vector3d& force = sample.specific_force_m_s2;
+  state.velocity_sum_m_s += dt_s * ((state.turned * half) * force);
+  state.turned = (state.turned * half * half).normalized();
+  state.way_rad += dt_s * rate.w_WI_I_rad_s.norm();
+  state.way_s += dt_s;
+  const double peak = force.cwiseAbs().maxCoeff();
+  const bool at_range = params_.accel_range_m_s2 > 0.0 && peak >= (1.0 - kBesideRail) * params_.accel_range_m_s2;
+  if (at_range || (sample.device_clip_flags & kAccelFlags) != 0) state.hidden_m_s += dt_s * peak;
 }
 
 /// What a rail hid of a stretch hangs together as long as the stretch lasts: imu_merge.md (I19).
@@ -63,14 +79,28 @@ void RestGravity::end_stretch(State& state) const {
 /// imu_merge.md (I19).
 void RestGravity::arrive(State& state) const {
   end_stretch(state);
-  if (state.from.isZero(0.0) || state.way_rad < params_.turned_least_rad) return;
-  const Eigen::Vector3d here = state.rest.mean_force_m_s2().normalized();
-  const double miss_rad = (state.turned.conjugate() * state.from - here).norm();
+  if (state.from_m_s2.isZero(0.0) || state.way_rad < params_.turned_least_rad) return;
+  const Eigen::Vector3d here_m_s2 = state.rest.mean_force_m_s2();
+  const double miss_rad = (state.turned.conjugate() * state.from_m_s2.normalized() - here_m_s2.normalized()).norm();
   const double sigma_rad = std::sqrt(state.variance_rad2);
   ++state.ways;
+  close_velocity(here_m_s2, sigma_rad, state);
   if (miss_rad / allowed_rad(sigma_rad) < state.miss_rad / allowed_rad(state.miss_sigma_rad)) return;
   state.miss_rad = miss_rad;
   state.miss_sigma_rad = sigma_rad;
+}
+
+/// imu_merge.md (I22), (I23).
+void RestGravity::close_velocity(const Eigen::Vector3d& here_m_s2, double sigma_rad, State& state) const {
+  const Eigen::Vector3d mean_m_s2 = state.velocity_sum_m_s / state.way_s;
+  const double from_start = (mean_m_s2 - state.from_m_s2).norm() / state.from_m_s2.norm();
+  const double from_end = (state.turned.conjugate() * mean_m_s2 - here_m_s2).norm() / here_m_s2.norm();
+  const double share = from_start + from_end;
+  const double hidden = 2.0 * state.hidden_m_s / (state.way_s * state.from_m_s2.norm());
+  const double allowed = std::hypot(allowed_rad(sigma_rad), hidden);
+  if (share * state.velocity_allowed_share < state.velocity_share * allowed) return;
+  state.velocity_share = share;
+  state.velocity_allowed_share = allowed;
 }
 
 /// imu_merge.md (I20).
@@ -97,6 +127,10 @@ Status RestGravity::verdict(const State& state) const {
   if (state.miss_rad > allowed) {
     return {Trouble::out_of_range, "angle by which the rates miss gravity's direction from one rest to the next",
             state.miss_rad, allowed};
+  }
+  if (state.velocity_share > state.velocity_allowed_share) {
+    return {Trouble::out_of_range, "velocity that the rates leave from one rest to the next as a share of gravity's",
+            state.velocity_share, state.velocity_allowed_share};
   }
   return {};
 }

@@ -9,6 +9,8 @@
 namespace tumble {
 
 void Localisation::add(const SweepReport& sweep) {
+  mapped_ = mapped_ || sweep.verdict != SweepVerdict::rejected;
+  if (!mapped_) return;
   const double variance_m2 = sweep.pose.covariance.topLeftCorner<3, 3>().trace();
   largest_sigma_m_ = std::max(largest_sigma_m_, std::sqrt(variance_m2));
   second_innovation_ = std::max(second_innovation_, std::min(largest_innovation_, sweep.innovation));

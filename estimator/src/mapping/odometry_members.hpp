@@ -2,6 +2,7 @@
 #pragma once
 
 #include "../common/imu_members.hpp"
+#include "tumble/mapping/detail/localisation.hpp"
 #include "tumble/mapping/detail/sweep_scale.hpp"
 #include "tumble/mapping/lidar_inertial_odometry.hpp"
 
@@ -57,6 +58,15 @@ void SweepScaleWatch::members(Self& s, Visitor& visit) {
   visit("scale.sweeps", s.sweeps_);
   visit("scale.changes", s.changes_);
   visit("scale.found", s.scale_);
+}
+
+template <class Self, class Visitor>
+void Localisation::members(Self& s, Visitor& visit) {
+  visit.scratch(s.matched_m_);  // of the parameters
+  visit("localisation.mapped", s.mapped_);
+  visit("localisation.largest_sigma_m", s.largest_sigma_m_);
+  visit("localisation.largest_innovation", s.largest_innovation_);
+  visit("localisation.second_innovation", s.second_innovation_);
 }
 
 template <StateOf<FlyingBody> Self, class Visitor>

@@ -72,6 +72,7 @@ OdometryPass::OdometryPass(const RegimeStream::Params& rate, const LidarInertial
       rate_state_(rates_.start()),
       mapper_(mapping),
       scale_(mapping.expert.gravity_m_s2, samples_in(kRoom_s, rate)),
+      localisation_(mapping.expert.matching.distance_m),
       rate_sigma_max_rad_s_(mapping.expert.prior.rate_sigma_max_rad_s),
       time_offset_s_(mapping.time_offset_s) {
   unsettled_.samples.reserve(samples_in(std::max(rate.rate.lag_s, kRoom_s), rate));
@@ -101,7 +102,9 @@ bool OdometryPass::covers(TimeNs end_ns) const {
 Status OdometryPass::add_sweep(TimeNs start_ns, TimeNs end_ns, std::span<const LidarPoint> points,
                                LidarInertialOdometry::SweepReport& report) {
   const Status status = mapper_.add_sweep(start_ns, end_ns, points, report);
-  if (!report.trajectory.empty()) scale_.add(report);
+  if (report.trajectory.empty()) return status;
+  scale_.add(report);
+  localisation_.add(report);
   return status;
 }
 
@@ -149,6 +152,7 @@ void OdometryPass::begin_rates(const RegimeStream::Params& rate) {
 void OdometryPass::take_map(const OdometryPass& other) {
   mapper_ = other.mapper_;
   scale_ = other.scale_;
+  localisation_ = other.localisation_;
   time_offset_s_ = other.time_offset_s_;
   told_ns_ = other.told_ns_;
 }

@@ -54,6 +54,7 @@ void OdometryPass::members(Self& s, Visitor& visit) {
   visit("pass.rates", s.rate_state_);
   visit("pass.mapper", s.mapper_);
   visit("pass.scale", s.scale_);
+  visit("pass.localisation", s.localisation_);
   visit.scratch(s.rate_sigma_max_rad_s_);                    // of the parameters
   visit("pass.time_offset_s", s.time_offset_s_, -1.0, 1.0);  // as the mapper's parameter
   visit("pass.unsettled", s.unsettled_);

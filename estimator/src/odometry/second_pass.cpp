@@ -47,6 +47,7 @@ void SecondPass::give_up() {
   pass_.reset();
   sweeps_.clear();
   samples_ = {};
+  next_sample_ = next_sweep_ = 0;  // of what is no more: a state that says otherwise is refused
 }
 
 void SecondPass::remember(const ImuSample& sample) {

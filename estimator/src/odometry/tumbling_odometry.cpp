@@ -119,7 +119,9 @@ Status TumblingOdometry::newest(PoseState& pose) const {
 
 Status TumblingOdometry::doubt() const {
   const Status of_imu = pass_.rates().rate().doubt(pass_.rate_state().rate);
-  return of_imu.ok() ? pass_.sweep_scale().verdict() : of_imu;
+  if (!of_imu.ok()) return of_imu;
+  const Status of_ranges = pass_.sweep_scale().verdict();
+  return of_ranges.ok() ? pass_.localisation().verdict() : of_ranges;
 }
 
 void TumblingOdometry::finish() {

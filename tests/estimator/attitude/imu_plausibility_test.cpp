@@ -213,6 +213,7 @@ TEST(ImuPlausibility, ALowSlopeIsToldWhereItExplainsWhatTheGyroLeaves) {
     constexpr double kTurned_rad2 = 10.0;  // by the gyro, well beyond what little is left out
     state.by_force_rad2 = kTurned_rad2 * by_force_rad2;
     state.by_gyro_rad2 = kTurned_rad2;
+    state.turned_windows = 100.0;
     const double unexplained = kTurned_rad2 * (by_force_rad2 + 1.0 - 2.0 * correlation * std::sqrt(by_force_rad2));
     std::fill(state.unexplained_rad2.begin(), state.unexplained_rad2.end(), unexplained);
     EXPECT_NEAR(plausibility.turning_agreement(state), correlation, 1e-9);
@@ -229,6 +230,24 @@ TEST(ImuPlausibility, ALowSlopeIsToldWhereItExplainsWhatTheGyroLeaves) {
   EXPECT_FALSE(verdict_at(0.3 * 0.3, 0.4)) << "a multiple of it";
 }
 
+// hill 85124: one window of a flight, in which the force at the IMU's place is of gravity's size, and turns
+TEST(ImuPlausibility, AFewWindowsSayNothingOfTheTurning) {
+  const ImuPlausibility plausibility({});
+  const auto after_turns = [&](int turns) {
+    ImuPlausibility::State state;
+    for (int k = 0; k < 400; ++k) {
+      const double t_s = 0.01 * k, angle = 3.0 * std::clamp(t_s - 1.0, 0.0, 0.2 * turns);
+      plausibility.step({.time_ns = TimeNs{k} * 10'000'000,
+                         .angular_velocity_rad_s = {0.0, 0.0, t_s > 1.0 && t_s < 1.0 + 0.2 * turns ? 3.0 : 0.0},
+                         .specific_force_m_s2 = 9.80665 * Eigen::Vector3d(std::cos(angle), std::sin(angle), 0.0)},
+                        state);
+    }
+    return plausibility.verdict(state);
+  };
+  EXPECT_TRUE(after_turns(2).ok()) << after_turns(2).message();
+  EXPECT_FALSE(after_turns(8).ok()) << "the other sense throughout";
+}
+
 TEST(ImuPlausibility, WhereTheGyroIsAtItsRailNothingIsCompared) {
   const testing::RollingTruth truth = l_roll();
   const ImuPlausibility plausibility({.gyro_range_rad_s = 1.0});
@@ -238,6 +257,24 @@ TEST(ImuPlausibility, WhereTheGyroIsAtItsRailNothingIsCompared) {
     plausibility.step(sample, state);
   }
   EXPECT_TRUE(plausibility.verdict(state).ok()) << plausibility.verdict(state).message();
+}
+
+// Nor is its size: what a rig that spins in flight feels at its place is as steady.
+TEST(ImuPlausibility, AForceIsNotTakenForGravityWhileTheGyroIsAtItsRail) {
+  const auto verdict = [](double range_rad_s) {
+    const ImuPlausibility plausibility({.gyro_range_rad_s = range_rad_s});
+    ImuPlausibility::State state;
+    for (int k = 0; k < 400; ++k) {
+      const bool flies = k >= 100;
+      plausibility.step({.time_ns = TimeNs{k} * 10'000'000,
+                         .angular_velocity_rad_s = {0.0, flies ? 10.0 : 0.0, 0.0},
+                         .specific_force_m_s2 = {flies ? -26.0 : 0.0, 0.0, flies ? 0.0 : 9.8}},
+                        state);
+    }
+    return plausibility.verdict(state);
+  };
+  EXPECT_TRUE(verdict(7.8).ok()) << verdict(7.8).message();
+  EXPECT_STREQ(verdict(12.0).field, "steady specific force as a share of gravity");
 }
 
 // Standing, with noise; from `from_s` on a triad repeats its reading for `for_s`.

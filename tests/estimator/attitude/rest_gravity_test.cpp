@@ -22,9 +22,17 @@ struct Way {
   Eigen::Vector3d rate_rad_s = {1.5, 2.0, -0.7};
   double turns_s = 3.0, rate_sigma_rad_s = 0.01;
   RateSource source = RateSource::measured;
+  bool shaken = true;
 };
 
-// At rest, turning at a constant rate with forces of any kind, and at rest again: R is known in closed form.
+// Of the world, for three whole periods on each axis: what it adds to the velocity it takes again.
+Eigen::Vector3d shaken_m_s2(double share_of_turn) {
+  constexpr double kTurn_rad = 6.283185307179586;
+  return {20.0 * std::sin(3.0 * kTurn_rad * share_of_turn), 30.0 * std::cos(3.0 * kTurn_rad * share_of_turn),
+          -15.0 * std::sin(6.0 * kTurn_rad * share_of_turn)};
+}
+
+// At rest, turning at a constant rate while it is shaken, and at rest again: R is known in closed form.
 RestGravity::State after(const Way& way, const Harm& harm, double scale_of_estimate = 1.0) {
   const RestGravity gravity({});
   RestGravity::State state;
@@ -37,8 +45,9 @@ RestGravity::State after(const Way& way, const Harm& harm, double scale_of_estim
     sample.time_ns = TimeNs{k} * 10'000'000;
     if (turns || turned_s == way.turns_s)
       sample.angular_velocity_rad_s = turns ? way.rate_rad_s : Eigen::Vector3d(0, 0, 0);
-    sample.specific_force_m_s2 = 9.80665 * (so3::exp(turned_s * way.rate_rad_s).conjugate() * up);
-    if (turns) sample.specific_force_m_s2 = {20.0 * noise(), 20.0 * noise(), 20.0 * noise()};
+    Eigen::Vector3d force = 9.80665 * up;
+    if (turns && way.shaken) force += shaken_m_s2(turned_s / way.turns_s);
+    sample.specific_force_m_s2 = so3::exp(turned_s * way.rate_rad_s).conjugate() * force;
     for (int j = 0; j < 3; ++j) sample.specific_force_m_s2[j] += 0.01 * noise();
     harm(sample);
     RateState rate;
@@ -59,6 +68,7 @@ TEST(RestGravity, RatesCarryGravityFromOneRestToTheNext) {
   EXPECT_TRUE(gravity.verdict(good).ok()) << gravity.verdict(good).message();
   EXPECT_EQ(good.ways, 1u);
   EXPECT_LT(good.miss_rad, 0.04) << "a sample of the turn, at most";
+  EXPECT_LT(good.velocity_share, 0.04);
   EXPECT_NEAR(gravity.size_share(good), 1.0, 1e-3);
 }
 
@@ -106,6 +116,73 @@ TEST(RestGravity, ErrorsOfAClippedStretchLastAsLongAsIt) {
   const Status status =
       gravity.verdict(after({.rate_sigma_rad_s = 0.025, .source = RateSource::bounded_only}, kNone, 1.05));
   EXPECT_TRUE(status.ok()) << status.message();
+}
+
+// Whole turns: by the other sense, or twice as many, gravity is where it was. Turned back by such rates the force goes
+// round the axis a, and what is left in the mean is (a u) a: imu_merge.md (I22).
+TEST(RestGravity, RatesThatMeetGravityByChanceLeaveAVelocity) {
+  const RestGravity gravity({});
+  const Eigen::Vector3d axis = Eigen::Vector3d(1.0, 0.4, -0.1).normalized();
+  const Way whole = {.rate_rad_s = 2.0 * 3.141592653589793 / 3.0 * axis};
+  const RestGravity::State good = after(whole, kNone);
+  EXPECT_TRUE(gravity.verdict(good).ok()) << gravity.verdict(good).message();
+  const double across = axis.cross(Eigen::Vector3d(0.3, -0.2, 1.0).normalized()).norm();
+  for (const double scale : {-1.0, 2.0}) {
+    // gravity may be anywhere by what these rates state; of the way 3.0 s are turned, 0.4 s it stands already
+    const Way unsure = {.rate_rad_s = whole.rate_rad_s, .rate_sigma_rad_s = 0.5, .shaken = false};
+    const RestGravity::State wrong = after(unsure, kNone, scale);
+    EXPECT_LT(wrong.miss_rad, 0.1) << "by chance";
+    EXPECT_NEAR(wrong.velocity_share, 2.0 * across * 3.0 / 3.4, 0.05) << scale;
+    EXPECT_STREQ(gravity.verdict(wrong).field,
+                 "velocity that the rates leave from one rest to the next as a share of gravity's");
+  }
+}
+
+// Wherever on the way it arises, an error of the turn by an angle counts as that angle, from both sides together.
+TEST(RestGravity, OneErrorOfTheTurnLeavesNoMoreVelocityThanItMisses) {
+  const RestGravity gravity({});
+  for (const int at : {210, 350, 490}) {
+    RestGravity::State state;
+    for (int k = 0; k < 700; ++k) {
+      ImuSample sample;
+      sample.time_ns = TimeNs{k} * 10'000'000;
+      const bool turns = k >= 200 && k < 500;
+      if (turns) sample.angular_velocity_rad_s = {0.0, 0.0, 1.0};
+      sample.specific_force_m_s2 = {0.0, 0.0, 9.80665};
+      RateState rate;
+      rate.w_WI_I_rad_s = sample.angular_velocity_rad_s;
+      if (k == at) rate.w_WI_I_rad_s.x() = 25.0;
+      gravity.step(sample, rate, state);
+    }
+    EXPECT_NEAR(state.miss_rad, 2.0 * std::sin(0.125), 1e-3) << at;
+    EXPECT_NEAR(state.velocity_share, state.miss_rad, 2e-3) << at;
+    EXPECT_TRUE(gravity.verdict(state).ok()) << gravity.verdict(state).message();
+  }
+}
+
+// A blow of twice what the accelerometer shows, for 0.3 s, and a long halt.
+TEST(RestGravity, WhatTheAccelerometersRailHidIsAllowed) {
+  constexpr double kRange_m_s2 = 30.0;
+  const auto struck = [&](const RestGravity& gravity, bool told) {
+    RestGravity::State state;
+    for (int k = 0; k < 800; ++k) {
+      ImuSample sample;
+      sample.time_ns = TimeNs{k} * 10'000'000;
+      const bool blow = k >= 200 && k < 230, halt = k >= 230 && k < 530;
+      if (blow || halt) sample.angular_velocity_rad_s = {0.0, 0.0, 1.0};
+      const double force_m_s2 = 9.80665 + (blow ? 50.0 : halt ? -5.0 : 0.0);
+      sample.specific_force_m_s2 = {0.0, 0.0, std::min(force_m_s2, kRange_m_s2)};
+      if (blow && told) sample.device_clip_flags = kClipAccelZ;
+      RateState rate;
+      rate.w_WI_I_rad_s = sample.angular_velocity_rad_s;
+      gravity.step(sample, rate, state);
+    }
+    return gravity.verdict(state);
+  };
+  EXPECT_FALSE(struck(RestGravity({}), false).ok()) << "nobody says that it clipped";
+  EXPECT_TRUE(struck(RestGravity({}), true).ok()) << struck(RestGravity({}), true).message();
+  EXPECT_TRUE(struck(RestGravity({.accel_range_m_s2 = kRange_m_s2}), false).ok());
+  EXPECT_FALSE(struck(RestGravity({.accel_range_m_s2 = 2.0 * kRange_m_s2}), false).ok());
 }
 
 TEST(RestGravity, OfOneRestOrATurnAboutTheVerticalNothingIsSaid) {

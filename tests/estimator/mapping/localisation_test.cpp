@@ -10,6 +10,7 @@ namespace {
 
 SweepReport sweep(double sigma_m, double innovation) {
   SweepReport report;
+  report.verdict = SweepVerdict::registered;
   report.pose.covariance.setZero();
   report.pose.covariance.diagonal().head<3>().setConstant(sigma_m * sigma_m / 3.0);
   report.innovation = innovation;
@@ -32,6 +33,20 @@ TEST(Localisation, IsWhatTheDeviationSaysHoweverManySweepsWereHeld) {
   const Status lost = after(sweep(1.1, 0.0));
   EXPECT_EQ(lost.trouble, Trouble::out_of_range) << "though it was found again";
   EXPECT_NE(std::string(lost.field).find("deviation"), std::string::npos);
+}
+
+TEST(Localisation, WithoutAMapNothingIsLost) {
+  Localisation localisation(1.0);
+  SweepReport empty = sweep(5.0, 0.0);
+  empty.verdict = SweepVerdict::rejected;
+  for (int k = 0; k < 10; ++k) localisation.add(empty);
+  EXPECT_TRUE(localisation.verdict().ok()) << "a lidar that says nothing";
+  SweepReport first = sweep(0.01, 0.0);
+  first.verdict = SweepVerdict::first;
+  localisation.add(first);
+  EXPECT_TRUE(localisation.verdict().ok());
+  localisation.add(empty);
+  EXPECT_FALSE(localisation.verdict().ok());
 }
 
 // A rail may hide more of one sweep than the rates knew; what is wrong of an IMU or a mounting comes back.

@@ -25,7 +25,9 @@ struct GravityTurningParams {
   double slope_min = 0.65, slope_max = 1.5;
   double turned_min_rad2 = 0.5;  ///< sum of squares below which nothing is said of it
   double turn_least_rad = 0.15;  ///< of a window, to count as turning
-  double still_share = 1e-6;     ///< of the gyro's turning; a spin in flight leaves 0.006 and less
+  /// So many of them: in one or two a push may pass for gravity, or what a rig that spins in flight feels at its place.
+  double turned_windows_min = 5.0;
+  double still_share = 1e-6;  ///< of the gyro's turning; a spin in flight leaves 0.006 and less
 
   template <class Self, class Visitor>
   static void fields(Self& p, Visitor& visit) {
@@ -34,6 +36,8 @@ struct GravityTurningParams {
     visit(p.turned_min_rad2,
           {"turned_min_rad2", "rad^2", 1e-12, 1e6, "sum of squares below which nothing is said of it"});
     visit(p.turn_least_rad, {"turn_least_rad", "rad", 1e-12, 3.0, "of a window, to count as turning"});
+    visit(p.turned_windows_min,
+          {"turned_windows_min", "1", 1.0, 1e6, "windows in which the force turned, to say something of it"});
     visit(p.still_share, {"still_share", "1", 0.0, 1.0, "of the gyro's turning, by which a force stands still"});
   }
 };

@@ -18,8 +18,12 @@ namespace tumble {
 /// by any angle, after a tumble of several turns by less than `miss_least_rad` in one of fifty; an accelerometer of
 /// another unit shows in the size. The rates are those of an estimate, whose covariance makes the bound wider.
 ///
-/// The equations are imu_merge.md (I19), (I20). Not seen: a body that comes to rest as it lay (a pendulum), turns about
-/// the vertical, an accelerometer with all three axes flipped, a run with less than two rests.
+/// Between two rests nothing is left of the velocity either: turned back by the rates, the forces of the way add to
+/// gravity alone. Rates that miss the direction at its end by chance hardly do so all the way.
+///
+/// The equations are imu_merge.md (I19), (I20), (I22), (I23). Not seen: a body that comes to rest as it lay (a
+/// pendulum), turns about the vertical, an accelerometer with all three axes flipped, a run with less than two rests.
+/// Mistaken for wrong rates: one rest on the ground and the other in a vehicle that goes on for good.
 class RestGravity {
  public:
   struct Params {
@@ -33,6 +37,7 @@ class RestGravity {
     double correlation_s = 0.1;     ///< for which errors of a rate last at least
     double turned_least_rad = 1.0;  ///< of the way between two rests, to count
     double gap_max_s = 1.0;         ///< a longer gap parts the rests
+    double accel_range_m_s2 = 0.0;  ///< as the device states it; 0: not stated
 
     /// Every number of it, stated once.
     template <class Self, class Visitor>
@@ -48,16 +53,21 @@ class RestGravity {
       visit(p.correlation_s, {"correlation_s", "s", 1e-4, 1e3, "for which errors of a rate last"});
       visit(p.turned_least_rad, {"turned_least_rad", "rad", 0.0, 1e3, "of the way between two rests, to be compared"});
       visit(p.gap_max_s, {"gap_max_s", "s", 1e-6, 3600.0, "a longer time between two samples parts the rests"});
+      visit(p.accel_range_m_s2,
+            {"accel_range_m_s2", "m/s^2", 0.0, kUnbounded, "as the device states it; 0: not stated"});
     }
   };
   struct State {
     RestDetector::State rest;
-    Eigen::Vector3d from = Eigen::Vector3d::Zero();  ///< unit, gravity's at the last rest in the sensor's axes; 0: none
+    Eigen::Vector3d from_m_s2 = Eigen::Vector3d::Zero();  ///< force at the last rest in the sensor's axes; 0: none
     Eigen::Quaterniond turned = Eigen::Quaterniond::Identity();  ///< since then
     double way_rad = 0.0, variance_rad2 = 0.0;                   ///< likewise
+    Eigen::Vector3d velocity_sum_m_s = Eigen::Vector3d::Zero();  ///< likewise, of force in the axes of that rest
+    double way_s = 0.0, hidden_m_s = 0.0;                        ///< likewise, and what the accelerometer's rail hid
     double stretch_s = 0.0, stretch_rad2_s = 0.0;                ///< of samples in a row that the gyro did not measure
     double rest_s = 0.0, force_sum_m = 0.0;                      ///< of all rests, and of force by time
     double miss_rad = 0.0, miss_sigma_rad = 0.0;                 ///< of the worst of the ways between two rests
+    double velocity_share = 0.0, velocity_allowed_share = 0.0;   ///< likewise, over what gravity gives in its time
     std::size_t ways = 0;                                        ///< that were compared
     TimeNs last_time_ns = 0;
     bool started = false, rests = false;
@@ -74,12 +84,15 @@ class RestGravity {
   double size_share(const State& state) const;
   /// `out_of_range` where that is not 1.
   Status size_verdict(const State& state) const;
-  /// The same, and where the rates of the worst way between two rests miss gravity by more than they may.
+  /// The same, and where the rates of the worst way between two rests miss gravity, or leave a velocity, by more than
+  /// they may.
   Status verdict(const State& state) const;
 
  private:
+  void turn(const ImuSample& sample, const RateState& rate, double dt_s, State& state) const;
   void end_stretch(State& state) const;
   void arrive(State& state) const;
+  void close_velocity(const Eigen::Vector3d& here_m_s2, double sigma_rad, State& state) const;
   double allowed_rad(double sigma_rad) const;
 
   Params params_;

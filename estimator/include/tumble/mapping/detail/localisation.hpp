@@ -12,8 +12,9 @@ namespace tumble {
 ///    whichever surface is nearest, and a place that is found again is one of many;
 ///  - surfaces moved two sweeps or more further than their priors allow. One alone may be a rail that hid more than the
 ///    rates knew, which is what surfaces are for; an IMU or a lidar that is not what it claims does so again.
-/// How many sweeps were held, and in which directions, is no evidence: it is in the deviation. Not seen: a map of
-/// another scale, which SweepScale tells, and clocks or mountings that are off by what the calibration explains.
+/// Before its first sweep with surfaces a run has no map to be lost on. How many sweeps were held, and in which
+/// directions, is no evidence: it is in the deviation. Not seen: a map of another scale, which SweepScale tells, and
+/// clocks or mountings that are off by what the calibration explains.
 class Localisation {
  public:
   /// `matched_m`: MatchingParams::distance_m of the mapper.
@@ -28,8 +29,13 @@ class Localisation {
   /// `out_of_range` with what was seen and the bound that it broke.
   Status verdict() const;
 
+  /// Stated once, in the library's own sources: state_visitor.hpp.
+  template <class Self, class Visitor>
+  static void members(Self& s, Visitor& visit);
+
  private:
   double matched_m_;
+  bool mapped_ = false;
   double largest_sigma_m_ = 0.0, largest_innovation_ = 0.0, second_innovation_ = 0.0;
 };
 

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "tumble/attitude/regime_stream.hpp"
+#include "tumble/mapping/detail/localisation.hpp"
 #include "tumble/mapping/detail/sweep_scale.hpp"
 #include "tumble/mapping/lidar_inertial_odometry.hpp"
 
@@ -55,6 +56,7 @@ class OdometryPass {
   const RegimeStream::State& rate_state() const { return rate_state_; }
   const LidarInertialOdometry& mapper() const { return mapper_; }
   const SweepScale& sweep_scale() const { return scale_.scale(); }
+  const Localisation& localisation() const { return localisation_; }
   const std::optional<RateState>& settled() const { return settled_; }
   std::size_t refused_samples() const { return refused_samples_; }
 
@@ -71,6 +73,7 @@ class OdometryPass {
   RegimeStream::State rate_state_;
   LidarInertialOdometry mapper_;
   SweepScaleWatch scale_;
+  Localisation localisation_;
   double rate_sigma_max_rad_s_, time_offset_s_;
   Queue unsettled_;  ///< samples whose rates are not settled yet
   std::optional<RateState> settled_;

@@ -1,0 +1,60 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// A run that no longer knows where on its map it is says so, for good.
+#include <gtest/gtest.h>
+
+#include <string>
+#include <vector>
+
+#include "thrown_body.hpp"
+#include "tumble/tumble.hpp"
+
+namespace tumble {
+namespace {
+
+using test::ThrownBody;
+
+TumblingOdometry::Params params_of(const ThrownBody& body) {
+  TumblingOdometry::Params params;
+  params.imu.rate_hz = body.imu_hz;
+  params.lever_arm_I_m = body.lever_arm_I_m;
+  return params;
+}
+
+/// Sweeps that begin within the span see nothing.
+void run(const ThrownBody& body, double blind_from_s, double blind_to_s, TumblingOdometry& odometry) {
+  const std::vector<ThrownBody::Sweep> sweeps = body.sweeps();
+  std::size_t next = 0;
+  for (const ImuSample& sample : body.imu()) {
+    ASSERT_TRUE(odometry.add_imu(sample).ok());
+    for (; next < sweeps.size() && sweeps[next].end_ns <= sample.time_ns; ++next) {
+      const double at_s = seconds(sweeps[next].start_ns);
+      const bool blind = at_s >= blind_from_s && at_s < blind_to_s;
+      const std::vector<LidarPoint> none;
+      ASSERT_TRUE(
+          odometry.add_sweep(sweeps[next].start_ns, sweeps[next].end_ns, blind ? none : sweeps[next].points).ok());
+    }
+    while (odometry.take()) continue;
+  }
+  odometry.finish();
+}
+
+TEST(TumblingOdometry, DoubtsAPlaceThatInertiaAloneHasFound) {
+  ThrownBody body;
+  TumblingOdometry seeing(params_of(body)), lost(params_of(body));
+  run(body, 0.0, 0.0, seeing);
+  EXPECT_TRUE(seeing.doubt().ok()) << seeing.doubt().message();
+  body.end_s = 9.0;
+  run(body, 1.0, body.end_s, lost);
+  const Status doubt = lost.doubt();
+  EXPECT_STREQ(doubt.field, "deviation of a sweep's position");
+  EXPECT_GT(doubt.value, doubt.bound);
+  EXPECT_EQ(doubt.bound, params_of(body).expert.mapping.expert.matching.distance_m);
+  // one that wakes up from its bytes knows it too; the run has ended, its second pass with it
+  TumblingOdometry awake(params_of(body));
+  const Status loaded = awake.load(lost.save());
+  ASSERT_TRUE(loaded.ok()) << loaded.message();
+  EXPECT_EQ(awake.doubt().message(), doubt.message());
+}
+
+}  // namespace
+}  // namespace tumble
