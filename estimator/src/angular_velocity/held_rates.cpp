@@ -50,6 +50,13 @@ std::size_t new_reading(std::span<const RateStreamKnot> window, std::size_t i) {
   return i;
 }
 
+// Of a triad whose clock is known.
+std::optional<HeldReadings> held_in_time(std::span<const ImuSample> samples, Triad triad, double sample_s) {
+  std::optional<HeldReadings> held = find_held(samples, triad);
+  if (held && (!held->steady() || held->period_s > sample_hold::kSlowest * sample_s)) held.reset();
+  return held;
+}
+
 }  // namespace
 
 std::optional<HeldRate> rate_between_readings(std::span<const RateStreamKnot> window, std::size_t k, double period_s) {
@@ -73,9 +80,9 @@ std::optional<HeldRate> rate_between_readings(std::span<const RateStreamKnot> wi
 
 std::vector<std::optional<HeldRate>> rates_between_readings(std::span<const ImuSample> samples,
                                                             std::span<const std::uint8_t> hidden) {
-  const std::optional<HeldReadings> held = find_held(samples, Triad::gyro);
   const double sample_s = median_period_s(samples);
-  if (!held || !held->steady() || held->period_s > sample_hold::kSlowest * sample_s) return {};
+  const std::optional<HeldReadings> held = held_in_time(samples, Triad::gyro, sample_s);
+  if (!held) return {};
   std::vector<OwnReading> own;
   for (std::size_t k = 0; k < samples.size(); ++k) {
     if (held->repeats[k]) continue;
@@ -91,6 +98,28 @@ std::vector<std::optional<HeldRate>> rates_between_readings(std::span<const ImuS
     if (b == own.size()) break;
     out[k] = between(b > 1 ? own[b - 2] : OwnReading{}, own[b - 1], own[b],
                      b + 1 < own.size() ? own[b + 1] : OwnReading{}, time_s, moment_s);
+  }
+  return out;
+}
+
+std::vector<Vector3d> forces_between_readings(std::span<const ImuSample> samples) {
+  const std::optional<HeldReadings> held = held_in_time(samples, Triad::accelerometer, median_period_s(samples));
+  if (!held) return {};
+  const auto stamp_s = [&](std::size_t k) { return seconds(samples[k].time_ns - samples[0].time_ns); };
+  std::vector<std::size_t> own;
+  for (std::size_t k = 0; k < samples.size(); ++k) {
+    if (!held->repeats[k]) own.push_back(k);
+  }
+  std::vector<Vector3d> out(samples.size());
+  std::size_t b = 0;
+  for (std::size_t k = 0; k < samples.size(); ++k) {
+    const auto told_s = [&](std::size_t i) { return stamp_s(own[i]) - held->behind_s(own[i]); };
+    while (b < own.size() && told_s(b) < stamp_s(k)) ++b;
+    out[k] = samples[k].specific_force_m_s2;
+    if (b == 0 || b == own.size()) continue;
+    const double span_s = told_s(b) - told_s(b - 1);
+    const double u = span_s > 0.0 ? (stamp_s(k) - told_s(b - 1)) / span_s : 0.0;
+    out[k] = (1.0 - u) * samples[own[b - 1]].specific_force_m_s2 + u * samples[own[b]].specific_force_m_s2;
   }
   return out;
 }

@@ -41,10 +41,10 @@ void mark_held(std::span<const ImuSample> samples, std::span<RateObservation> ob
   const std::optional<HeldReadings> accel = find_held(samples, Triad::accelerometer);
   for (std::size_t k = 0; k < observations.size(); ++k) {
     if (gyro) {
-      observations[k].gyro_age_s = gyro->behind_s(k);
+      observations[k].gyro_age_s = gyro->age_s[k];
       observations[k].gyro_repeats = gyro->repeats[k] && !observations[k].at_rest;
     }
-    if (accel) observations[k].accel_age_s = accel->behind_s(k);
+    if (accel) observations[k].accel_age_s = accel->age_s[k];
   }
   if (gyro) health.gyro_update_s = gyro->period_s;
   if (accel) health.accel_update_s = accel->period_s;

@@ -76,6 +76,33 @@ TEST(HeldRates, NothingIsSaidWithoutBothReadings) {
   EXPECT_FALSE(rate_between_readings(window, 6, kPeriod_s).has_value());  // each sample has its own
 }
 
+// Forces along a line come back at the middle of the sample's own window, but for what the search leaves of the clock; as
+// said they are later by the reading's age and by its longer window.
+TEST(HeldRates, ForcesOnALineComeBackAtTheirOwnTime) {
+  constexpr std::size_t kEach = 4;
+  constexpr double kSlope_m_s3 = 10.0;
+  std::vector<ImuSample> samples(400), all;
+  for (std::size_t k = 0; k < samples.size(); ++k) {
+    samples[k].time_ns = static_cast<TimeNs>(k) * 10'000'000;
+    samples[k].angular_velocity_rad_s = Vector3d(1.0 + 1e-3 * static_cast<double>(k), 0.0, 0.0);
+    samples[k].specific_force_m_s2 = Vector3d(kSlope_m_s3 * kPeriod_s * (static_cast<double>(k) - 0.5), 0.0, 1.0);
+  }
+  EXPECT_TRUE(forces_between_readings(samples).empty());  // each sample has its own
+  all = samples;
+  for (std::size_t k = 0; k < samples.size(); ++k) {
+    // taken half a sample before it is said; the middle of a window of half the period
+    const double taken = static_cast<double>(k / kEach * kEach) - 0.5, middle = taken - 0.25 * kEach;
+    samples[k].specific_force_m_s2.x() = kSlope_m_s3 * kPeriod_s * middle;
+  }
+  const std::vector<Vector3d> found = forces_between_readings(samples);
+  ASSERT_EQ(found.size(), samples.size());
+  for (std::size_t k = 2 * kEach; k + 2 * kEach < samples.size(); ++k) {
+    const double truth = all[k].specific_force_m_s2.x();
+    EXPECT_NEAR(found[k].x(), truth, 0.5 * kSlope_m_s3 * kPeriod_s) << k;
+    EXPECT_GT(truth - samples[k].specific_force_m_s2.x(), 0.9 * kSlope_m_s3 * kPeriod_s) << k;
+  }
+}
+
 /// A tumble of 100 Hz whose gyro gives the mean over each `window` thousandths of a second.
 TumbleRecording slow_gyro(std::uint64_t seed, std::size_t window) {
   constexpr std::size_t kFine = 10;

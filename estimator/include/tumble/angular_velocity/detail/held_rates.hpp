@@ -12,7 +12,7 @@
 #include "tumble/common/imu.hpp"
 
 /// Rates of a gyro that is slower than its log, whose readings are said again and tell of what was: cubic between the
-/// readings about a sample, each at the time of which it tells. docs/maths/rate_stream.md (R98).
+/// readings about a sample, each at the time of which it tells. docs/maths/rate_stream.md (R100).
 namespace tumble {
 
 /// A rate between two readings of the gyro, its bias included.
@@ -29,5 +29,10 @@ std::optional<HeldRate> rate_between_readings(std::span<const RateStreamKnot> wi
 /// sample: nothing beside such a reading, nor at the ends. O(N), and find_held.
 std::vector<std::optional<HeldRate>> rates_between_readings(std::span<const ImuSample> samples,
                                                             std::span<const std::uint8_t> hidden);
+
+/// What an accelerometer that is slower than its log says of each sample's own time: between two readings along the line
+/// from one to the other, as said before the first and after the last. Empty where the log has a reading for each
+/// sample. O(N), and find_held.
+std::vector<Eigen::Vector3d> forces_between_readings(std::span<const ImuSample> samples);
 
 }  // namespace tumble
