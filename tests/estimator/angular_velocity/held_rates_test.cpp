@@ -76,8 +76,8 @@ TEST(HeldRates, NothingIsSaidWithoutBothReadings) {
   EXPECT_FALSE(rate_between_readings(window, 6, kPeriod_s).has_value());  // each sample has its own
 }
 
-// Forces along a line come back at the middle of the sample's own window, but for what the search leaves of the clock; as
-// said they are later by the reading's age and by its longer window.
+// Forces along a line come back at the middle of the sample's own window, but for what the search leaves of the clock;
+// as said they are later by the reading's age and by its longer window.
 TEST(HeldRates, ForcesOnALineComeBackAtTheirOwnTime) {
   constexpr std::size_t kEach = 4;
   constexpr double kSlope_m_s3 = 10.0;

@@ -51,8 +51,8 @@ TEST(RegimeSmoother, ATwirlIsTheHands) {
   EXPECT_LT(clipped_error(recording, joined), 0.5 * clipped_error(recording, alone));
 }
 
-// A force is said four times; taken for that of each sample's own time the hidden stretches look like flight, and are off
-// by 11 rad/s.
+// A force is said four times; taken for that of each sample's own time the hidden stretches look like flight, and are
+// off by 11 rad/s.
 TEST(RegimeSmoother, AForceThatIsHeldIsComparedInItsOwnTime) {
   CarriedMotion motion;
   motion.spin_rad = 4.0;
