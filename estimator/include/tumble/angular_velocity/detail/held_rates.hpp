@@ -30,8 +30,8 @@ std::optional<HeldRate> rate_between_readings(std::span<const RateStreamKnot> wi
 std::vector<std::optional<HeldRate>> rates_between_readings(std::span<const ImuSample> samples,
                                                             std::span<const std::uint8_t> hidden);
 
-/// What an accelerometer that is slower than its log says of each sample's own time: between two readings along the line
-/// from one to the other, as said before the first and after the last. Empty where the log has a reading for each
+/// What an accelerometer that is slower than its log says of each sample's own time: between two readings along the
+/// line from one to the other, as said before the first and after the last. Empty where the log has a reading for each
 /// sample. O(N), and find_held.
 std::vector<Eigen::Vector3d> forces_between_readings(std::span<const ImuSample> samples);
 
