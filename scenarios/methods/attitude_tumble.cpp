@@ -56,7 +56,7 @@ Estimate run_rig(const sim::Sensors& sensors, const sim::Values& parameters) {
   (void)check_flights(sensors, samples, estimate);
   tell_frozen_axes(sensors, samples, estimate);
   const std::vector<Eigen::Matrix3d> covariances =
-      recover_clipped(sensors, samples, estimate.health).covariances_rad2_s2;
+      recover_in_time(sensors, samples, estimate.health).covariances_rad2_s2;
   TumbleAttitude::Params params = stated(sensors);
   attitude_tumble_settings().apply(parameters, params);
   const TumbleAttitude filter(params);

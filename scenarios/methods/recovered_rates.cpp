@@ -5,9 +5,12 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <optional>
+#include <utility>
 
 #include "scenarios/methods/carried.hpp"
 #include "scenarios/methods/rate_tumble.hpp"
+#include "tumble/angular_velocity/detail/held_rates.hpp"
 
 namespace tumble::scenarios {
 
@@ -25,30 +28,72 @@ Eigen::Vector3d bias_rad_s(const std::vector<ImuSample>& samples, const std::vec
   return bias;
 }
 
-}  // namespace
+/// What rate/tumble says of samples that are not as read; nothing where no reading clips, or it has no answer.
+struct Recovery {
+  std::vector<RateState> rates;
+  Eigen::Vector3d bias_rad_s = Eigen::Vector3d::Zero();
+  double carried = 0.0;
 
-RecoveredRates recover_clipped(const sim::Sensors& sensors, std::vector<ImuSample>& samples,
-                               std::map<std::string, double>& health) {
-  RecoveredRates out;
-  out.covariances_rad2_s2.assign(samples.size(), Eigen::Matrix3d::Zero());
+  void put(std::size_t k, std::vector<ImuSample>& samples, std::vector<Eigen::Matrix3d>& covariances_rad2_s2) const {
+    samples[k].angular_velocity_rad_s = rates[k].w_WI_I_rad_s + bias_rad_s;
+    covariances_rad2_s2[k] = rates[k].covariance_rad2_s2;
+  }
+};
+
+Recovery recovery_of(const sim::Sensors& sensors, const std::vector<ImuSample>& samples) {
+  Recovery out;
   const std::vector<ClipSigns> signs = find_clipped(sensors.imus.front(), samples).signs;
   const auto clips = [](const ClipSigns& sign) { return sign.gyro != std::array<std::int8_t, 3>{}; };
   if (std::none_of(signs.begin(), signs.end(), clips)) return out;
   const RateSmoother::Params params = stated_params(sensors.imus.front(), rate_tumble_settings().defaults());
-  std::vector<RateState> rates;
   std::map<std::string, double> of_rates;
+  std::vector<RateState> rates;
   if (!tumble_rates(sensors, samples, params, rates, of_rates).ok()) return out;
   const auto carried = of_rates.find("regime_carried_clipped_max");
   if (carried != of_rates.end()) out.carried = carried->second;
-  const Eigen::Vector3d bias = bias_rad_s(samples, rates);
+  out.bias_rad_s = bias_rad_s(samples, rates);
+  out.rates = std::move(rates);
+  return out;
+}
+
+RecoveredRates recover(const Recovery& recovery, std::vector<ImuSample>& samples,
+                       std::map<std::string, double>& health) {
+  RecoveredRates out;
+  out.covariances_rad2_s2.assign(samples.size(), Eigen::Matrix3d::Zero());
+  out.carried = recovery.carried;
+  if (recovery.rates.empty()) return out;
   double recovered = 0.0;
   for (std::size_t k = 0; k < samples.size(); ++k) {
-    if (rates[k].clipped_axes == 0) continue;
-    samples[k].angular_velocity_rad_s = rates[k].w_WI_I_rad_s + bias;
-    out.covariances_rad2_s2[k] = rates[k].covariance_rad2_s2;
+    if (recovery.rates[k].clipped_axes == 0) continue;
+    recovery.put(k, samples, out.covariances_rad2_s2);
     recovered += 1.0;
   }
   health["samples_recovered"] = recovered;
+  return out;
+}
+
+}  // namespace
+
+RecoveredRates recover_clipped(const sim::Sensors& sensors, std::vector<ImuSample>& samples,
+                               std::map<std::string, double>& health) {
+  return recover(recovery_of(sensors, samples), samples, health);
+}
+
+RecoveredRates recover_in_time(const sim::Sensors& sensors, std::vector<ImuSample>& samples,
+                               std::map<std::string, double>& health) {
+  const Recovery recovery = recovery_of(sensors, samples);
+  std::vector<std::uint8_t> hidden(samples.size(), 0);
+  for (std::size_t k = 0; k < recovery.rates.size(); ++k) hidden[k] = recovery.rates[k].clipped_axes;
+  const std::vector<std::optional<HeldRate>> told = rates_between_readings(samples, hidden);
+  RecoveredRates out = recover(recovery, samples, health);
+  for (std::size_t k = 0; k < told.size(); ++k) {
+    if (told[k]) {
+      samples[k].angular_velocity_rad_s = told[k]->rate_rad_s;
+      out.covariances_rad2_s2[k].setZero();
+    } else if (!recovery.rates.empty()) {
+      recovery.put(k, samples, out.covariances_rad2_s2);
+    }
+  }
   return out;
 }
 

@@ -29,13 +29,11 @@ HeldReading held_reading(const HoldWatch::Memory& memory, const Eigen::Vector3d&
 }  // namespace
 
 Eigen::Vector3d HeldReading::stale() const {
-  if (!held()) return Eigen::Vector3d::Zero();
-  const double behind = age_samples + 0.5 * (period_samples - 1.0);
-  return behind / period_samples * change;
+  return behind_samples() / period_samples * change;
 }
 
-void HoldWatch::observe(const ImuSample& sample, State& state) const {
-  const bool moves = sample.angular_velocity_rad_s.norm() >= kMoving_rad_s;
+void HoldWatch::observe(const ImuSample& sample, bool clipped, State& state) const {
+  const bool moves = !clipped && sample.angular_velocity_rad_s.norm() >= kMoving_rad_s;
   for (const Triad triad : {Triad::gyro, Triad::accelerometer}) {
     Memory& memory = state.memory[static_cast<std::size_t>(triad)];
     const Eigen::Vector3d& reading = reading_of(sample, triad);

@@ -8,6 +8,7 @@
 #include "near_rails.hpp"
 #include "rate_rounds.hpp"
 #include "sample_hold.hpp"
+#include "tumble/angular_velocity/detail/held_rates.hpp"
 #include "tumble/angular_velocity/detail/recording_check.hpp"
 #include "unseen_rails.hpp"
 
@@ -61,6 +62,17 @@ Status check_auxiliary_imus(const RateModelParams& params,
             static_cast<double>(count)};
   }
   return {};
+}
+
+// What a gyro that is slower than the log says of each sample's own time, where it reads all axes.
+std::vector<std::optional<HeldRate>> read_in_time(std::span<const ImuSample> samples,
+                                                  std::span<const RateObservation> observations) {
+  std::vector<std::uint8_t> hidden(samples.size());
+  for (std::size_t k = 0; k < hidden.size(); ++k) {
+    const RateObservation& o = observations[k];
+    hidden[k] = static_cast<std::uint8_t>(o.clipping.gyro | o.clipping.void_gyro | o.read_in_part());
+  }
+  return rates_between_readings(samples, hidden);
 }
 
 // What remains open of the device's errors, in a rate, and no more than any rate: rate_smoother.md (R41).
@@ -214,11 +226,19 @@ Status RateSmoother::estimate(std::span<const ImuSample> samples,
   std::vector<RateState> states(samples.size());
   const std::vector<std::uint8_t> near =
       may_meet_rails(samples, health.rails_upright ? RailPlanes{} : planes);  // upright ones show to the bit
+  const std::vector<std::optional<HeldRate>> own = read_in_time(samples, observations);
   std::size_t in_flight = 0;
   for (std::size_t k = 0; k < samples.size(); ++k) {
     const RateEstimate& estimate = solution.estimates[k];
     RateState& state = states[k];
     state = state_later(observations, solution.estimates, covariances, k, gyro_late_s);
+    // a motion that flight tells is smoother than readings; of any other they say more than white jerk between them
+    const bool by_readings = estimate.flight_weight < 0.5 && !observations[k].at_rest && gyro_late_s == 0.0;
+    if (by_readings && !own.empty() && own[k]) {
+      const Vector3d felt = health.sensor_errors.errors.felt_s_m * samples[k].specific_force_m_s2;
+      state.w_WI_I_rad_s = own[k]->rate_rad_s - felt - solution.rig.gyro_bias_rad_s;
+      state.covariance_rad2_s2.diagonal() += own[k]->variance_rad2_s2;
+    }
     state.time_ns = samples[k].time_ns;
     state.clipped_axes = clippings[k].gyro | clippings[k].void_gyro;
     state.source = rate_source(observations[k], estimate, state.covariance_rad2_s2, params_.recovered_sigma_rad_s);

@@ -8,6 +8,7 @@
 #include <limits>
 
 #include "element_clipping.hpp"
+#include "tumble/angular_velocity/detail/held_rates.hpp"
 
 namespace tumble {
 
@@ -99,7 +100,7 @@ Status RateStream::push(const ImuSample& sample, std::span<const AuxiliaryReadin
   } else if (weigh(state); !step(state)) {
     ++state.failures;
   }
-  if (state.window.size() >= capacity_) out = to_state(state.window[state.window.size() - capacity_], state);
+  if (state.window.size() >= capacity_) out = to_state(state.window.size() - capacity_, state);
   return {};
 }
 
@@ -183,14 +184,14 @@ void RateStream::append(const ImuSample& sample, std::span<const AuxiliaryReadin
   frozen_.step(sample, state.frozen);
   sense_.step(sample, state.sense);
   const bool changed = rails_.observe(sample, state.rails);
-  holds_.observe(sample, state.holds);
   Knot knot;
   knot.by_walls = rails_.walls().classify(sample, state.rails.known.walls);
+  holds_.observe(sample, (knot.by_walls.gyro | knot.by_walls.void_gyro) != 0, state.holds);
   knot.observation = {sample, knot.by_walls, rests_.observe(sample, state.rests)};
   std::copy(auxiliary_imus.begin(), auxiliary_imus.end(), knot.observation.auxiliary_imus.begin());
   const HeldReading& held = state.holds.of(Triad::gyro);
   knot.repeats = held.repeats && !knot.observation.at_rest;
-  if (!knot.observation.at_rest) knot.stale_rad_s = held.stale();
+  if (!knot.observation.at_rest) knot.held = held;
   knot.estimate.knot.rate_rad_s = sample.angular_velocity_rad_s;
   // until a step of the window says more
   knot.covariance_rad2_s2 = std::pow(params_.model.rate_max_rad_s, 2) * Eigen::Matrix3d::Identity();
@@ -344,13 +345,19 @@ Eigen::Matrix3d RateStream::doubted(const Knot& knot, const State& state) const 
   return out;
 }
 
-RateState RateStream::to_state(const Knot& knot, const State& state) const {
+RateState RateStream::to_state(std::size_t at, const State& state) const {
+  const Knot& knot = state.window[at];
   const Eigen::Matrix3d covariance = doubted(knot, state);
   RateState out;
   out.time_ns = knot.observation.sample.time_ns;
   out.w_WI_I_rad_s = knot.estimate.knot.rate_rad_s;
   out.covariance_rad2_s2 = model_.reported(covariance, knot.observation, knot.estimate);
-  out.covariance_rad2_s2.diagonal() += knot.stale_rad_s.cwiseAbs2();
+  if (const std::optional<HeldRate> own = rate_between_readings(state.window, at, params_.period_s)) {
+    out.w_WI_I_rad_s = own->rate_rad_s - state.rig.gyro_bias_rad_s;
+    out.covariance_rad2_s2.diagonal() += own->variance_rad2_s2;
+  } else {
+    out.covariance_rad2_s2.diagonal() += knot.held.stale().cwiseAbs2();
+  }
   out.covariance_rad2_s2.diagonal() += frozen_.rate_variance_rad2_s2(out.time_ns, state.frozen);
   out.clipped_axes = knot.observation.clipping.gyro | knot.observation.clipping.void_gyro;
   out.source = rate_source(knot.observation, knot.estimate, covariance, params_.recovered_sigma_rad_s);
@@ -359,12 +366,12 @@ RateState RateStream::to_state(const Knot& knot, const State& state) const {
 
 std::optional<RateState> RateStream::newest(const State& state) const {
   if (state.window.empty()) return std::nullopt;
-  return to_state(state.window.back(), state);
+  return to_state(state.window.size() - 1, state);
 }
 
 void RateStream::flush(const State& state, std::vector<RateState>& out) const {
   const std::size_t given = state.window.size() + 1 - std::min(capacity_, state.window.size() + 1);
-  for (std::size_t k = given; k < state.window.size(); ++k) out.push_back(to_state(state.window[k], state));
+  for (std::size_t k = given; k < state.window.size(); ++k) out.push_back(to_state(k, state));
 }
 
 }  // namespace tumble

@@ -84,7 +84,7 @@ void members(Self& s, Visitor& visit) {
   visit("knot.approach_rad_s", s.approach_rad_s);
   visit("knot.age", s.age);
   visit("knot.repeats", s.repeats);
-  visit("knot.stale_rad_s", s.stale_rad_s);
+  visit("knot.held", s.held);
 }
 
 template <StateOf<FlightSense::Reading> Self, class Visitor>

@@ -14,10 +14,11 @@ namespace {
 
 using sample_hold::kMoving_rad_s, sample_hold::kRepeatsMin, sample_hold::kMovingMin, sample_hold::kMovingMax;
 
-constexpr double kAgreementMin = 0.9;
 // Clocks tried: periods about the mean one (as a share of it), phases; the same again about the best.
 constexpr int kPeriods = 100, kPhases = 24, kFine = 10;
 constexpr double kPeriodShare = 0.03;
+// Share of its period for which an accelerometer filters: the middle of none and all.
+constexpr double kForceWindow = 0.5;
 
 // A clock in units of the time from sample to sample.
 struct Clock {
@@ -107,8 +108,11 @@ std::optional<HeldReadings> find_held(std::span<const ImuSample> samples, Triad 
   clock = best_clock(clock, 2.0 * kPeriodShare / kPeriods, kFine, moving, out.repeats, out.agreement);
   const double sample_s = median_period_s(samples);
   out.period_s = clock.period * sample_s;
-  if (out.agreement < kAgreementMin) return out;
+  if (!out.steady()) return out;
   for (std::size_t k = 0; k < samples.size(); ++k) out.age_s[k] = clock.age(static_cast<double>(k)) * sample_s;
+  if (clock.period > sample_hold::kSlowest) return out;
+  const double window_share = triad == Triad::gyro ? 1.0 : kForceWindow;
+  out.window_lag_s = 0.5 * std::max(0.0, window_share * out.period_s - sample_s);
   return out;
 }
 

@@ -15,7 +15,7 @@ namespace tumble {
 /// least and at most, of which this share repeats; what repeats for more steps of the log stands still, is blind or
 /// frozen.
 namespace sample_hold {
-inline constexpr double kMoving_rad_s = 0.3, kRepeatsMin = 0.05, kSlowest = 10.0;
+inline constexpr double kMoving_rad_s = 0.3, kRepeatsMin = 0.05, kSlowest = 10.0, kAgreementMin = 0.9;
 inline constexpr std::size_t kMovingMin = 30, kMovingMax = 1000;
 }  // namespace sample_hold
 
@@ -25,12 +25,20 @@ struct HeldReadings {
   double agreement = 0.0;     ///< share of the samples whose being new or repeated a steady period explains
   std::vector<double> age_s;  ///< of each sample: how old its reading is beyond that of a reading taken at once
   std::vector<bool> repeats;  ///< it is the reading of the sample before
+  /// By what the middle of a reading's window lies before that of a sample's, when it ends with the sample: a gyro
+  /// integrates for its own period, an accelerometer for something between none and all of it. docs/maths/carried.md
+  /// (C35), (C36).
+  double window_lag_s = 0.0;
+
+  bool steady() const { return agreement >= sample_hold::kAgreementMin; }
+  /// How long before its stamp, and the window that ends there, a sample's reading tells of the motion.
+  double behind_s(std::size_t sample) const { return age_s[sample] + window_lag_s; }
 };
 
 /// Finds them: none where fewer than a twentieth of the samples in motion (faster than 0.3 rad/s, 30 of them at least)
 /// repeat all three numbers of the one before. Period and phase are those with which a steady clock explains best which
-/// samples repeat; ages follow from them, and are zero where no steady clock does (agreement below 0.9). O(N) for each
-/// of some 5000 clocks, on 1000 samples at most.
+/// samples repeat; ages and the windows' lag follow from them, and are zero where no steady clock does (agreement below
+/// 0.9). O(N) for each of some 5000 clocks, on 1000 samples at most.
 std::optional<HeldReadings> find_held(std::span<const ImuSample> samples, Triad triad);
 
 /// The samples nearest to one whose gyro (or accelerometer) says something else; null where there is none.

@@ -61,7 +61,7 @@ Readings readings_of(std::span<const ImuSample> samples, std::span<const Clippin
   Readings out;
   for (std::size_t k = 0; k < samples.size(); ++k) {
     if (held && held->repeats[k]) continue;
-    const double at_s = seconds(samples[k].time_ns - samples[0].time_ns) - (held ? held->age_s[k] : 0.0);
+    const double at_s = seconds(samples[k].time_ns - samples[0].time_ns) - (held ? held->behind_s(k) : 0.0);
     if (out.size() > 0 && !(at_s > out.time_s.back() + kApart_s)) continue;
     if (triad == Triad::gyro) {
       out.add(at_s, samples[k].angular_velocity_rad_s, (clippings[k].gyro | clippings[k].void_gyro) != 0);

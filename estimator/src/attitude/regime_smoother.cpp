@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cstddef>
 
+#include "tumble/angular_velocity/detail/held_rates.hpp"
 #include "tumble/attitude/carried_elements.hpp"
 
 namespace tumble {
@@ -13,6 +14,15 @@ namespace {
 /// Whether a reading is clipped or doubted; one that only may have met its rail in a part of its window is read.
 bool unread(const RateReport& report, const RateState& rate, std::size_t k) {
   return rate.clipped_axes != 0 || report.doubted_axes[k] != 0;
+}
+
+/// The samples with the forces of their own time, as the rates are; those of an accelerometer that repeats are older.
+/// carried.md (C28)
+std::vector<ImuSample> forces_in_time(std::span<const ImuSample> samples) {
+  std::vector<ImuSample> out(samples.begin(), samples.end());
+  const std::vector<Eigen::Vector3d> forces = forces_between_readings(samples);
+  for (std::size_t k = 0; k < forces.size(); ++k) out[k].specific_force_m_s2 = forces[k];
+  return out;
 }
 
 }  // namespace
@@ -35,7 +45,7 @@ void RegimeSmoother::join(std::span<const ImuSample> samples, std::vector<RateSt
   const RigCalibration& rig = report.rate.calibration;
   const Eigen::Matrix3d lever_covariance = rig.covariance.topLeftCorner<3, 3>();
   std::vector<RegimeShares> shares;
-  if (!evidence_.find(samples, rates, rig.constants.lever_arm_m, lever_covariance, shares).ok()) return;
+  if (!evidence_.find(forces_in_time(samples), rates, rig.constants.lever_arm_m, lever_covariance, shares).ok()) return;
   report.judged = true;
   const double each = 1.0 / static_cast<double>(shares.size());
   for (const RegimeShares& share : shares) {

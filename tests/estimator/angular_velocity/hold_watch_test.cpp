@@ -18,17 +18,17 @@ struct Watched {
 
 /// Samples of a body that turns: the gyro reads every `period` of them, a quarter of one after the first. Its rate
 /// rises by 1e-4 rad/s a sample.
-Watched watch(double period, double rate_rad_s, int count = 1200) {
+Watched watch(double period, double rate_rad_s, bool clipped = false) {
   Watched out;
   const HoldWatch holds;
   double before = -1.0;
-  for (int k = 0; k < count; ++k) {
+  for (int k = 0; k < 1200; ++k) {
     const double read = 0.25 + period * std::floor((k - 0.25) / period);
     ImuSample sample;
     sample.time_ns = k * TimeNs{10'000'000};
     sample.angular_velocity_rad_s = {rate_rad_s, 1e-4 * read, 0.0};
     sample.specific_force_m_s2 = {0.0, 1e-3 * k, 9.8};
-    holds.observe(sample, out.state);
+    holds.observe(sample, clipped, out.state);
     const HeldReading& gyro = out.state.of(Triad::gyro);
     if (k >= 200 && gyro.repeats != (read == before)) ++out.wrong;
     if (k >= 200 && !gyro.repeats) {
@@ -69,6 +69,7 @@ TEST(HoldWatch, SaysNothingOfOthers) {
   EXPECT_EQ(watch(1.0, 1.0).state.of(Triad::gyro).stale(), Eigen::Vector3d::Zero());
   EXPECT_FALSE(watch(3.3, 0.0).state.of(Triad::gyro).held());
   EXPECT_FALSE(watch(1e6, 1.0).state.of(Triad::gyro).held());
+  EXPECT_FALSE(watch(3.3, 1.0, true).state.of(Triad::gyro).held());  // at its rails on all axes it repeats too
 }
 
 }  // namespace

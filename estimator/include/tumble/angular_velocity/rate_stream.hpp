@@ -134,7 +134,7 @@ class RateStream {
   bool step(State& state) const;
   RigConstants::Matrix widened(const State& state) const;
   Eigen::Matrix3d doubted(const Knot& knot, const State& state) const;
-  RateState to_state(const Knot& knot, const State& state) const;
+  RateState to_state(std::size_t at, const State& state) const;
 
   Params params_;
   RailWatch rails_;

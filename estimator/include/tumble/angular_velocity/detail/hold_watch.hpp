@@ -18,8 +18,10 @@ struct HeldReading {
   Eigen::Vector3d change = Eigen::Vector3d::Zero();  ///< from the reading before it [unit of the triad]
 
   bool held() const { return period_samples > 1.0; }
-  /// What the triad may have changed by since the middle of the reading's own window, beyond the half of a sample that
-  /// a reading of each sample is behind; zero where each sample has its own. At the slope of the last change.
+  /// By how much the middle of a window as long as the period, which ended when the reading was taken, lies before that
+  /// of the sample's own.
+  double behind_samples() const { return held() ? age_samples + 0.5 * (period_samples - 1.0) : 0.0; }
+  /// What the triad may have changed by in that time, at the slope of the last change.
   Eigen::Vector3d stale() const;
   bool operator==(const HeldReading&) const = default;
 };
@@ -42,8 +44,9 @@ class HoldWatch {
     bool operator==(const State&) const = default;
   };
 
-  /// Takes the next finite sample. O(1), no allocation.
-  void observe(const ImuSample& sample, State& state) const;
+  /// Takes the next finite sample. O(1), no allocation. A gyro that is `clipped` may repeat whatever its own rate is:
+  /// such a sample is not counted.
+  void observe(const ImuSample& sample, bool clipped, State& state) const;
 };
 
 }  // namespace tumble

@@ -33,7 +33,7 @@ struct RateStreamKnot {
   Eigen::Vector3d approach_rad_s = Eigen::Vector3d::Zero();
   int age = 0;
   bool repeats = false;  ///< its gyro says the reading of the sample before again: HoldWatch
-  Eigen::Vector3d stale_rad_s = Eigen::Vector3d::Zero();  ///< HeldReading::stale of its gyro
+  HeldReading held;      ///< of its gyro; as if none was held at rest
 };
 
 /// All that evolves; made by RateStream::start(). Copyable; RateStream::equal() compares.

@@ -1,0 +1,127 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "tumble/angular_velocity/detail/held_rates.hpp"
+
+#include <algorithm>
+
+#include "sample_hold.hpp"
+#include "tumble/angular_velocity/detail/recording_check.hpp"
+
+namespace tumble {
+
+namespace {
+
+using Eigen::Vector3d;
+
+// Deviation of the time at which a reading was taken, in samples: of a stream anywhere within the sample before it is
+// said, 1/sqrt(12); of a recording, whose clock is found, a share of that.
+constexpr double kTaken = 0.29, kTakenByClock = 0.1;
+
+// A reading and the stamp of the sample whose own window would have the same middle.
+struct OwnReading {
+  double time_s = 0.0;
+  Vector3d rate_rad_s = Vector3d::Zero();
+  bool read = false;  ///< on all axes
+};
+
+Vector3d slope(const OwnReading& a, const OwnReading& b) {
+  return (b.rate_rad_s - a.rate_rad_s) / (b.time_s - a.time_s);
+}
+
+// Between a and b, with z before and c after them where those are read.
+std::optional<HeldRate> between(const OwnReading& z, const OwnReading& a, const OwnReading& b, const OwnReading& c,
+                                double time_s, double moment_s) {
+  const double span_s = b.time_s - a.time_s, u = (time_s - a.time_s) / span_s, v = 1.0 - u;
+  if (!a.read || !b.read || !(span_s > 0.0) || u < 0.0 || v < 0.0) return std::nullopt;
+  const Vector3d chord = slope(a, b);
+  const Vector3d slope_a = z.read && z.time_s < a.time_s ? slope(z, b) : chord;
+  const Vector3d slope_b = c.read && c.time_s > b.time_s ? slope(a, c) : chord;
+  HeldRate out;
+  out.rate_rad_s = v * v * (1.0 + 2.0 * u) * a.rate_rad_s + u * u * (3.0 - 2.0 * u) * b.rate_rad_s +
+                   span_s * u * v * (v * slope_a - u * slope_b);
+  // open are the moment of either reading and what the mean over a window hides of the rate's bend
+  const Vector3d moment = moment_s * chord, bend = span_s / 24.0 * (slope_b - slope_a);
+  out.variance_rad2_s2 = moment.cwiseAbs2() + bend.cwiseAbs2();
+  return out;
+}
+
+// The first sample from i on that says a reading of its own; the window's size where there is none.
+std::size_t new_reading(std::span<const RateStreamKnot> window, std::size_t i) {
+  while (i < window.size() && window[i].repeats) ++i;
+  return i;
+}
+
+// Of a triad whose clock is known.
+std::optional<HeldReadings> held_in_time(std::span<const ImuSample> samples, Triad triad, double sample_s) {
+  std::optional<HeldReadings> held = find_held(samples, triad);
+  if (held && (!held->steady() || held->period_s > sample_hold::kSlowest * sample_s)) held.reset();
+  return held;
+}
+
+}  // namespace
+
+std::optional<HeldRate> rate_between_readings(std::span<const RateStreamKnot> window, std::size_t k, double period_s) {
+  if (!window[k].held.held()) return std::nullopt;
+  const auto at = [&](std::size_t i) {
+    if (i >= window.size()) return OwnReading{};
+    const RateStreamKnot& knot = window[i];
+    const RateObservation& o = knot.observation;
+    const double stamp_s = seconds(o.sample.time_ns - window[k].observation.sample.time_ns);
+    return OwnReading{stamp_s - knot.held.behind_samples() * period_s, o.sample.angular_velocity_rad_s,
+                      knot.held.held() && !o.by_elements() && o.read_in_part() == 0};
+  };
+  std::size_t b = new_reading(window, k + 1);
+  while (b < window.size() && at(b).time_s < 0.0) b = new_reading(window, b + 1);
+  if (b == window.size() || !at(k).read) return std::nullopt;
+  std::size_t z = b - 1;
+  while (z > 0 && window[z].repeats) --z;
+  return between(z > 0 ? at(z - 1) : OwnReading{}, at(b - 1), at(b), at(new_reading(window, b + 1)), 0.0,
+                 kTaken * period_s);
+}
+
+std::vector<std::optional<HeldRate>> rates_between_readings(std::span<const ImuSample> samples,
+                                                            std::span<const std::uint8_t> hidden) {
+  const double sample_s = median_period_s(samples);
+  const std::optional<HeldReadings> held = held_in_time(samples, Triad::gyro, sample_s);
+  if (!held) return {};
+  std::vector<OwnReading> own;
+  for (std::size_t k = 0; k < samples.size(); ++k) {
+    if (held->repeats[k]) continue;
+    const double stamp_s = seconds(samples[k].time_ns - samples[0].time_ns);
+    own.push_back({stamp_s - held->behind_s(k), samples[k].angular_velocity_rad_s, hidden[k] == 0});
+  }
+  std::vector<std::optional<HeldRate>> out(samples.size());
+  const double moment_s = kTakenByClock * sample_s;
+  std::size_t b = 1;
+  for (std::size_t k = 0; k < samples.size(); ++k) {
+    const double time_s = seconds(samples[k].time_ns - samples[0].time_ns);
+    while (b < own.size() && own[b].time_s < time_s) ++b;
+    if (b == own.size()) break;
+    out[k] = between(b > 1 ? own[b - 2] : OwnReading{}, own[b - 1], own[b],
+                     b + 1 < own.size() ? own[b + 1] : OwnReading{}, time_s, moment_s);
+  }
+  return out;
+}
+
+std::vector<Vector3d> forces_between_readings(std::span<const ImuSample> samples) {
+  const std::optional<HeldReadings> held = held_in_time(samples, Triad::accelerometer, median_period_s(samples));
+  if (!held) return {};
+  const auto stamp_s = [&](std::size_t k) { return seconds(samples[k].time_ns - samples[0].time_ns); };
+  std::vector<std::size_t> own;
+  for (std::size_t k = 0; k < samples.size(); ++k) {
+    if (!held->repeats[k]) own.push_back(k);
+  }
+  std::vector<Vector3d> out(samples.size());
+  std::size_t b = 0;
+  for (std::size_t k = 0; k < samples.size(); ++k) {
+    const auto told_s = [&](std::size_t i) { return stamp_s(own[i]) - held->behind_s(own[i]); };
+    while (b < own.size() && told_s(b) < stamp_s(k)) ++b;
+    out[k] = samples[k].specific_force_m_s2;
+    if (b == 0 || b == own.size()) continue;
+    const double span_s = told_s(b) - told_s(b - 1);
+    const double u = span_s > 0.0 ? (stamp_s(k) - told_s(b - 1)) / span_s : 0.0;
+    out[k] = (1.0 - u) * samples[own[b - 1]].specific_force_m_s2 + u * samples[own[b]].specific_force_m_s2;
+  }
+  return out;
+}
+
+}  // namespace tumble
