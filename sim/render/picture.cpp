@@ -3,11 +3,9 @@
 
 #include <algorithm>
 #include <csetjmp>
-#include <fstream>
 #include <new>
 #include <stdexcept>
 #include <string>
-#include <system_error>
 
 #include "sim/render/renderer.hpp"
 
@@ -81,25 +79,6 @@ std::vector<std::uint8_t> png_bytes(const Picture& picture) {
   png_write_end(png, nullptr);
   png_destroy_write_struct(&png, &info);
   return bytes;
-}
-
-void write_png(const std::filesystem::path& path, const Picture& picture) {
-  const std::vector<std::uint8_t> bytes = png_bytes(picture);
-  const std::filesystem::path unfinished = path.string() + ".part";
-  std::ofstream file(unfinished, std::ios::binary);
-  file.write(reinterpret_cast<const char*>(bytes.data()), static_cast<std::streamsize>(bytes.size()));
-  file.close();
-  std::error_code error;
-  if (!file) {
-    std::filesystem::remove(unfinished, error);
-    throw std::runtime_error("cannot write picture " + path.string());
-  }
-  std::filesystem::rename(unfinished, path, error);
-  if (error) {
-    std::error_code ignored;
-    std::filesystem::remove(unfinished, ignored);
-    throw std::runtime_error("cannot write picture " + path.string() + ": " + error.message());
-  }
 }
 
 }  // namespace tumble::sim

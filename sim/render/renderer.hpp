@@ -5,7 +5,6 @@
 #include <Eigen/Geometry>
 #include <array>
 #include <cstdint>
-#include <filesystem>
 #include <limits>
 #include <memory>
 #include <span>
@@ -70,9 +69,7 @@ class Renderer {
 /// Pictures side by side, in rows of `columns` (a film strip). All must have the same size.
 Picture film_strip(std::span<const Picture> pictures, int columns);
 
-/// Writes a PNG under a temporary name and renames it; throws std::runtime_error with the path on failure.
-void write_png(const std::filesystem::path& path, const Picture& picture);
-/// The PNG as bytes, for a page that carries its pictures.
+/// The PNG as bytes, of a file or for a page that carries its pictures.
 std::vector<std::uint8_t> png_bytes(const Picture& picture);
 
 }  // namespace tumble::sim

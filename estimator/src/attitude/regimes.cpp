@@ -71,11 +71,6 @@ Matrix3d changes(const RegimeEvidence::Params& p, double dt_s) {
 
 }  // namespace
 
-Regime RegimeShares::most_likely() const {
-  if (carried >= flight && carried >= contact) return Regime::carried;
-  return flight >= contact ? Regime::flight : Regime::contact;
-}
-
 RegimeEvidence::RegimeEvidence(const Params& params) : params_(params) {
   require_fields(params);
 }

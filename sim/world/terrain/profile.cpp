@@ -17,10 +17,6 @@ double SlopeProfile::height_m(double x_m) const {
   return -std::tan(slope_rad) * (ramp(x_m - edge_x_m) - ramp(x_m - edge_x_m - length_m()));
 }
 
-double LedgeProfile::end_x_m() const {
-  return edge_x_m + drops * (face_m + ledge_length_m);
-}
-
 double LedgeProfile::height_m(double x_m) const {
   const double step_m = face_m + ledge_length_m;
   double height_m = 0.0;

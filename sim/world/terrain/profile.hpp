@@ -24,7 +24,6 @@ struct LedgeProfile {
   double ledge_length_m = 2.0;  ///< level length of a ledge, above 0
   double ledge_slope_rad = 0.3;
 
-  double end_x_m() const;  ///< where the run-out begins
   double height_m(double x_m) const;
 };
 

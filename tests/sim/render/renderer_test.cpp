@@ -3,12 +3,10 @@
 
 #include <gtest/gtest.h>
 #include <png.h>
-#include <unistd.h>
 
 #include <algorithm>
 #include <cmath>
 #include <cstdlib>
-#include <fstream>
 #include <set>
 #include <thread>
 
@@ -188,21 +186,6 @@ TEST(Pictures, PngComesBackAsItWas) {
   ASSERT_NE(png_image_finish_read(&image, nullptr, back.data(), 0, nullptr), 0);
   EXPECT_EQ(back, picture.rgb);
   EXPECT_THROW(png_bytes(Picture{3, 3, {}}), std::invalid_argument);
-}
-
-TEST(Pictures, WriteLeavesNoHalfFile) {
-  const auto folder = std::filesystem::temp_directory_path() / ("tumble_render_test_" + std::to_string(getpid()));
-  std::filesystem::create_directories(folder);
-  write_png(folder / "a.png", plain(4, 4, 9));
-  EXPECT_GT(std::filesystem::file_size(folder / "a.png"), 50u);
-  EXPECT_FALSE(std::filesystem::exists(folder / "a.png.part"));
-  try {
-    write_png(folder / "no_such_folder" / "a.png", plain(4, 4, 9));
-    FAIL() << "wrote into a folder that does not exist";
-  } catch (const std::runtime_error& error) {
-    EXPECT_NE(std::string(error.what()).find("no_such_folder"), std::string::npos);
-  }
-  std::filesystem::remove_all(folder);
 }
 
 }  // namespace

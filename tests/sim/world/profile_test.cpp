@@ -26,7 +26,7 @@ TEST(LedgeProfile, DropsAsOftenAndAsDeepAsStated) {
   EXPECT_NEAR(ledges.height_m(-7.9), -1.5, 1e-12);
   EXPECT_NEAR(ledges.height_m(-5.9), -1.5 - 2.0 * std::tan(0.2), 1e-12);
   EXPECT_NEAR(ledges.height_m(-5.8), -3.0 - 2.0 * std::tan(0.2), 1e-12);
-  EXPECT_NEAR(ledges.end_x_m(), -8.0 + 3 * 2.1, 1e-12);
+  EXPECT_NEAR(ledges.height_m(-8.0 + 3 * 2.1), -3 * (1.5 + 2.0 * std::tan(0.2)), 1e-12);
   EXPECT_NEAR(ledges.height_m(15.0), -3 * (1.5 + 2.0 * std::tan(0.2)), 1e-12);
 }
 

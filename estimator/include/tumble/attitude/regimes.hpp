@@ -2,7 +2,6 @@
 #pragma once
 
 #include <Eigen/Core>
-#include <cstdint>
 #include <span>
 #include <vector>
 
@@ -13,14 +12,11 @@
 
 namespace tumble {
 
-/// What a body is doing: free of support (the specific force at the centre of mass is zero), touching something (a
-/// force of any size), held by a hand (a bounded acceleration about gravity).
-enum class Regime : std::uint8_t { flight, contact, carried };
-
-/// Probabilities of one sample; their sum is 1.
+/// Probabilities, of one sample, of what a body is doing: free of support (the specific force at the centre of mass is
+/// zero), touching something (a force of any size), held by a hand (a bounded acceleration about gravity); their sum is
+/// 1.
 struct RegimeShares {
   double flight = 0.0, contact = 0.0, carried = 0.0;
-  Regime most_likely() const;
 };
 
 /// Which regime each sample of a recording is in, by its specific force: what is left of it after the turning at the
