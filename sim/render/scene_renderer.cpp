@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "sim/render/scene_renderer.hpp"
 
-#include <GL/osmesa.h>
-
 #include <algorithm>
 #include <cmath>
 #include <stdexcept>
@@ -10,6 +8,7 @@
 #include "sim/engine/jointed.hpp"
 #include "sim/render/decoration.hpp"
 #include "sim/render/framing.hpp"
+#include "sim/render/osmesa.hpp"
 
 namespace tumble::sim {
 
@@ -20,7 +19,7 @@ constexpr int kLargestSide = 4096;
 constexpr int kOversampling = 2;  // rendered at twice the size and averaged: smooth edges without multisampling
 
 struct ContextDeleter {
-  void operator()(OSMesaContext context) const { OSMesaDestroyContext(context); }
+  void operator()(OSMesaContext context) const { osmesa().destroy_context(context); }
 };
 using ContextPtr = std::unique_ptr<osmesa_context, ContextDeleter>;
 
@@ -28,11 +27,11 @@ using ContextPtr = std::unique_ptr<osmesa_context, ContextDeleter>;
 class Current {
  public:
   explicit Current(OSMesaContext context) {
-    if (context == nullptr || OSMesaMakeCurrent(context, pixels_, GL_UNSIGNED_BYTE, kSide, kSide) != GL_TRUE) {
+    if (context == nullptr || osmesa().make_current(context, pixels_, GL_UNSIGNED_BYTE, kSide, kSide) != GL_TRUE) {
       throw std::runtime_error("render: no OSMesa context can be made");
     }
   }
-  ~Current() { OSMesaMakeCurrent(nullptr, nullptr, GL_UNSIGNED_BYTE, 0, 0); }
+  ~Current() { osmesa().make_current(nullptr, nullptr, GL_UNSIGNED_BYTE, 0, 0); }
   Current(const Current&) = delete;
   Current& operator=(const Current&) = delete;
 
@@ -129,9 +128,9 @@ struct SceneRenderer::Impl {
 SceneRenderer::Impl::~Impl() {
   if (!has_engine_context) return;
   unsigned char pixel[4];
-  if (OSMesaMakeCurrent(context.get(), pixel, GL_UNSIGNED_BYTE, 1, 1) != GL_TRUE) return;
+  if (osmesa().make_current(context.get(), pixel, GL_UNSIGNED_BYTE, 1, 1) != GL_TRUE) return;
   mjr_freeContext(&engine_context);
-  OSMesaMakeCurrent(nullptr, nullptr, GL_UNSIGNED_BYTE, 0, 0);
+  osmesa().make_current(nullptr, nullptr, GL_UNSIGNED_BYTE, 0, 0);
 }
 
 SceneRenderer::SceneRenderer(engine::World world, int shadow_pixels) : impl_(std::make_unique<Impl>()) {
@@ -139,7 +138,7 @@ SceneRenderer::SceneRenderer(engine::World world, int shadow_pixels) : impl_(std
   mjModel& model = *impl_->world.model;
   set_look(model, shadow_pixels);
   impl_->data.reset(mj_makeData(&model));
-  impl_->context.reset(OSMesaCreateContextExt(OSMESA_RGBA, 24, 8, 8, nullptr));
+  impl_->context.reset(osmesa().create_context(OSMESA_RGBA, 24, 8, 8, nullptr));
   const Current current(impl_->context.get());
   mjr_defaultContext(&impl_->engine_context);
   mjr_makeContext(&model, &impl_->engine_context, mjFONTSCALE_100);

@@ -2,19 +2,15 @@
 #include "scenarios/recordings/clouds/cloud_file.hpp"
 
 #include <pcl/PCLPointCloud2.h>
-#include <pcl/exceptions.h>
-#include <pcl/io/pcd_io.h>
-#include <pcl/io/ply_io.h>
 
 #include <algorithm>
 #include <charconv>
 #include <cstring>
-#include <exception>
 #include <fstream>
 #include <string_view>
 
 #include "scenarios/errors.hpp"
-#include "scenarios/recordings/clouds/quiet_pcl.hpp"
+#include "scenarios/recordings/clouds/pcl_reader.hpp"
 #include "scenarios/recordings/clouds/vtk_file.hpp"
 
 namespace tumble::scenarios {
@@ -118,21 +114,15 @@ void require_numbers(const std::filesystem::path& path, const CloudHeader& heade
   }
 }
 
-template <class Reader>
-Cloud read_by_pcl(const std::filesystem::path& path, const CloudHeader& header, const char* format) {
+Cloud read_points(const std::filesystem::path& path, const CloudHeader& header, PclFormat format) {
   if (header.points == 0) return {};
   if (header.ascii) require_numbers(path, header);
-  const QuietPcl quiet;
   pcl::PCLPointCloud2 cloud;
-  int status = -1;
-  try {
-    status = Reader().read(path.string(), cloud);
-  } catch (const std::exception&) {  // the status says so
-  }
+  const bool read = read_by_pcl(path, format, cloud);
   const std::size_t found = std::size_t{cloud.width} * cloud.height;
-  if (status < 0 || found != header.points || cloud.data.size() < found * cloud.point_step) {
-    throw BadInput(path.string() + ": cannot be read as " + format + " after its header of " +
-                   std::to_string(header.header_bytes) + " bytes: damaged or truncated");
+  if (!read || found != header.points || cloud.data.size() < found * cloud.point_step) {
+    throw BadInput(path.string() + ": cannot be read as " + (format == PclFormat::ply ? "PLY" : "PCD") +
+                   " after its header of " + std::to_string(header.header_bytes) + " bytes: damaged or truncated");
   }
   Cloud out = to_columns(cloud, found);
   out.viewpoint = header.viewpoint;
@@ -168,8 +158,8 @@ const std::vector<double>* Cloud::find(const std::string& name) const {
 
 Cloud read_cloud(const std::filesystem::path& path) {
   const std::string ending = path.extension().string();
-  if (ending == ".ply") return read_by_pcl<pcl::PLYReader>(path, read_ply_header(path), "PLY");
-  if (ending == ".pcd") return read_by_pcl<pcl::PCDReader>(path, read_pcd_header(path), "PCD");
+  if (ending == ".ply") return read_points(path, read_ply_header(path), PclFormat::ply);
+  if (ending == ".pcd") return read_points(path, read_pcd_header(path), PclFormat::pcd);
   if (ending == ".bin") return read_kitti(path);
   if (ending == ".vtk") return read_vtk(path);
   throw BadInput(path.string() + ": must end in .ply, .pcd, .vtk or .bin");
