@@ -50,11 +50,9 @@ std::size_t new_reading(std::span<const RateStreamKnot> window, std::size_t i) {
   return i;
 }
 
-// Of a triad whose clock is known.
-std::optional<HeldReadings> held_in_time(std::span<const ImuSample> samples, Triad triad, double sample_s) {
-  std::optional<HeldReadings> held = find_held(samples, triad);
-  if (held && (!held->steady() || held->period_s > sample_hold::kSlowest * sample_s)) held.reset();
-  return held;
+// Whether the clock of a triad is known.
+bool in_time(const std::optional<HeldReadings>& held, double sample_s) {
+  return held && held->steady() && held->period_s <= sample_hold::kSlowest * sample_s;
 }
 
 }  // namespace
@@ -80,9 +78,14 @@ std::optional<HeldRate> rate_between_readings(std::span<const RateStreamKnot> wi
 
 std::vector<std::optional<HeldRate>> rates_between_readings(std::span<const ImuSample> samples,
                                                             std::span<const std::uint8_t> hidden) {
+  return rates_between_readings(samples, hidden, find_held(samples, Triad::gyro));
+}
+
+std::vector<std::optional<HeldRate>> rates_between_readings(std::span<const ImuSample> samples,
+                                                            std::span<const std::uint8_t> hidden,
+                                                            const std::optional<HeldReadings>& held) {
   const double sample_s = median_period_s(samples);
-  const std::optional<HeldReadings> held = held_in_time(samples, Triad::gyro, sample_s);
-  if (!held) return {};
+  if (!in_time(held, sample_s)) return {};
   std::vector<OwnReading> own;
   for (std::size_t k = 0; k < samples.size(); ++k) {
     if (held->repeats[k]) continue;
@@ -103,8 +106,8 @@ std::vector<std::optional<HeldRate>> rates_between_readings(std::span<const ImuS
 }
 
 std::vector<Vector3d> forces_between_readings(std::span<const ImuSample> samples) {
-  const std::optional<HeldReadings> held = held_in_time(samples, Triad::accelerometer, median_period_s(samples));
-  if (!held) return {};
+  const std::optional<HeldReadings> held = find_held(samples, Triad::accelerometer);
+  if (!in_time(held, median_period_s(samples))) return {};
   const auto stamp_s = [&](std::size_t k) { return seconds(samples[k].time_ns - samples[0].time_ns); };
   std::vector<std::size_t> own;
   for (std::size_t k = 0; k < samples.size(); ++k) {

@@ -36,9 +36,8 @@ void count(const RateState& state, RateReport& report) {
 }
 
 // Readings that a triad says twice, and how old they are.
-void mark_held(std::span<const ImuSample> samples, std::span<RateObservation> observations, RateReport& health) {
-  const std::optional<HeldReadings> gyro = find_held(samples, Triad::gyro);
-  const std::optional<HeldReadings> accel = find_held(samples, Triad::accelerometer);
+void mark_held(const std::optional<HeldReadings>& gyro, const std::optional<HeldReadings>& accel,
+               std::span<RateObservation> observations, RateReport& health) {
   for (std::size_t k = 0; k < observations.size(); ++k) {
     if (gyro) {
       observations[k].gyro_age_s = gyro->age_s[k];
@@ -66,13 +65,14 @@ Status check_auxiliary_imus(const RateModelParams& params,
 
 // What a gyro that is slower than the log says of each sample's own time, where it reads all axes.
 std::vector<std::optional<HeldRate>> read_in_time(std::span<const ImuSample> samples,
-                                                  std::span<const RateObservation> observations) {
+                                                  std::span<const RateObservation> observations,
+                                                  const std::optional<HeldReadings>& gyro) {
   std::vector<std::uint8_t> hidden(samples.size());
   for (std::size_t k = 0; k < hidden.size(); ++k) {
     const RateObservation& o = observations[k];
     hidden[k] = static_cast<std::uint8_t>(o.clipping.gyro | o.clipping.void_gyro | o.read_in_part());
   }
-  return rates_between_readings(samples, hidden);
+  return rates_between_readings(samples, hidden, gyro);
 }
 
 // What remains open of the device's errors, in a rate, and no more than any rate: rate_smoother.md (R41).
@@ -206,7 +206,8 @@ Status RateSmoother::estimate(std::span<const ImuSample> samples,
   if (!health.rails_upright) {
     doubt_level_tops(planes, least, params_.expert.planes.offset_share, model.gyro_sigma_rad_s(), observations);
   }
-  mark_held(samples, observations, health);
+  const std::optional<HeldReadings> gyro_held = find_held(samples, Triad::gyro);
+  mark_held(gyro_held, find_held(samples, Triad::accelerometer), observations, health);
   RateFit fit(observations, model);
   if (Status status = fit_rounds(params_, known, samples, clippings, observations, fit, health); !status.ok()) {
     return status;
@@ -226,7 +227,7 @@ Status RateSmoother::estimate(std::span<const ImuSample> samples,
   std::vector<RateState> states(samples.size());
   const std::vector<std::uint8_t> near =
       may_meet_rails(samples, health.rails_upright ? RailPlanes{} : planes);  // upright ones show to the bit
-  const std::vector<std::optional<HeldRate>> own = read_in_time(samples, observations);
+  const std::vector<std::optional<HeldRate>> own = read_in_time(samples, observations, gyro_held);
   std::size_t in_flight = 0;
   for (std::size_t k = 0; k < samples.size(); ++k) {
     const RateEstimate& estimate = solution.estimates[k];

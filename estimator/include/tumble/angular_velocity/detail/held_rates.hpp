@@ -29,6 +29,11 @@ std::optional<HeldRate> rate_between_readings(std::span<const RateStreamKnot> wi
 /// sample: nothing beside such a reading, nor at the ends. O(N), and find_held.
 std::vector<std::optional<HeldRate>> rates_between_readings(std::span<const ImuSample> samples,
                                                             std::span<const std::uint8_t> hidden);
+struct HeldReadings;
+/// The same, where find_held was asked of the gyro before, and what it said.
+std::vector<std::optional<HeldRate>> rates_between_readings(std::span<const ImuSample> samples,
+                                                            std::span<const std::uint8_t> hidden,
+                                                            const std::optional<HeldReadings>& held);
 
 /// What an accelerometer that is slower than its log says of each sample's own time: between two readings along the
 /// line from one to the other, as said before the first and after the last. Empty where the log has a reading for each
