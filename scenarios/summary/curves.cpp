@@ -14,7 +14,6 @@
 #include <utility>
 
 #include "scenarios/scoring/binned_metric.hpp"
-#include "scenarios/summary/summary.hpp"
 
 namespace tumble::scenarios {
 
@@ -59,23 +58,21 @@ struct Use {
 
 class Collecting {
  public:
-  explicit Collecting(Names& names) : names_(names) {}
+  void add(const OutcomeView& outcome) {
+    Runs& runs = found_[{std::string(outcome.varied), std::string(outcome.scenario), outcome.kind}][outcome.setting];
+    auto method = runs.find(outcome.method);
+    if (method == runs.end()) method = runs.emplace(outcome.method, std::vector<Run>()).first;
+    method->second.push_back(run_of(outcome));
+  }
 
-  RunsBySetting collect(const Results& results, Rows rows) {
-    RunsBySetting sorted;
-    results.each(rows, names_, [&](const OutcomeView& outcome) {
-      Runs& runs = sorted[{std::string(outcome.varied), std::string(outcome.scenario), outcome.kind}][outcome.setting];
-      auto method = runs.find(outcome.method);
-      if (method == runs.end()) method = runs.emplace(outcome.method, std::vector<Run>()).first;
-      method->second.push_back(run_of(outcome));
-    });
+  RunsBySetting sorted() {
     const auto by_seed = [](const Run& a, const Run& b) { return a.seed < b.seed; };
-    for (auto& [key, by_value] : sorted) {
+    for (auto& [key, by_value] : found_) {
       for (auto& [value, runs] : by_value) {
         for (auto& [method, own] : runs) std::stable_sort(own.begin(), own.end(), by_seed);
       }
     }
-    return sorted;
+    return std::move(found_);
   }
 
  private:
@@ -99,7 +96,7 @@ class Collecting {
     return place->second;
   }
 
-  Names& names_;
+  RunsBySetting found_;
   std::array<std::unordered_map<const std::string*, Use>, 4> uses_;  ///< by kind
 };
 
@@ -170,7 +167,9 @@ const std::string* name_of(const std::string& metric, Names& names) {
 }
 
 void add_set_curves(const Results& results, Names& names, std::vector<Curve>& all) {
-  for (const auto& [key, by_value] : Collecting(names).collect(results, Rows::curves)) {
+  Collecting collecting;
+  results.each(Rows::curves, names, [&](const OutcomeView& outcome) { collecting.add(outcome); });
+  for (const auto& [key, by_value] : collecting.sorted()) {
     const auto& [varied, scenario, kind] = key;
     for (const std::string& metric : headline_metrics(kind)) {
       Curve curve{Curve::Source::set, varied, scenario, kind, metric, {}};
@@ -292,14 +291,17 @@ void add_draw_curves(const RunsBySetting& plain, std::span<const DrawValues> dra
 }  // namespace
 
 std::vector<Curve> find_curves(const Results& results) {
-  return find_curves(results, results.draws());
+  Summary unasked;
+  return find_curves(results, results.draws(), unasked);
 }
 
-std::vector<Curve> find_curves(const Results& results, std::span<const DrawValues> draws) {
+std::vector<Curve> find_curves(const Results& results, std::span<const DrawValues> draws, Summary& summary) {
   std::vector<Curve> all;
   Names names;
   add_set_curves(results, names, all);
-  const RunsBySetting plain = Collecting(names).collect(results, Rows::plain);
+  Collecting collecting;
+  summary = summarize(results, names, [&](const OutcomeView& outcome) { collecting.add(outcome); });
+  const RunsBySetting plain = collecting.sorted();
   add_sample_curves(plain, all);
   add_draw_curves(plain, draws, names, all);
   return all;

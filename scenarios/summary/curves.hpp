@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "scenarios/statistics/statistics.hpp"
+#include "scenarios/summary/summary.hpp"
 #include "scenarios/sweep/results.hpp"
 
 /// A metric against what was varied, or against what the draws happened to be like.
@@ -44,7 +45,7 @@ struct Curve {
 /// equally many draws, when there are draws for three bins at least. A run has failed when it did not end `ok` or its
 /// map has failed. O(number of scores * log).
 std::vector<Curve> find_curves(const Results& results);
-/// The same, where the results' draws are at hand.
-std::vector<Curve> find_curves(const Results& results, std::span<const DrawValues> draws);
+/// The same, where the results' draws are at hand; `summary` becomes theirs by the way, so that they are read once.
+std::vector<Curve> find_curves(const Results& results, std::span<const DrawValues> draws, Summary& summary);
 
 }  // namespace tumble::scenarios

@@ -136,9 +136,8 @@ struct Gathered {
 /// By scenario and kind, then by method.
 using GatheredSections = std::map<std::pair<std::string, Kind>, std::map<std::string, Gathered, std::less<>>>;
 
-GatheredSections gather(const Results& results) {
+GatheredSections gather(const Results& results, Names& names, const std::function<void(const OutcomeView&)>& beside) {
   GatheredSections sections;
-  Names names;
   results.each(Rows::plain, names, [&](const OutcomeView& outcome) {
     auto& methods = sections[{std::string(outcome.scenario), outcome.kind}];
     auto method = methods.find(outcome.method);
@@ -147,6 +146,7 @@ GatheredSections gather(const Results& results) {
       method->second.summary.method = outcome.method;
     }
     method->second.add(outcome);
+    beside(outcome);
   });
   return sections;
 }
@@ -212,9 +212,14 @@ const MethodSummary* Section::find(const std::string& method) const {
 }
 
 Summary summarize(const Results& results) {
+  Names names;
+  return summarize(results, names, [](const OutcomeView&) {});
+}
+
+Summary summarize(const Results& results, Names& names, const std::function<void(const OutcomeView&)>& beside) {
   Summary summary;
   std::map<std::string, std::vector<std::uint64_t>> seeds;
-  for (auto& [key, methods] : gather(results)) {
+  for (auto& [key, methods] : gather(results, names, beside)) {
     Section section;
     std::tie(section.scenario, section.kind) = key;
     std::vector<std::uint64_t>& own = seeds[section.scenario];

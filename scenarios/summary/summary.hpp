@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <map>
 #include <string>
 #include <vector>
@@ -75,5 +76,7 @@ std::vector<RankedValue> ranked_values(const MetricSummary& metric, double worst
 
 /// O(number of scores * log).
 Summary summarize(const Results& results);
+/// The same, which hands each plain outcome on as it is read, for who would read them all once more.
+Summary summarize(const Results& results, Names& names, const std::function<void(const OutcomeView&)>& beside);
 
 }  // namespace tumble::scenarios

@@ -198,9 +198,9 @@ int report(const Session& session, const Options& options) {
   if (!options.badge.empty() && options.badge == options.page)
     throw scenarios::BadInput("--badge and --output are one file, " + options.page.string());
   const scenarios::Results results(options.database, scenarios::Results::Mode::read_only);
-  const Summary summary = scenarios::summarize(results);
   const std::vector<scenarios::DrawValues> draws = results.draws();
-  std::vector<Curve> curves = scenarios::find_curves(results, draws);
+  Summary summary;
+  std::vector<Curve> curves = scenarios::find_curves(results, draws, summary);
   if (summary.scenarios.empty() && curves.empty())
     throw scenarios::BadInput(options.database.string() + ": holds no outcomes to report");
   std::vector<Table> tables;
