@@ -2,7 +2,9 @@
 #include "tumble/mapping/voxel_map.hpp"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
+#include <cstring>
 #include <limits>
 
 #include "tumble/common/status.hpp"
@@ -39,14 +41,17 @@ void slab_distances(float fraction, float voxel_m, int reach, float* distance2) 
   }
 }
 
-/// Of sixteen, four at a time: without a branch for each.
-template <int Count>
-inline float least_of(const float (&values)[Count]) {
-  float least[4] = {values[0], values[1], values[2], values[3]};
-  for (int i = 4; i < Count; i += 4) {
-    for (int j = 0; j < 4; ++j) least[j] = values[i + j] < least[j] ? values[i + j] : least[j];
-  }
-  return std::min(std::min(least[0], least[1]), std::min(least[2], least[3]));
+// of comparisons the compiler makes single ones, one after the other
+using Floats [[gnu::vector_size(16)]] = float;
+using Ints [[gnu::vector_size(16)]] = std::int32_t;
+
+/// A bit for each value of a chunk that is not beyond the limit: without a branch for each.
+inline std::uint32_t within(float limit, const Floats (&values)[4]) {
+  constexpr Ints kFirst = {1, 2, 4, 8};
+  const Floats limits = {limit, limit, limit, limit};
+  const Ints bits = ((values[0] <= limits) & kFirst) | ((values[1] <= limits) & (kFirst << 4)) |
+                    ((values[2] <= limits) & (kFirst << 8)) | ((values[3] <= limits) & (kFirst << 12));
+  return static_cast<std::uint32_t>(bits[0] | bits[1] | bits[2] | bits[3]);
 }
 
 /// Offsets 0, 1, -1, 2, -2 ...: near cells first, so that the search radius shrinks early.
@@ -215,13 +220,16 @@ void VoxelMap::search(std::uint32_t first, const Eigen::Vector3f& query, int k, 
                       Neighbours& found) const {
   for (std::uint32_t c = first; c != kNone; c = chunks_[c].next) {
     const Chunk& chunk = chunks_[c];
-    float distance2[kChunk];
+    alignas(16) float distance2[kChunk];
     for (int i = 0; i < kChunk; ++i) {
       const float ex = chunk.x[i] - query.x(), ey = chunk.y[i] - query.y(), ez = chunk.z[i] - query.z();
       distance2[i] = ex * ex + ey * ey + ez * ez;
     }
-    if (least_of(distance2) > worst2) continue;
-    for (std::uint32_t i = 0; i < chunk.count; ++i) {
+    Floats four[kChunk / 4];
+    std::memcpy(four, distance2, sizeof(four));
+    // free places lie beyond any limit
+    for (std::uint32_t near = within(worst2, four); near != 0; near &= near - 1) {
+      const auto i = static_cast<std::uint32_t>(std::countr_zero(near));
       if (distance2[i] > worst2 || (found.count == k && distance2[i] == worst2)) continue;
       keep(distance2[i], c * kChunk + i, k, found);
       if (found.count == k) worst2 = found.distance2_m2[k - 1];
