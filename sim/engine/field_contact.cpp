@@ -130,7 +130,12 @@ std::optional<int> field_contacts(const mjModel& model, const mjData& data, int 
   for (int row = rows.first; row <= rows.last; ++row) {
     const Part in_row = Part{}.within(strut, 1, field.y_m(row), field.y_m(row + 1));
     if (in_row.none()) continue;
-    for (int column = columns.first; column <= columns.last; ++column) {
+    // most cells that a strut lies over are below it: that is asked before where it lies over them
+    const double lowest_m = std::min(strut.at_m(in_row.first).z(), strut.at_m(in_row.last).z()) - strut.reach_m;
+    double left_m = field.higher_m(row, columns.first), right_m;
+    for (int column = columns.first; column <= columns.last; ++column, left_m = right_m) {
+      right_m = field.higher_m(row, column + 1);
+      if (lowest_m > std::max(left_m, right_m)) continue;
       const Part over = in_row.within(strut, 0, field.x_m(column), field.x_m(column + 1));
       if (over.none()) continue;
       const Cell cell(field, row, column, strut, over);

@@ -32,6 +32,10 @@ struct Field {
   double x_m(int column) const { return cell_x_m * column - half_x_m; }
   double y_m(int row) const { return cell_y_m * row - half_y_m; }
   double height_m(int row, int column) const { return scale_m * heights[row * columns + column]; }
+  /// Of the corner and the one after it in the next row.
+  double higher_m(int row, int column) const {
+    return scale_m * std::max(heights[row * columns + column], heights[(row + 1) * columns + column]);
+  }
 
   /// How far a point is below the plane of the triangle of ground over it; negative above, and 0 beyond the rim. The
   /// engine divides a cell along its diagonal from the first corner to the last.

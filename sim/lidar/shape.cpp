@@ -192,6 +192,7 @@ double cast_ray(const Shape& shape, const Vector3d& origin_F_m, const Vector3d& 
       range = cast_box(shape.size_m, o, d, normal);
       break;
   }
+  if (range == kNone) return range;
   normal_F = shape.R_FS * normal;
   return range;
 }
