@@ -9,6 +9,7 @@
 #include "scenarios/methods/frozen_axes.hpp"
 #include "scenarios/recordings/rounded_stamps.hpp"
 #include "tumble/angular_velocity/detail/flight_sense.hpp"
+#include "tumble/attitude/detail/pivot_check.hpp"
 #include "tumble/attitude/detail/rest_gravity.hpp"
 #include "tumble/attitude/imu_plausibility.hpp"
 #include "tumble/odometry/imu_sheet.hpp"
@@ -69,6 +70,21 @@ Status check_turning_between_rests(const sim::Sensors& sensors, std::span<const 
   return told(gravity.verdict(state), estimate);
 }
 
+Status check_turning_about_pivots(const sim::Sensors& sensors, std::span<const ImuSample> samples, Estimate& estimate) {
+  PivotCheck::Params params;
+  params.gravity_m_s2 = sensors.gravity_m_s2;
+  params.accel_range_m_s2 = sensors.imus.front().stated_accel_range_m_s2;
+  const PivotCheck pivots(params);
+  const PivotCheck::Found found = pivots.find(samples, estimate.rates);
+  estimate.health["pivot_evidence"] = found.evidence;
+  estimate.health["pivot_stretches"] = static_cast<double>(found.counted);
+  if (std::isfinite(found.scale_sigma)) {
+    estimate.health["pivot_scale"] = found.scale;
+    estimate.health["pivot_scale_sigma"] = found.scale_sigma;
+  }
+  return told(pivots.verdict(found), estimate);
+}
+
 }  // namespace
 
 Status check_imu(const sim::Sensors& sensors, std::span<const ImuSample> samples, Estimate& estimate) {
@@ -125,7 +141,8 @@ void check_rates(const sim::Sensors& sensors, std::span<const ImuSample> samples
   const Status of_flights = check_flights(sensors, samples, estimate);
   const Status of_readings = check_imu(sensors, samples, estimate);
   const Status of_rates = check_turning_between_rests(sensors, samples, estimate);
-  if (of_flights.ok() && of_readings.ok() && of_rates.ok()) return;
+  const Status of_pivots = check_turning_about_pivots(sensors, samples, estimate);
+  if (of_flights.ok() && of_readings.ok() && of_rates.ok() && of_pivots.ok()) return;
   // of such rates the size alone is known: one of the other sense is off by twice itself, one of half the scale by half
   for (RateState& rate : estimate.rates) {
     rate.covariance_rad2_s2 += rate.w_WI_I_rad_s.squaredNorm() * Eigen::Matrix3d::Identity();

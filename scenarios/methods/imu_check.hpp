@@ -20,8 +20,10 @@ Status check_imu(const sim::Sensors& sensors, std::span<const ImuSample> samples
 Status check_imus(const sim::Sensors& sensors, const MergedImus& imus, Estimate& estimate);
 
 /// The same of a rig's primary IMU whose rates the estimate holds, one for each sample, and what gravity at its rests
-/// says of them (RestGravity: `rest_gravity_missed_rad` with its deviation, `rest_velocity_share` with its bound).
-/// Where either speaks against the readings, the covariance of every rate grows by the square of the rate. O(N).
+/// says of them (RestGravity: `rest_gravity_missed_rad` with its deviation, `rest_velocity_share` with its bound), and
+/// what its turning about a point does (PivotCheck: `pivot_evidence` for another reading of the gyro and from how many
+/// stretches, `pivot_scale` by which its rates explain most, with its deviation). Where one of them speaks against the
+/// readings, the covariance of every rate grows by the square of the rate. O(N).
 void check_rates(const sim::Sensors& sensors, std::span<const ImuSample> samples, Estimate& estimate);
 
 /// Whether flights of a rig show forces of the other sense than its lever arm makes, or of twice the rate

@@ -1,0 +1,211 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "tumble/attitude/detail/pivot_check.hpp"
+
+#include <Eigen/Cholesky>
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <vector>
+
+#include "pivot_sums.hpp"
+#include "tumble/angular_velocity/detail/rail_shares.hpp"
+#include "tumble/attitude/detail/axis_labels.hpp"
+#include "tumble/common/parameters.hpp"
+
+namespace tumble {
+
+namespace {
+
+constexpr double kScaleStep = 0.05;
+constexpr std::size_t kHalf = kAxisLabels, kTwice = kAxisLabels + 1;  // after the namings; then those about 1
+constexpr std::size_t kLower = kAxisLabels + 2, kUpper = kAxisLabels + 3, kReadings = kAxisLabels + 4;
+constexpr std::size_t kCompared = kLower;  // what is no neighbour of the rates as they are
+constexpr double kClearly = 0.4;           // logarithm of a ratio of squares
+constexpr unsigned kAccelFlags = kClipAccelX | kClipAccelY | kClipAccelZ;
+
+using Readings = std::array<Eigen::Matrix3d, kReadings>;
+
+/// By what rates are multiplied, S of imu_merge.md (I24).
+Readings all_readings() {
+  Readings out;
+  for (std::size_t k = 0; k < kAxisLabels; ++k) {
+    const AxisLabels& labels = axis_labels()[k];
+    Eigen::Matrix3d renaming;
+    for (int axis = 0; axis < 3; ++axis) renaming.col(axis) = labels.renamed(Eigen::Vector3d::Unit(axis));
+    out[k] = (labels.gyro_flipped ? -1.0 : 1.0) * renaming.determinant() * renaming.transpose();
+  }
+  out[kHalf] = 0.5 * Eigen::Matrix3d::Identity();
+  out[kTwice] = 2.0 * Eigen::Matrix3d::Identity();
+  out[kLower] = (1.0 - kScaleStep) * Eigen::Matrix3d::Identity();
+  out[kUpper] = (1.0 + kScaleStep) * Eigen::Matrix3d::Identity();
+  return out;
+}
+
+/// What a stretch says of the scale: Newton's step from 1, and the curvature of the residual.
+struct ScaleVote {
+  double step, weight;
+};
+
+/// What stretches have said so far, and the one that is open.
+class Stretches {
+ public:
+  Stretches(const PivotCheckParams& params, const Readings& readings) : params_(params), readings_(readings) {}
+
+  void add(double dt_s, const Eigen::Vector3d& rate_rad_s, const Eigen::Vector3d& force_m_s2) {
+    for (std::size_t k = 0; k < kReadings; ++k) {
+      sums_[k].add(length_s_ + 0.5 * dt_s, dt_s, readings_[k] * rate_rad_s, force_m_s2);
+    }
+    length_s_ += dt_s;
+    turned_rad_ += dt_s * rate_rad_s.norm();
+    if (length_s_ >= params_.stretch_s) close();
+  }
+  /// Ends the stretch that is open, which counts when it is half as long as a whole one.
+  void close() {
+    if (length_s_ >= 0.5 * params_.stretch_s && turned_rad_ >= params_.turned_least_rad) take();
+    sums_ = {};
+    length_s_ = turned_rad_ = 0.0;
+  }
+
+  std::array<double, kCompared> evidence{};
+  std::array<std::size_t, kCompared> counted{}, better{}, worse{};
+  std::vector<ScaleVote> votes;
+  std::size_t explained = 0;  // by the rates as they are
+
+ private:
+  void take() {
+    std::array<PivotFit, kReadings> fits;
+    std::transform(sums_.begin(), sums_.end(), fits.begin(), [](const PivotSums& sums) { return sums.fit(); });
+    compare(fits);
+    vote(fits);
+  }
+
+  /// imu_merge.md (I25), (I26).
+  void compare(const std::array<PivotFit, kReadings>& fits) {
+    // a force of another size than gravity's is as wrong as a velocity that is not explained
+    const auto residual = [&](std::size_t k) {
+      return std::hypot(fits[k].residual_m_s,
+                        length_s_ * (fits[k].gravity_m_s2 - params_.gravity_m_s2) / std::sqrt(12.0));
+    };
+    const double as_it_is = residual(0);
+    for (std::size_t k = 1; k < kCompared; ++k) {
+      const double otherwise = residual(k);
+      if (std::min(as_it_is, otherwise) > params_.explains_m_s) continue;
+      const double noise = params_.noise_m_s;
+      const double gained = 2.0 * std::log(std::max(as_it_is, noise) / std::max(otherwise, noise));
+      evidence[k] += gained;
+      ++counted[k];
+      better[k] += gained > kClearly;
+      worse[k] += gained < -kClearly;
+    }
+  }
+
+  /// imu_merge.md (I27).
+  void vote(const std::array<PivotFit, kReadings>& fits) {
+    const PivotFit& fit = fits[0];
+    if (fit.residual_m_s > params_.explains_m_s) return;
+    ++explained;
+    if (fit.arm_m > params_.arm_most_m) return;
+    const auto square = [&](std::size_t k) { return fits[k].residual_m_s * fits[k].residual_m_s; };
+    const double curvature = (square(kLower) + square(kUpper) - 2.0 * square(0)) / (kScaleStep * kScaleStep);
+    if (!(curvature > 0.0)) return;
+    const double step = -(square(kUpper) - square(kLower)) / (2.0 * kScaleStep) / curvature;
+    votes.push_back({step, curvature / std::max(square(0), params_.noise_m_s * params_.noise_m_s)});
+  }
+
+  const PivotCheckParams& params_;
+  const Readings& readings_;
+  std::array<PivotSums, kReadings> sums_{};
+  double length_s_ = 0.0, turned_rad_ = 0.0;
+};
+
+/// Weighted mean of the votes, and its deviation from how they are spread (White, 1980). imu_merge.md (I27).
+void conclude_scale(const std::vector<ScaleVote>& votes, PivotCheck::Found& found) {
+  double weight = 0.0, sum = 0.0, spread = 0.0;
+  for (const ScaleVote& vote : votes) weight += vote.weight, sum += vote.weight * vote.step;
+  found.scale_stretches = votes.size();
+  if (votes.size() < 2) return;
+  const double step = sum / weight;
+  for (const ScaleVote& vote : votes) {
+    const double off = vote.weight * (vote.step - step);
+    spread += off * off;
+  }
+  found.scale = 1.0 + step;
+  found.scale_sigma = std::sqrt(2.0 * spread) / weight;  // each moment is in two stretches
+}
+
+}  // namespace
+
+PivotCheck::PivotCheck(const Params& params) : params_(params) {
+  require_fields(params);
+}
+
+PivotCheck::Found PivotCheck::find(std::span<const ImuSample> samples, std::span<const RateState> rates) const {
+  static const Readings readings = all_readings();
+  // two series, the second half a stretch behind, so that no stretch's border hides what happens there
+  std::array<Stretches, 2> series = {Stretches(params_, readings), Stretches(params_, readings)};
+  double mean_s = 0.0, since_s = 0.0;
+  Eigen::Vector3d turned = Eigen::Vector3d::Zero(), gained = Eigen::Vector3d::Zero();
+  const double rail_m_s2 = (1.0 - kBesideRail) * params_.accel_range_m_s2;
+  for (std::size_t k = 1; k < std::min(samples.size(), rates.size()); ++k) {
+    const Eigen::Vector3d& force = samples[k].specific_force_m_s2;
+    const double dt_s = seconds(samples[k].time_ns - samples[k - 1].time_ns);
+    if (dt_s <= 0.0) continue;
+    const bool at_rail = (rail_m_s2 > 0.0 && force.cwiseAbs().maxCoeff() >= rail_m_s2) ||
+                         (samples[k].device_clip_flags & kAccelFlags) != 0;
+    if (dt_s > params_.gap_max_s || at_rail || rates[k].source != RateSource::measured ||
+        !check_sample(samples[k]).ok()) {
+      for (Stretches& stretches : series) stretches.close();
+      mean_s = since_s = 0.0;
+      turned.setZero(), gained.setZero();
+      continue;
+    }
+    mean_s += dt_s;
+    turned += dt_s * rates[k].w_WI_I_rad_s;
+    gained += dt_s * force;
+    if (mean_s < params_.reading_s - 0.5 * dt_s) continue;
+    since_s += mean_s;
+    series[0].add(mean_s, turned / mean_s, gained / mean_s);
+    if (since_s > 0.5 * params_.stretch_s) series[1].add(mean_s, turned / mean_s, gained / mean_s);
+    mean_s = 0.0;
+    turned.setZero(), gained.setZero();
+  }
+  for (Stretches& stretches : series) stretches.close();
+
+  Found found;
+  for (std::size_t k = 1; k < kCompared; ++k) {
+    const double evidence = series[0].evidence[k] + series[1].evidence[k];
+    if (found.reading != 0 && evidence <= found.evidence) continue;
+    found.reading = static_cast<int>(k);
+    found.evidence = evidence;
+    found.counted = series[0].counted[k] + series[1].counted[k];
+    found.better = series[0].better[k] + series[1].better[k];
+    found.worse = series[0].worse[k] + series[1].worse[k];
+  }
+  std::vector<ScaleVote> votes = std::move(series[0].votes);
+  votes.insert(votes.end(), series[1].votes.begin(), series[1].votes.end());
+  conclude_scale(votes, found);
+  found.explained = series[0].explained + series[1].explained;
+  return found;
+}
+
+/// imu_merge.md (I26), (I27).
+Status PivotCheck::verdict(const Found& found) const {
+  const double least = std::max(params_.evidence_least, params_.evidence_of_each * static_cast<double>(found.counted));
+  const auto better = static_cast<double>(found.better), worse = static_cast<double>(found.worse);
+  if (found.evidence > least && better >= params_.stretches_least && better >= params_.better_over_worse * worse) {
+    return {Trouble::out_of_range, "evidence, of turning about a point, for a gyro named or scaled otherwise",
+            found.evidence, least};
+  }
+  const double off = std::abs(found.scale - 1.0);
+  const double bound = std::max(params_.scale_off, params_.scale_deviations * found.scale_sigma);
+  const double stretches_least =
+      std::max(params_.scale_stretches_least, params_.scale_share_least * static_cast<double>(found.explained));
+  if (static_cast<double>(found.scale_stretches) >= stretches_least && off > bound) {
+    return {Trouble::out_of_range, "scale by which rates explain a turning about a point", found.scale,
+            found.scale < 1.0 ? 1.0 - bound : 1.0 + bound};
+  }
+  return {};
+}
+
+}  // namespace tumble

@@ -1,0 +1,144 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "tumble/attitude/detail/pivot_check.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <functional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "oracles/gaussian.hpp"
+#include "tumble/common/so3.hpp"
+
+namespace tumble {
+namespace {
+
+const std::string kEvidence = "evidence, of turning about a point, for a gyro named or scaled otherwise";
+const std::string kScale = "scale by which rates explain a turning about a point";
+
+struct Motion {
+  Eigen::Vector3d arm_m = {0.05, -0.1, 0.08};  // from the pivot to the sensor
+  double shaken_m_s2 = 0.0;
+  int samples = 2000;
+};
+
+Eigen::Vector3d rate_rad_s(double t_s) {
+  return {3.0 * std::sin(2.0 * t_s), 2.0 * std::cos(3.1 * t_s), 1.5 * std::sin(1.3 * t_s + 1.0)};
+}
+
+Eigen::Vector3d change_rad_s2(double t_s) {
+  return {6.0 * std::cos(2.0 * t_s), -6.2 * std::sin(3.1 * t_s), 1.95 * std::cos(1.3 * t_s + 1.0)};
+}
+
+struct Readings {
+  std::vector<ImuSample> samples;
+  std::vector<RateState> rates;
+};
+
+// A body that turns about a point which stays: what the sensor reads is known in closed form but for its attitude.
+Readings about_a_pivot(const Motion& motion, const std::function<void(RateState&)>& harm = {}) {
+  constexpr double kStep_s = 0.01;
+  constexpr int kFine = 20;
+  Readings run;
+  oracles::Gaussian noise(5);
+  Eigen::Quaterniond q = Eigen::Quaterniond::Identity();
+  for (int k = 0; k < motion.samples; ++k) {
+    Eigen::Vector3d force = Eigen::Vector3d::Zero(), rate = Eigen::Vector3d::Zero();
+    for (int j = 0; j < kFine; ++j) {  // a reading is a mean over its time
+      const double t_s = kStep_s * (k - 1 + (j + 0.5) / kFine);
+      const Eigen::Vector3d w = rate_rad_s(t_s);
+      const Eigen::Quaterniond half = so3::exp(0.5 * kStep_s / kFine * w);
+      q = q * half;
+      force += (change_rad_s2(t_s).cross(motion.arm_m) + w.cross(w.cross(motion.arm_m)) +
+                q.conjugate() * Eigen::Vector3d(0, 0, 9.80665)) /
+               kFine;
+      rate += w / kFine;
+      q = (q * half).normalized();
+    }
+    for (int axis = 0; axis < 3; ++axis) force[axis] += (0.05 + motion.shaken_m_s2) * noise();
+    ImuSample sample;
+    sample.time_ns = TimeNs{k} * 10'000'000;
+    sample.angular_velocity_rad_s = rate;
+    sample.specific_force_m_s2 = force;
+    RateState state;
+    state.time_ns = sample.time_ns;
+    state.w_WI_I_rad_s = rate;
+    state.source = RateSource::measured;
+    if (harm) harm(state);
+    run.samples.push_back(sample);
+    run.rates.push_back(state);
+  }
+  return run;
+}
+
+std::string says(const Readings& run) {
+  const PivotCheck check({});
+  const Status verdict = check.verdict(check.find(run.samples, run.rates));
+  return verdict.ok() ? "" : verdict.field;
+}
+
+TEST(PivotCheck, RatesExplainATurningAboutAPoint) {
+  const Readings run = about_a_pivot({});
+  const PivotCheck check({});
+  const PivotCheck::Found found = check.find(run.samples, run.rates);
+  EXPECT_TRUE(check.verdict(found).ok()) << check.verdict(found).message();
+  EXPECT_EQ(found.counted, 20u) << "two series of stretches of 2 s over 20 s, half a stretch apart";
+  EXPECT_EQ(found.better, 0u);
+  EXPECT_LT(found.evidence, 0.0);
+  EXPECT_NEAR(found.scale, 1.0, 0.002);
+}
+
+TEST(PivotCheck, AGyroNamedOrScaledOtherwiseIsTold) {
+  const auto told = [](const std::function<void(Eigen::Vector3d&)>& harm) {
+    return says(about_a_pivot({}, [&](RateState& rate) { harm(rate.w_WI_I_rad_s); }));
+  };
+  EXPECT_EQ(told([](Eigen::Vector3d& w) { w = -w; }), kEvidence);
+  EXPECT_EQ(told([](Eigen::Vector3d& w) { w.z() = -w.z(); }), kEvidence);
+  EXPECT_EQ(told([](Eigen::Vector3d& w) { std::swap(w.x(), w.y()); }), kEvidence);
+  EXPECT_EQ(told([](Eigen::Vector3d& w) { w *= 0.5; }), kEvidence);
+  EXPECT_EQ(told([](Eigen::Vector3d& w) { w *= 2.0; }), kEvidence);
+}
+
+TEST(PivotCheck, ANearPivotTellsTheScale) {
+  const auto scaled = [](const Motion& motion) {
+    return about_a_pivot(motion, [](RateState& rate) { rate.w_WI_I_rad_s *= 1.05; });
+  };
+  const Readings run = scaled({});
+  const PivotCheck check({});
+  EXPECT_EQ(says(run), kScale);
+  EXPECT_NEAR(check.find(run.samples, run.rates).scale, 1.0 / 1.05, 0.01);
+  const Readings far = scaled({.arm_m = {0.1, 0.2, 0.6}});
+  EXPECT_EQ(check.find(far.samples, far.rates).scale_stretches, 0u) << "a rod is no point: what it gives is larger";
+}
+
+TEST(PivotCheck, WhatTheGyroDidNotMeasureDoesNotCount) {
+  const Readings run = about_a_pivot({}, [](RateState& rate) {
+    rate.w_WI_I_rad_s.z() *= -1.0;
+    if (rate.time_ns % 900'000'000 == 0) rate.source = RateSource::bounded_only;
+  });
+  const PivotCheck check({});
+  EXPECT_EQ(check.find(run.samples, run.rates).counted, 0u) << "no stretch of a second is left";
+  EXPECT_EQ(says(run), "");
+}
+
+TEST(PivotCheck, ABodyThatIsThrownAboutIsExplainedByNothing) {
+  const Readings run = about_a_pivot({.shaken_m_s2 = 40.0}, [](RateState& rate) { rate.w_WI_I_rad_s.z() *= -1.0; });
+  const PivotCheck check({});
+  EXPECT_EQ(check.find(run.samples, run.rates).counted, 0u);
+  EXPECT_EQ(says(run), "");
+}
+
+TEST(PivotCheck, AFewStretchesAreNoEvidence) {
+  EXPECT_EQ(says(about_a_pivot({.samples = 500}, [](RateState& rate) { rate.w_WI_I_rad_s.z() *= -1.0; })), "");
+}
+
+TEST(PivotCheck, RefusesParametersOutOfBounds) {
+  PivotCheck::Params params;
+  params.stretch_s = 0.0;
+  EXPECT_THROW(PivotCheck{params}, InvalidParams);
+}
+
+}  // namespace
+}  // namespace tumble
