@@ -75,8 +75,8 @@ void RegimeSmoother::join(std::span<const ImuSample> samples, std::vector<RateSt
   }
 }
 
-/// Probability that the body was carried throughout the stretch of clipped or doubted samples that a sample lies in or
-/// near to; 0 away from all.
+/// Probability that the body was carried within `near_s` of a sample, as far as the stretch of clipped or doubted
+/// samples reaches that it lies in or near to; 0 away from all. carried.md (C41)
 std::vector<double> RegimeSmoother::carried_stretches(std::span<const RegimeShares> shares, const RateReport& report,
                                                       std::span<const RateState> rates) const {
   std::vector<double> out(rates.size(), 0.0);
@@ -87,13 +87,18 @@ std::vector<double> RegimeSmoother::carried_stretches(std::span<const RegimeShar
       continue;
     }
     std::size_t first = k, last = k;
-    double least = 1.0;
     for (; k < rates.size() && rates[k].time_ns <= rates[last].time_ns + near_ns; ++k)
       if (unread(report, rates[k], k)) last = k;
-    for (std::size_t i = first; i <= last; ++i) least = std::min(least, shares[i].carried);
     const TimeNs from_ns = rates[first].time_ns - near_ns, to_ns = rates[last].time_ns + near_ns;
-    while (first > 0 && rates[first - 1].time_ns >= from_ns) --first;
-    for (std::size_t i = first; i < rates.size() && rates[i].time_ns <= to_ns; ++i) out[i] = std::max(out[i], least);
+    std::size_t i = first, a = first, b = first;  // of the stretch, a to b lie within reach of i
+    while (i > 0 && rates[i - 1].time_ns >= from_ns) --i;
+    for (; i < rates.size() && rates[i].time_ns <= to_ns; ++i) {
+      while (a < last && rates[a].time_ns < rates[i].time_ns - near_ns) ++a;
+      while (b < last && rates[b + 1].time_ns <= rates[i].time_ns + near_ns) ++b;
+      double least = 1.0;
+      for (std::size_t j = a; j <= std::max(a, b); ++j) least = std::min(least, shares[j].carried);
+      out[i] = std::max(out[i], least);
+    }
   }
   return out;
 }

@@ -71,6 +71,23 @@ TEST(RegimeSmoother, AForceThatIsHeldIsComparedInItsOwnTime) {
   EXPECT_LT(clipped_error(recording, joined), 1.0);
 }
 
+// It turns back ten times and is hardly read in between, so that it is one stretch; that nobody knows who holds it in
+// the first tenth of a second, where its rate is not known yet, says nothing of the rest, which would be off by 10
+// rad/s.
+TEST(RegimeSmoother, WhoHeldItAtFirstSaysNothingOfTheRest) {
+  CarriedMotion motion;
+  motion.spin_rad = 4.0;
+  motion.spin_hz = motion.hand_hz = 1.0;
+  const CarriedRecording recording = record(motion, 100.0, 10.0, kRail_rad_s);
+  std::vector<RateState> alone, joined;
+  RateReport of_flight;
+  RegimeSmoother::Report report;
+  ASSERT_TRUE(RateSmoother(params_of(motion).rate).estimate(recording.samples, alone, of_flight).ok());
+  ASSERT_TRUE(RegimeSmoother(params_of(motion)).estimate(recording.samples, joined, report).ok());
+  EXPECT_GT(clipped_error(recording, alone), 5.0);
+  EXPECT_LT(clipped_error(recording, joined), 1.0);
+}
+
 TEST(RegimeSmoother, ASpinInFlightIsNot) {
   const CarriedMotion motion;
   CarriedRecording recording = record(motion, 100.0, 10.0, kRail_rad_s);

@@ -16,9 +16,10 @@ namespace tumble {
 /// CarriedSmoother, joined by `either`. The other smoother is asked only where it may matter. RegimeStream is the same
 /// as a stream.
 ///
-/// A stretch of clipped or doubted samples, and what is near about it, is believed to be carried as far as its least
-/// carried sample is: where it begins in a hand and ends in flight, the flight tells its rate. Not modelled: further
-/// IMUs, which tell the rate whoever holds the body.
+/// A sample of a stretch of clipped or doubted ones, or near about it, is believed to be carried as far as the least
+/// carried sample of the stretch is that is near to it: where a hand lets go, the flight tells the rate beside it, and
+/// says nothing of what the hand does a second later. Not modelled: further IMUs, which tell the rate whoever holds the
+/// body.
 class RegimeSmoother {
  public:
   struct Params {
@@ -26,7 +27,7 @@ class RegimeSmoother {
     RegimeEvidence::Params evidence;
     CarriedSmoother::Params carried;
     double carried_min = 0.02;  ///< a share of the carried body below this changes nothing worth a run
-    double near_s = 0.1;        ///< clipped samples so close belong to one stretch, and what is so close about it
+    double near_s = 0.1;  ///< clipped samples so close belong to one stretch, and judge each other and what is so close
 
     /// Every number of it, stated once.
     template <class Self, class Visitor>
@@ -36,7 +37,8 @@ class RegimeSmoother {
       visit.group("carried_", p.carried);
       visit(p.carried_min,
             {"carried_min", "1", 0.0, 1.0, "a share of the carried body below this is not worth its work"});
-      visit(p.near_s, {"near_s", "s", 0.0, 10.0, "clipped samples so close belong to one stretch"});
+      visit(p.near_s,
+            {"near_s", "s", 0.0, 10.0, "clipped samples so close belong to one stretch and judge each other"});
     }
   };
   struct Report {
