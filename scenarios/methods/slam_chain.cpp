@@ -187,16 +187,22 @@ void report_calibration(const LidarInertialOdometry& odometry, const sim::Sensor
 }
 
 /// How far a run moved the calibration from where it started, in standard deviations of what was given.
-double calibration_surprise(const LidarInertialOdometry& odometry, const LidarInertialOdometry::Params& started,
-                            const LidarInertialOdometry::Params& given) {
-  SweepCalibration start;
-  start.T_IL = started.T_IL;
-  start.time_offset_s = started.time_offset_s;
+double calibration_surprise(const LidarInertialOdometry& odometry, const SweepCalibration& start,
+                            const GivenCalibration& given) {
   const auto moved = odometry.calibration().minus(start);
   const auto share = [](double by, double sigma) { return by == 0.0 ? 0.0 : by / sigma; };
   return std::max({share(moved.head<3>().norm(), given.mount_sigma_rad),
                    share(moved.segment<3>(3).norm(), given.mount_sigma_m),
                    share(std::abs(moved[6]), given.time_offset_sigma_s)});
+}
+
+double calibration_surprise(const LidarInertialOdometry& odometry, const LidarInertialOdometry::Params& started,
+                            const LidarInertialOdometry::Params& given) {
+  SweepCalibration start;
+  start.T_IL = started.T_IL;
+  start.time_offset_s = started.time_offset_s;
+  return calibration_surprise(odometry, start,
+                              {start, given.mount_sigma_rad, given.mount_sigma_m, given.time_offset_sigma_s});
 }
 
 /// Whether so few sweeps were rejected that what the run says of the calibration can be used.
@@ -358,11 +364,13 @@ void settle(std::vector<PoseState> last_word, SweepReport& sweep) {
   sweep.pose = sweep.trajectory.back();
 }
 
-void conclude_sweeps(const LidarInertialOdometry& odometry, const SweepScale& scale, const Localisation& localisation,
-                     Estimate& estimate) {
+void conclude_sweeps(const LidarInertialOdometry& odometry, const GivenCalibration& given, const SweepScale& scale,
+                     const Localisation& localisation, Estimate& estimate) {
   gather_poses(estimate);
   report_innovations(estimate);
-  report_end({}, localisation, estimate);
+  const CalibrationVerdict calibration{calibration_surprise(odometry, given.calibration, given), false};
+  estimate.health["calibration_surprise"] = calibration.moved;
+  report_end(calibration, localisation, estimate);
   report_scale(scale, estimate);
   draw_map(odometry, estimate);
 }

@@ -66,7 +66,12 @@ enum class Word {
 class Listener {
  public:
   Listener(Word word, const TumblingOdometry::Params& params, Estimate& estimate)
-      : word_(word), localisation_(params.expert.mapping.expert.matching.distance_m), estimate_(estimate) {}
+      : word_(word), localisation_(params.expert.mapping.expert.matching.distance_m), estimate_(estimate) {
+    given_.calibration.T_IL = params.T_IL;
+    given_.mount_sigma_rad = params.mount_sigma_rad;
+    given_.mount_sigma_m = params.mount_sigma_m;
+    given_.time_offset_sigma_s = params.time_offset_sigma_s;
+  }
 
   /// A sample has just been taken in.
   void heard(const TumblingOdometry& odometry) {
@@ -90,7 +95,7 @@ class Listener {
   void conclude(const TumblingOdometry& odometry) {
     for (std::vector<PoseState>& open : odometry.mapper().open_trajectories()) settle_next(std::move(open));
     if (word_ == Word::live) speak_live();
-    conclude_sweeps(odometry.mapper(), odometry.sweep_scale(), localisation_, estimate_);
+    conclude_sweeps(odometry.mapper(), given_, odometry.sweep_scale(), localisation_, estimate_);
   }
 
  private:
@@ -114,6 +119,7 @@ class Listener {
   }
 
   Word word_;
+  GivenCalibration given_;
   Localisation localisation_;
   Estimate& estimate_;
   std::size_t settled_ = 0;

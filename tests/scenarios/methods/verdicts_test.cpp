@@ -62,6 +62,17 @@ TEST(Verdicts, SlamThatLagsFindsALidarOfAnotherScale) {
   EXPECT_EQ(run(method, draw, "lidar_ranges_long").localised, 0.0);
 }
 
+// A mounting that is 10 deg off is learnt in part: 0.7 m off at the end, and told by how far it was moved.
+TEST(Verdicts, SlamLiveTellsAMountingThatMovedBeyondWhatWasGiven) {
+  const DataRoot data{test::source_dir()};
+  const SimulatedDraw draw = simulate_draw(data, load_scenario(data, "throw"), 87201, 1);
+  const Method& method = *find_methods("slam/tumble_live").at(0);
+  EXPECT_EQ(run(method, draw, "none").localised, 1.0);
+  const Said moved = run(method, draw, "mounting_10_deg");
+  EXPECT_EQ(moved.localised, 0.0);
+  EXPECT_GT(moved.ate_m, 0.3) << "nothing was wrong";
+}
+
 // A scale that all gyros share is in the way too, where nothing contradicts it: more than a metre off, and told by the
 // forces of units at different places.
 TEST(Verdicts, PositionTellsGyrosOfAnotherScale) {
@@ -146,6 +157,15 @@ TEST(Verdicts, RatesTellAGyroOfAnotherSenseAndAnAxisThatFroze) {
   const SaidOfRates frozen = rates_of(draw, "gyro_z_frozen");
   EXPECT_TRUE(frozen.implausible);
   EXPECT_TRUE(frozen.z_frozen);
+}
+
+// It never rests, and no window of a held force tells it.
+TEST(Verdicts, RatesTellAWandWhoseGyroIsNamedOrScaledOtherwise) {
+  const DataRoot data{test::source_dir()};
+  const SimulatedDraw draw = simulate_draw(data, load_scenario(data, "twirl"), 81201, 1, Lidars::left_out);
+  EXPECT_FALSE(rates_of(draw, "none").implausible);
+  EXPECT_TRUE(rates_of(draw, "gyro_z_flipped").implausible) << "about which it hardly turns";
+  EXPECT_TRUE(rates_of(draw, "gyro_scale_5_percent").implausible);
 }
 
 }  // namespace
