@@ -56,5 +56,22 @@ TEST(TumblingOdometry, DoubtsAPlaceThatInertiaAloneHasFound) {
   EXPECT_EQ(awake.doubt().message(), doubt.message());
 }
 
+/// A mounting that is ten degrees off what was given, of one that stays within what was given.
+TEST(TumblingOdometry, DoubtsACalibrationThatMovedFurtherThanWasGiven) {
+  const ThrownBody body;
+  TumblingOdometry::Params params = params_of(body);
+  params.T_IL.linear() = Eigen::AngleAxisd(0.5 * params.mount_sigma_rad, Eigen::Vector3d::UnitX()).toRotationMatrix();
+  TumblingOdometry near(params);
+  run(body, 0.0, 0.0, near);
+  EXPECT_TRUE(near.doubt().ok()) << near.doubt().message();
+  params.T_IL.linear() = Eigen::AngleAxisd(0.17, Eigen::Vector3d::UnitX()).toRotationMatrix();
+  TumblingOdometry far(params);
+  run(body, 0.0, 0.0, far);
+  const Status doubt = far.doubt();
+  EXPECT_EQ(doubt.trouble, Trouble::out_of_range);
+  EXPECT_NE(doubt.message().find("calibration of lidar and IMU"), std::string::npos) << doubt.message();
+  EXPECT_GT(doubt.value, GivenCalibration::kBelieved);
+}
+
 }  // namespace
 }  // namespace tumble

@@ -21,8 +21,8 @@ namespace tumble::scenarios {
 namespace {
 
 constexpr double kRests_m = 0.01, kRests_rad = 0.01;  // from one end of a sweep to the other
-constexpr double kBelieved = 5.0;                     // standard deviations that a calibration may move by in one run
-constexpr int kSearches = 3;                          // runs more for one that moves further
+constexpr double kBelieved = GivenCalibration::kBelieved;
+constexpr int kSearches = 3;  // runs more for one that moves further
 
 LidarInertialOdometry::Params odometry_params(const sim::Sensors& sensors, const SlamStage& stage,
                                               const SlamChain& chain) {
@@ -186,23 +186,16 @@ void report_calibration(const LidarInertialOdometry& odometry, const sim::Sensor
   health["calibration_time_offset_s"] = moved[6];
 }
 
-/// How far a run moved the calibration from where it started, in standard deviations of what was given.
-double calibration_surprise(const LidarInertialOdometry& odometry, const SweepCalibration& start,
-                            const GivenCalibration& given) {
-  const auto moved = odometry.calibration().minus(start);
-  const auto share = [](double by, double sigma) { return by == 0.0 ? 0.0 : by / sigma; };
-  return std::max({share(moved.head<3>().norm(), given.mount_sigma_rad),
-                   share(moved.segment<3>(3).norm(), given.mount_sigma_m),
-                   share(std::abs(moved[6]), given.time_offset_sigma_s)});
-}
-
-double calibration_surprise(const LidarInertialOdometry& odometry, const LidarInertialOdometry::Params& started,
-                            const LidarInertialOdometry::Params& given) {
-  SweepCalibration start;
-  start.T_IL = started.T_IL;
-  start.time_offset_s = started.time_offset_s;
-  return calibration_surprise(odometry, start,
-                              {start, given.mount_sigma_rad, given.mount_sigma_m, given.time_offset_sigma_s});
+/// The calibration that a run starts from, as sure as it was given.
+GivenCalibration given_calibration(const LidarInertialOdometry::Params& started,
+                                   const LidarInertialOdometry::Params& given) {
+  GivenCalibration out;
+  out.calibration.T_IL = started.T_IL;
+  out.calibration.time_offset_s = started.time_offset_s;
+  out.mount_sigma_rad = given.mount_sigma_rad;
+  out.mount_sigma_m = given.mount_sigma_m;
+  out.time_offset_sigma_s = given.time_offset_sigma_s;
+  return out;
 }
 
 /// Whether so few sweeps were rejected that what the run says of the calibration can be used.
@@ -235,7 +228,7 @@ Estimate run_passes(const sim::LidarRecord& lidar, std::span<const ImuSample> sa
     params.time_offset_s = learnt.time_offset_s;
   };
   while (run.status.ok() && tells_calibration(run)) {
-    surprise = calibration_surprise(odometry, params, given);
+    surprise = given_calibration(params, given).moved(odometry.calibration());
     if (surprise <= kBelieved || passes > kSearches) break;
     start_from(odometry.calibration());
     again();
@@ -250,7 +243,7 @@ Estimate run_passes(const sim::LidarRecord& lidar, std::span<const ImuSample> sa
     again();
   }
   if (passes > 1) run.health["passes"] = passes;
-  verdict = {calibration_surprise(odometry, given, given), settled};
+  verdict = {given_calibration(given, given).moved(odometry.calibration()), settled};
   run.health["calibration_surprise"] = verdict.moved;
   run.health["calibration_unconverged"] = settled ? 0.0 : 1.0;
   return run;
@@ -368,7 +361,7 @@ void conclude_sweeps(const LidarInertialOdometry& odometry, const GivenCalibrati
                      const Localisation& localisation, Estimate& estimate) {
   gather_poses(estimate);
   report_innovations(estimate);
-  const CalibrationVerdict calibration{calibration_surprise(odometry, given.calibration, given), false};
+  const CalibrationVerdict calibration{given.moved(odometry.calibration()), false};
   estimate.health["calibration_surprise"] = calibration.moved;
   report_end(calibration, localisation, estimate);
   report_scale(scale, estimate);

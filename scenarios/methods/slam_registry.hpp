@@ -44,12 +44,6 @@ Estimate begin_with_rates(const sim::Sensors& sensors, std::vector<ImuSample>& s
 /// A sweep's last word takes the place of its first.
 void settle(std::vector<PoseState> last_word, LidarInertialOdometry::SweepReport& sweep);
 
-/// Calibration of the lidar on the IMU as it was given, and how sure.
-struct GivenCalibration {
-  SweepCalibration calibration;
-  double mount_sigma_rad = 0.0, mount_sigma_m = 0.0, time_offset_sigma_s = 0.0;
-};
-
 /// Poses, map and verdict of a run whose sweeps and their ends the estimate holds; `too_few` when none was registered.
 /// `localisation`: of the sweeps as the mapper first told of them. A calibration that has moved by more than five of
 /// the deviations with which it was given was given wrong (health `calibration_surprise`).

@@ -66,12 +66,10 @@ enum class Word {
 class Listener {
  public:
   Listener(Word word, const TumblingOdometry::Params& params, Estimate& estimate)
-      : word_(word), localisation_(params.expert.mapping.expert.matching.distance_m), estimate_(estimate) {
-    given_.calibration.T_IL = params.T_IL;
-    given_.mount_sigma_rad = params.mount_sigma_rad;
-    given_.mount_sigma_m = params.mount_sigma_m;
-    given_.time_offset_sigma_s = params.time_offset_sigma_s;
-  }
+      : word_(word),
+        given_(params.given_calibration()),
+        localisation_(params.expert.mapping.expert.matching.distance_m),
+        estimate_(estimate) {}
 
   /// A sample has just been taken in.
   void heard(const TumblingOdometry& odometry) {

@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "tumble/mapping/calibration.hpp"
 
+#include <algorithm>
+#include <cmath>
+
 #include "tumble/common/so3.hpp"
 
 namespace tumble {
@@ -19,6 +22,19 @@ Eigen::Matrix<double, SweepCalibration::kErrors, 1> SweepCalibration::minus(cons
       T_IL.translation() - other.T_IL.translation(), time_offset_s - other.time_offset_s,
       gravity_W_m_s2 - other.gravity_W_m_s2;
   return error;
+}
+
+double GivenCalibration::moved(const SweepCalibration& learnt) const {
+  const auto by = learnt.minus(calibration);
+  const auto share = [](double part, double sigma) { return part == 0.0 ? 0.0 : part / sigma; };
+  return std::max({share(by.head<3>().norm(), mount_sigma_rad), share(by.segment<3>(3).norm(), mount_sigma_m),
+                   share(std::abs(by[6]), time_offset_sigma_s)});
+}
+
+Status GivenCalibration::verdict(const SweepCalibration& learnt) const {
+  const double by = moved(learnt);
+  if (by <= kBelieved) return {};
+  return {Trouble::out_of_range, "calibration of lidar and IMU, moved in deviations of what was given", by, kBelieved};
 }
 
 }  // namespace tumble

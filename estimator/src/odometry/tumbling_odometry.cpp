@@ -121,7 +121,9 @@ Status TumblingOdometry::doubt() const {
   const Status of_imu = pass_.rates().rate().doubt(pass_.rate_state().rate);
   if (!of_imu.ok()) return of_imu;
   const Status of_ranges = pass_.sweep_scale().verdict();
-  return of_ranges.ok() ? pass_.localisation().verdict() : of_ranges;
+  if (!of_ranges.ok()) return of_ranges;
+  const Status of_place = pass_.localisation().verdict();
+  return of_place.ok() ? params_.given_calibration().verdict(mapper().calibration()) : of_place;
 }
 
 void TumblingOdometry::finish() {

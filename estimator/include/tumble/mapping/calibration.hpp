@@ -4,6 +4,8 @@
 #include <Eigen/Core>
 #include <Eigen/Geometry>
 
+#include "tumble/common/status.hpp"
+
 namespace tumble {
 
 /// What ties a lidar to an IMU and both to the world, known to a calibration's accuracy only and refined with the
@@ -21,6 +23,20 @@ struct SweepCalibration {
   void add(const Eigen::Matrix<double, kErrors, 1>& error);
   /// The error that takes `other` to this, first order in the rotation's difference.
   Eigen::Matrix<double, kErrors, 1> minus(const SweepCalibration& other) const;
+};
+
+/// A calibration as it was given, with the deviation of each axis of its parts; 0 for a part that is exact.
+struct GivenCalibration {
+  static constexpr double kBelieved = 5.0;  ///< deviations that a calibration may move by in one run
+
+  SweepCalibration calibration;
+  double mount_sigma_rad = 0.0, mount_sigma_m = 0.0, time_offset_sigma_s = 0.0;
+
+  /// How far `learnt` is from it, in its deviations: the largest of rotation, translation and time offset; infinite
+  /// where a part that is exact differs. mapping.md (R55). Gravity, which each run finds by itself, does not count.
+  double moved(const SweepCalibration& learnt) const;
+  /// `out_of_range` where `learnt` lies more than `kBelieved` deviations away: it was given wrong.
+  Status verdict(const SweepCalibration& learnt) const;
 };
 
 }  // namespace tumble

@@ -7,6 +7,7 @@
 
 #include "tumble/attitude/regime_stream.hpp"
 #include "tumble/common/parameters.hpp"
+#include "tumble/mapping/calibration.hpp"
 #include "tumble/mapping/odometry_params.hpp"
 #include "tumble/odometry/imu_sheet.hpp"
 #include "tumble/odometry/lidar_sheet.hpp"
@@ -57,6 +58,13 @@ struct TumblingParams {
 
   using Expert = TumblingExpertParams;
   Expert expert;  ///< what few need
+
+  /// T_IL and the clock, as sure as they are given.
+  GivenCalibration given_calibration() const {
+    GivenCalibration out{{}, mount_sigma_rad, mount_sigma_m, time_offset_sigma_s};
+    out.calibration.T_IL = T_IL;
+    return out;
+  }
 
   /// Every number of it, stated once.
   template <class Self, class Visitor>

@@ -1,0 +1,48 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// How far a calibration lies from what was given, in closed form.
+#include "tumble/mapping/calibration.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+namespace tumble {
+namespace {
+
+const GivenCalibration kGiven{{}, 0.01, 0.002, 0.003};
+
+SweepCalibration turned(double by_rad) {
+  SweepCalibration out;
+  out.T_IL.linear() = Eigen::AngleAxisd(by_rad, Eigen::Vector3d(1.0, 2.0, -2.0) / 3.0).toRotationMatrix();
+  return out;
+}
+
+TEST(GivenCalibration, CountsTheLargestOfTurnShiftAndDelayInItsDeviations) {
+  EXPECT_EQ(kGiven.moved(SweepCalibration{}), 0.0);
+  SweepCalibration learnt = turned(0.03);
+  EXPECT_NEAR(kGiven.moved(learnt), 3.0, 1e-9);
+  learnt.T_IL.translation() = Eigen::Vector3d(0.0, -0.006, 0.008);
+  EXPECT_NEAR(kGiven.moved(learnt), 5.0, 1e-9);
+  learnt.time_offset_s = -0.018;
+  EXPECT_NEAR(kGiven.moved(learnt), 6.0, 1e-9);
+  learnt = {};
+  learnt.gravity_W_m_s2 = Eigen::Vector3d(1.0, 0.0, -9.7);  // each run's own
+  EXPECT_EQ(kGiven.moved(learnt), 0.0);
+}
+
+TEST(GivenCalibration, SaysWhereItWasGivenWrong) {
+  EXPECT_TRUE(kGiven.verdict(turned(0.049)).ok());
+  const Status wrong = kGiven.verdict(turned(0.051));
+  EXPECT_EQ(wrong.trouble, Trouble::out_of_range);
+  EXPECT_NEAR(wrong.value, 5.1, 1e-9);
+  EXPECT_EQ(wrong.bound, GivenCalibration::kBelieved);
+}
+
+TEST(GivenCalibration, WhatIsExactMayNotMove) {
+  const GivenCalibration exact;
+  EXPECT_EQ(exact.moved(SweepCalibration{}), 0.0);
+  EXPECT_TRUE(std::isinf(exact.moved(turned(1e-6))));
+}
+
+}  // namespace
+}  // namespace tumble
