@@ -257,18 +257,6 @@ TEST(Architecture, EveryLibraryLinksAsTheTableSays) {
   EXPECT_GE(looked_at, 1u);
 }
 
-/// OSMesa brings LLVM with it and PCL's readers VTK: both are loaded when they are asked for.
-TEST(Architecture, TheProgramBeginsWithoutWhatFewVerbsNeed) {
-  const fs::path program = tumble::test::program();
-  if (!fs::exists(program)) GTEST_SKIP() << "a build of some targets";
-  const std::regex dear("libOSMesa|libLLVM|libpcl_io|libvtk");
-  const std::string begins_with = output_of("ldd " + program.string());
-  ASSERT_NE(begins_with.find("libmujoco"), std::string::npos) << "ldd printed nothing to judge";
-  EXPECT_FALSE(std::regex_search(begins_with, dear)) << begins_with;
-  const fs::path module = build_dir() / "lib/tumble/tumble_pcl_reader.so";
-  EXPECT_TRUE(std::regex_search(output_of("ldd " + module.string()), dear)) << "negative control";
-}
-
 /// Folders that use each other, directly or by way of others, each with one of those ("a b", a before b). A folder and
 /// one within it may: the outer one holds what all inner ones share, and joins them. The estimator's headers and
 /// sources of one name are one folder.

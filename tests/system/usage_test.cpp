@@ -3,14 +3,18 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <sched.h>
+#include <cstdlib>
+#include <filesystem>
 #include <ostream>
 
 #include "system/program.hpp"
+#include "tests/tree.hpp"
 
 namespace tumble::system_test {
 namespace {
 
 using ::testing::HasSubstr;
+using ::testing::Not;
 
 class EachVerb : public testing::TestWithParam<const char*> {};
 
@@ -33,6 +37,17 @@ INSTANTIATE_TEST_SUITE_P(Program, EachVerb,
                          testing::Values("list", "run", "record", "estimate", "score", "sweep", "merge", "report",
                                          "compare", "sensitivity", "render", "replay", "certify", "bench", "gate",
                                          "triage", "shrink", "export", "import"));
+
+/// OSMesa brings LLVM with it and PCL's readers VTK: both are loaded when they are asked for.
+TEST(Program, BeginsWithoutTheLibrariesThatFewVerbsNeed) {
+  // the loader lists what it would load, and ends
+  const Ended listed = run_program({"--version"}, [] { setenv("LD_TRACE_LOADED_OBJECTS", "1", 1); });
+  EXPECT_THAT(listed.out, HasSubstr("libmujoco"));
+  for (const char* dear : {"libOSMesa", "libLLVM", "libpcl_io", "libvtk"})
+    EXPECT_THAT(listed.out, Not(HasSubstr(dear)));
+  const std::filesystem::path folder = test::program().parent_path().parent_path();
+  EXPECT_THAT(read_file(folder / "lib/tumble/tumble_pcl_reader.so"), HasSubstr("libpcl_io")) << "negative control";
+}
 
 struct Wrong {
   const char* what;
