@@ -73,9 +73,8 @@ class TumblingOdometry {
   /// Whether what it is told can be believed just now: `ok`, or `out_of_range` with the axis of the IMU by name that
   /// has frozen and for how long, with an accelerometer of the other sense (FlightSense), with the scale of the
   /// lidar's ranges where the IMU contradicts it (SweepScale), with what says that it no longer knew where on its map
-  /// it was (Localisation), which is for good, or with how far the lidar's calibration has moved from what was given
-  /// (GivenCalibration), beyond which its poses are too sure of themselves. It goes on either way: rates that nothing
-  /// is known of have a wide deviation; a map of another scale is one.
+  /// it was (Localisation), which is for good, or with how far the lidar's calibration moved (GivenCalibration). It
+  /// goes on either way: rates that nothing is known of have a wide deviation; a map of another scale is one.
   Status doubt() const;
 
   /// By how much the lidar's ranges are longer than the IMU has it, as far as the motion told.
