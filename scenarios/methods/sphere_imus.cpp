@@ -211,6 +211,68 @@ Status leave_out_frozen(Units& units, std::vector<MergedImus::LeftOut>& out) {
   return {};
 }
 
+/// The ranges that the first unit's device states.
+void give_ranges(const sim::ImuRecord& primary, MergedImus& out, ImuMerge::Params& params) {
+  if (primary.stated_gyro_range_rad_s > 0.0) out.gyro_range_rad_s = sure_range(primary.stated_gyro_range_rad_s);
+  if (primary.stated_accel_range_m_s2 > 0.0) out.accel_range_m_s2 = sure_range(primary.stated_accel_range_m_s2);
+  params.gyro_range_rad_s = out.gyro_range_rad_s;
+  params.accel_range_m_s2 = out.accel_range_m_s2;
+}
+
+void tell_silent(const Units& units, std::vector<MergedImus::LeftOut>& out) {
+  const TimeNs start_ns = units.samples[0].front().time_ns;
+  for (std::size_t k = 0; k < units.names.size(); ++k) {
+    const std::optional<TimeNs> since_ns = silent_since(units.samples[k]);
+    if (!since_ns) continue;
+    out.push_back({units.names[k], MergedImus::LeftOut::Why::silent, seconds(*since_ns - start_ns), {}});
+  }
+}
+
+void erase_unit(Units& units, std::size_t unit) {
+  const auto at = static_cast<std::ptrdiff_t>(unit);
+  units.names.erase(units.names.begin() + at);
+  units.T_BI.erase(units.T_BI.begin() + at);
+  units.samples.erase(units.samples.begin() + at);
+  units.gyro_elements.erase(units.gyro_elements.begin() + at);
+  units.accel_elements.erase(units.accel_elements.begin() + at);
+}
+
+/// Takes away what the merge has found out, from the beginning of it: whether there was anything.
+bool leave_out_found(const ImuMerge::State& state, Units& units, std::vector<MergedImus::LeftOut>& out) {
+  const TimeNs start_ns = units.samples[0].front().time_ns;
+  bool any = false;
+  for (std::size_t k = units.names.size(); k-- > 0;) {
+    const ImuMerge::Unit& unit = state.units[k];
+    if (unit.frozen) {
+      any = true;
+      silence(units.samples[k], unit.frozen_since_ns);
+      out.push_back({units.names[k], MergedImus::LeftOut::Why::frozen, seconds(unit.frozen_since_ns - start_ns), {}});
+    } else if (unit.disagrees) {
+      any = true;
+      out.push_back(
+          {units.names[k], MergedImus::LeftOut::Why::disagrees, seconds(unit.disagrees_since_ns - start_ns), {}});
+      erase_unit(units, k);
+    }
+  }
+  return any;
+}
+
+/// What the merge has learnt of the units, and of where it stands between them.
+void tell_units(const ImuMerge& merge, const ImuMerge::State& state, const Units& units, MergedImus& out) {
+  out.units = static_cast<int>(units.names.size());
+  out.lever_arm_m = merge.p_C_m();
+  out.arm_share = ImuMerge::arm_share(state);
+  for (std::size_t unit = 0; unit < units.names.size(); ++unit) {
+    const ImuMerge::Unit& learnt = state.units[unit];
+    out.left_out += static_cast<double>(learnt.left_out);
+    out.offset_max_s = std::max(out.offset_max_s, std::abs(learnt.offset_s()));
+    if (units.names.size() < 2) continue;
+    constexpr int kOffset = ImuMerge::kErrors - 1;
+    out.each.push_back({units.names[unit], learnt.offset_s(), std::sqrt(std::max(0.0, learnt.P(kOffset, kOffset))),
+                        learnt.x.head<3>().norm()});
+  }
+}
+
 }  // namespace
 
 std::string to_string(const MergedImus::LeftOut& unit) {
@@ -231,63 +293,23 @@ Status merge_imus(const sim::Sensors& sensors, MergedImus& out) {
   if (Status status = units_of(sensors, units); !status.ok()) return status;
   out.resampled = units.resampled;
   out.beyond_range = units.beyond_range;
-  const sim::ImuRecord& primary = sensors.imus.front();
-  if (primary.stated_gyro_range_rad_s > 0.0) out.gyro_range_rad_s = sure_range(primary.stated_gyro_range_rad_s);
-  if (primary.stated_accel_range_m_s2 > 0.0) out.accel_range_m_s2 = sure_range(primary.stated_accel_range_m_s2);
   ImuMerge::Params params;
   params.gap_max_s = bridge::kGapMaxS;
-  params.gyro_range_rad_s = out.gyro_range_rad_s;
-  params.accel_range_m_s2 = out.accel_range_m_s2;
-  give_units(units, params);
-  const TimeNs start_ns = units.samples[0].front().time_ns;
-  for (std::size_t k = 0; k < units.names.size(); ++k) {
-    const std::optional<TimeNs> since_ns = silent_since(units.samples[k]);
-    if (!since_ns) continue;
-    out.out.push_back({units.names[k], MergedImus::LeftOut::Why::silent, seconds(*since_ns - start_ns), {}});
-  }
+  give_ranges(sensors.imus.front(), out, params);
+  tell_silent(units, out.out);
   if (Status status = leave_out_frozen(units, out.out); !status.ok()) return status;
+
+  give_units(units, params);
   auto state = std::make_unique<ImuMerge::State>();
   if (Status status = run(ImuMerge(params), units, *state, out.samples); !status.ok()) return status;
-
-  // who was found out is left out from the beginning of it
-  bool anew = false;
-  for (std::size_t k = units.names.size(); k-- > 0;) {
-    const ImuMerge::Unit& unit = state->units[k];
-    if (unit.frozen) {
-      anew = true;
-      silence(units.samples[k], unit.frozen_since_ns);
-      out.out.push_back(
-          {units.names[k], MergedImus::LeftOut::Why::frozen, seconds(unit.frozen_since_ns - start_ns), {}});
-    } else if (unit.disagrees) {
-      anew = true;
-      out.out.push_back(
-          {units.names[k], MergedImus::LeftOut::Why::disagrees, seconds(unit.disagrees_since_ns - start_ns), {}});
-      const auto at = static_cast<std::ptrdiff_t>(k);
-      units.names.erase(units.names.begin() + at);
-      units.T_BI.erase(units.T_BI.begin() + at);
-      units.samples.erase(units.samples.begin() + at);
-      units.gyro_elements.erase(units.gyro_elements.begin() + at);
-      units.accel_elements.erase(units.accel_elements.begin() + at);
-    }
-  }
+  const bool anew = leave_out_found(*state, units, out.out);
   give_units(units, params);
   const ImuMerge merge(params);
   if (anew) {
     *state = {};
     if (Status status = run(merge, units, *state, out.samples); !status.ok()) return status;
   }
-  out.units = params.count;
-  out.lever_arm_m = merge.p_C_m();
-  out.arm_share = ImuMerge::arm_share(*state);
-  for (std::size_t unit = 0; unit < units.names.size(); ++unit) {
-    const ImuMerge::Unit& learnt = state->units[unit];
-    out.left_out += static_cast<double>(learnt.left_out);
-    out.offset_max_s = std::max(out.offset_max_s, std::abs(learnt.offset_s()));
-    if (units.names.size() < 2) continue;
-    constexpr int kOffset = ImuMerge::kErrors - 1;
-    out.each.push_back({units.names[unit], learnt.offset_s(), std::sqrt(std::max(0.0, learnt.P(kOffset, kOffset))),
-                        learnt.x.head<3>().norm()});
-  }
+  tell_units(merge, *state, units, out);
   return {};
 }
 

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <optional>
 
 namespace tumble {
 
@@ -89,6 +90,57 @@ double thinness(const DistinctReadings& readings, const RailFacet& facet, const 
   return scatter < noise ? free * (std::log(noise / scatter) - 0.5 * (1.0 - std::pow(scatter / noise, 2))) : 0.0;
 }
 
+// A stretch between what its neighbours let a round top bend by, and what it bends.
+struct StretchShape {
+  double bend = 0.0, flat = 0.0;
+  bool bends() const { return bend >= kBend * flat; }
+};
+
+// Nothing of a single reading, or where both ends of the recording are too near.
+std::optional<StretchShape> shape_of(const DistinctReadings& readings, const RailFacet& facet, const Stretch& s) {
+  const std::vector<Vector3d>& rates = readings.rates;
+  const auto value = [&](std::size_t k) { return facet.sign * facet.row.dot(rates[k]); };
+  // depth of the second neighbour outside of either end
+  double depth = std::numeric_limits<double>::max();
+  if (s.first >= 2) depth = std::min(depth, facet.level - value(s.first - 2));
+  if (s.last + 2 < rates.size()) depth = std::min(depth, facet.level - value(s.last + 2));
+  if (s.size() < 2 || depth == std::numeric_limits<double>::max()) return std::nullopt;
+  double low = std::numeric_limits<double>::max(), high = -low;
+  for (std::size_t k = s.first; k <= s.last; ++k) {
+    low = std::min(low, value(k));
+    high = std::max(high, value(k));
+  }
+  // a parabola through both neighbours bends by this within the stretch: rails.md (R61)
+  const double n = static_cast<double>(s.size()), inside = (n - 1.0) / (n + 3.0);
+  return StretchShape{depth * inside * inside, std::max(high - low, 2.0 * facet.deviation)};
+}
+
+// The kink at one end of a stretch, rails.md (R64): second differences about it of the rail's own axis and of those
+// beside it, which an impact would bend too.
+double kink_evidence(const DistinctReadings& readings, const RailFacet& facet, const Stretch& s, bool after) {
+  const std::vector<Vector3d>& rates = readings.rates;
+  if (s.size() < 3 || (after ? s.last + 3 >= rates.size() : s.first < 3)) return 0.0;
+  const double noise = readings.noise[facet.axis];
+  const std::size_t end = after ? s.last : s.first;
+  const std::size_t outside = after ? end + 2 : end - 2, inside_of = after ? end - 2 : end + 2;
+  const Vector3d bent = rates[outside] - 2.0 * rates[end] + rates[inside_of];
+  const double own = std::abs(facet.row.dot(bent));
+  Vector3d beside = bent, moving = rates[outside] - rates[inside_of];
+  beside[facet.axis] = moving[facet.axis] = 0.0;
+  if (moving.norm() < kMoving * noise) return 0.0;
+  const double ratio = std::max(beside.norm(), 2.0 * noise) / std::max(own, 1e-9);
+  return std::clamp(-std::log(5.0 * ratio), -0.5, kKinkAlone);
+}
+
+// What a stretch tells of the facet's slopes and level.
+Eigen::Matrix3d information_of(const DistinctReadings& readings, const RailFacet& facet, const Stretch& s) {
+  Vector3d mean = Vector3d::Zero();
+  for (std::size_t k = s.first; k <= s.last; ++k) mean += readings.rates[k] / static_cast<double>(s.size());
+  Vector3d A;
+  A << -facet.sign * mean[(facet.axis + 1) % 3], -facet.sign * mean[(facet.axis + 2) % 3], 1.0;
+  return A * A.transpose() / (facet.deviation * facet.deviation);
+}
+
 }  // namespace
 
 DistinctReadings distinct_readings(std::span<const Vector3d> readings, std::vector<Vector3d>& rates,
@@ -125,8 +177,6 @@ DistinctReadings distinct_readings(std::span<const Vector3d> readings, std::vect
 
 double stretch_evidence(const DistinctReadings& readings, const Eigen::Matrix2d& slope_information,
                         std::span<const std::size_t> inliers, RailFacet& facet) {
-  const std::vector<Vector3d>& rates = readings.rates;
-  const auto value = [&](std::size_t k) { return facet.sign * facet.row.dot(rates[k]); };
   const double thickness = 2.5 * facet.deviation, noise = readings.noise[facet.axis];
   const double of_level = std::log(kLevelShare * facet.level / thickness);
   double odds = 0.0;
@@ -135,53 +185,24 @@ double stretch_evidence(const DistinctReadings& readings, const Eigen::Matrix2d&
   H.topLeftCorner<2, 2>() = slope_information;
   for (std::size_t at = 0; at < inliers.size();) {
     const Stretch s = next_stretch(inliers, at);
-    const double n = static_cast<double>(s.size());
-    double low = std::numeric_limits<double>::max(), high = -low;
-    for (std::size_t k = s.first; k <= s.last; ++k) {
-      low = std::min(low, value(k));
-      high = std::max(high, value(k));
-    }
-    // depth of the second neighbour outside of either end
-    double depth = std::numeric_limits<double>::max();
-    if (s.first >= 2) depth = std::min(depth, facet.level - value(s.first - 2));
-    if (s.last + 2 < rates.size()) depth = std::min(depth, facet.level - value(s.last + 2));
-    if (s.size() < 2 || depth == std::numeric_limits<double>::max()) continue;
-    // a parabola through both neighbours bends by this within the stretch: rails.md (R61)
-    const double inside = (n - 1.0) / (n + 3.0), bend = depth * inside * inside;
-    const double flat = std::max(high - low, 2.0 * facet.deviation);
+    const std::optional<StretchShape> shape = shape_of(readings, facet, s);
+    if (!shape) continue;
     // thinner than the gyro's noise: no reading of a rate is
     const double thin = thinness(readings, facet, s);
-    const bool bends = bend >= kBend * flat;
-    if (!bends && thin < kThinAlone) continue;
+    if (!shape->bends() && thin < kThinAlone) continue;
     ++facet.stretches;
     odds += std::max(0.0, thin);
-    if (!bends) continue;
+    if (!shape->bends()) continue;
     // flatness and recurrence: rails.md (R62), (R63)
-    odds += std::min((n - 1.0) * std::log(bend / flat), -std::log(kConstantShare)) + of_level;
-    // kinks: rails.md (R64)
-    for (const bool after : {false, true}) {
-      if (after ? s.last + 3 >= rates.size() : s.first < 3) continue;
-      // second differences about the end: of the rail's own axis and of those beside it, which an impact would bend too
-      const std::size_t end = after ? s.last : s.first;
-      if (s.size() < 3) continue;
-      const std::size_t outside = after ? end + 2 : end - 2, inside_of = after ? end - 2 : end + 2;
-      const Vector3d bent = rates[outside] - 2.0 * rates[end] + rates[inside_of];
-      const double own = std::abs(facet.row.dot(bent));
-      Vector3d beside = bent, moving = rates[outside] - rates[inside_of];
-      beside[facet.axis] = moving[facet.axis] = 0.0;
-      if (moving.norm() < kMoving * noise) continue;
-      const double ratio = std::max(beside.norm(), 2.0 * noise) / std::max(own, 1e-9);
-      odds += std::clamp(-std::log(5.0 * ratio), -0.5, kKinkAlone);
-    }
-    Vector3d mean = Vector3d::Zero();
-    for (std::size_t k = s.first; k <= s.last; ++k) mean += rates[k] / n;
-    Vector3d A;
-    A << -facet.sign * mean[(facet.axis + 1) % 3], -facet.sign * mean[(facet.axis + 2) % 3], 1.0;
-    H += A * A.transpose() / (facet.deviation * facet.deviation);
+    const double flatness = static_cast<double>(s.size() - 1) * std::log(shape->bend / shape->flat);
+    odds += std::min(flatness, -std::log(kConstantShare)) + of_level;
+    for (const bool after : {false, true}) odds += kink_evidence(readings, facet, s, after);
+    H += information_of(readings, facet, s);
   }
   // nothing lies beyond a rail
-  const auto beyond = std::count_if(inliers.begin(), inliers.end(),
-                                    [&](std::size_t k) { return value(k) > facet.level + facet.tolerance; });
+  const auto beyond = std::count_if(inliers.begin(), inliers.end(), [&](std::size_t k) {
+    return facet.sign * facet.row.dot(readings.rates[k]) > facet.level + facet.tolerance;
+  });
   odds -= kBeyond * std::max(0.0, static_cast<double>(beyond) - kStray * static_cast<double>(inliers.size()));
   if (facet.stretches == 0) return -std::numeric_limits<double>::infinity();
   // nor is a reading told from the rail that is nearer to it than noise, from a facet that is off by as much elsewhere

@@ -159,113 +159,177 @@ SensorErrorFit fit_about(const SensorErrors& given, SensorErrorEvidence evidence
   return out;
 }
 
+// What stays the same from round to round of one recording.
+struct Rounds {
+  const RateSmoother::Params& params;
+  const RateModelParams& known;  ///< its errors: what is given of the device
+  std::span<const ImuSample> samples;
+  std::span<const Clipping> clippings;
+  double period_s = 0.0;
+  bool estimated = false;          ///< the device's errors are
+  bool own_clocks = false;         ///< of triads whose readings repeat: not sampled as alike as a sheet may have it
+  TriadDelay guess = {};           ///< tells nothing where the sheet states the delay
+  std::vector<double> age_s = {};  ///< of the accelerometer's readings as they stand in the log
+  SensorErrorSizes sizes = {};     ///< those stated, but for what own clocks leave open
+
+  const SensorErrorSizes& stated() const { return known.expert.error_sizes; }
+  bool delay_open() const { return estimated && stated().delay_unknown_s > stated().delay_s; }
+  /// A body that is struck and flies is no hand's: its rig may be moved by what the device makes of the motion.
+  bool struck() const { return guess.sigma_s > 0.0; }
+};
+
+Rounds rounds_of(const RateSmoother::Params& params, const RateModelParams& known, std::span<const ImuSample> samples,
+                 std::span<const Clipping> clippings, std::span<const RateObservation> observations,
+                 const RateReport& health) {
+  Rounds out{params, known, samples, clippings, median_period_s(samples)};
+  out.estimated = params.expert.error_rounds_max > 1;
+  out.own_clocks = health.gyro_update_s > 0.0 || health.accel_update_s > 0.0;
+  out.sizes = out.stated();
+  if (out.own_clocks) out.sizes.delay_s = std::max(out.sizes.delay_s, out.sizes.delay_unknown_s);
+  const RigConstants rig = known.calibration ? known.calibration->constants : known.nominal;
+  if (out.delay_open()) out.guess = guess_triad_delay(samples, clippings, rig.lever_arm_m);
+  out.age_s.resize(samples.size());
+  for (std::size_t k = 0; k < out.age_s.size(); ++k) out.age_s[k] = observations[k].accel_age_s;
+  return out;
+}
+
+// Where the descents start: the errors assumed and, for where the first has to hold the rig, the other of two delays.
+struct Start {
+  SensorErrors errors;
+  double other_delay_s = 0.0;
+};
+
+Start start_from(const SensorErrors& assumed, const Rounds& rounds) {
+  const TriadDelay& guess = rounds.guess;
+  Start out{assumed, assumed.accel_delay_s};
+  if (!tells(guess)) return out;
+  if (std::abs(guess.delay_s - assumed.accel_delay_s) > kGuessFar * guess.sigma_s)
+    out.errors.accel_delay_s = guess.delay_s;
+  out.other_delay_s = out.errors.accel_delay_s == guess.delay_s ? rounds.known.errors.accel_delay_s : guess.delay_s;
+  return out;
+}
+
+// The descent with readings corrected for `errors`.
+Status descend_corrected(const Rounds& rounds, const SensorErrors& errors, std::span<RateObservation> observations,
+                         RateFit& fit, RateReport& health) {
+  const double shift = std::round(errors.accel_delay_s / rounds.period_s);
+  shift_force(rounds.samples, rounds.clippings, static_cast<std::ptrdiff_t>(shift), rounds.age_s, observations);
+  RateModelParams corrected = rounds.known;
+  corrected.errors = errors;
+  corrected.errors.accel_delay_s -= shift * rounds.period_s;
+  return descend_held(rounds.params, corrected, rounds.period_s, observations, rounds.struck(), fit, health);
+}
+
+// What the descent tells of the errors, about those it was corrected for: fit.moved.
+Status take_evidence(const Rounds& rounds, const SensorErrors& errors, RateFit& fit, const RateReport& health) {
+  const RateSolution& solution = fit.solution;
+  fit.moved = solution.iteration.moved_by_errors(fit.model, solution.estimates, solution.rig);
+  if (rounds.estimated) {
+    // where the descent has not come to its end, what is left of the gradient must not pass for errors
+    RateIteration again = solution.iteration;
+    if (!again.factorise(fit.model, solution.estimates, solution.rig)) {
+      return {Trouble::diverged, "iteration", static_cast<double>(health.iterations), 0.0};
+    }
+    fit.moved.evidence = again.moved_by_errors(fit.model, solution.estimates, solution.rig).evidence;
+  }
+  fit.moved.evidence.about = errors;
+  add_guess(rounds.guess, fit.moved.evidence);
+  return {};
+}
+
+// What the rounds have come to.
+struct Told {
+  SensorErrors errors;  ///< that the last descent was corrected for
+  SensorErrorEvidence learnt;
+  SensorErrorFit found;
+  bool believed = true;  ///< a device may have such errors
+};
+
+// Descent after descent until the errors found are those corrected for.
+Status descend_rounds(const Rounds& rounds, std::span<RateObservation> observations, RateFit& fit, RateReport& health,
+                      Told& told) {
+  const SensorErrors& given = rounds.known.errors;
+  const std::optional<KnownSensorErrors>& learnt = rounds.params.learnt_errors;
+  bool told_before = rounds.estimated && learnt.has_value();
+  if (told_before) told.learnt = learnt_about(given, *learnt, rounds.stated());
+  Start start = start_from(told_before ? learnt->errors : given, rounds);
+  told.errors = start.errors;
+  for (health.error_rounds = 1;; ++health.error_rounds) {
+    if (Status status = descend_corrected(rounds, told.errors, observations, fit, health); !status.ok()) return status;
+    if (health.rig_held && told_before) {
+      // it may be another device
+      told_before = false;
+      told.learnt = {};
+      start = start_from(given, rounds);
+      told.errors = start.errors;
+      health.error_rounds = 0;
+      continue;
+    }
+    const bool first = health.error_rounds == 1 && rounds.estimated;
+    if (health.rig_held && first && told.errors.accel_delay_s != start.other_delay_s) {
+      told.errors.accel_delay_s = start.other_delay_s;
+      health.error_rounds = 0;
+      continue;
+    }
+    if (Status status = take_evidence(rounds, told.errors, fit, health); !status.ok()) return status;
+    told.found = fit_about(given, fit.moved.evidence, rounds.sizes, told.learnt);
+    told.believed = plausible(told.found.known.errors, given, rounds.stated());
+    if (health.rig_held || !told.believed || health.error_rounds >= rounds.params.expert.error_rounds_max) return {};
+    if (!far_apart(told.found.known.errors, told.errors)) return {};
+    told.errors = told.found.known.errors;
+  }
+}
+
+// Of a device that is plainly not what its sheet says all is left open, in the covariance alone: what readings are
+// corrected for stays what they speak for plainly. The sizes that hold of it then.
+SensorErrorSizes leave_open(const Rounds& rounds, const RateFit& fit, Told& told, RateReport& health) {
+  const bool open = rounds.delay_open() && (off_sheet(told.found, rounds.stated(), rounds.own_clocks) ||
+                                            health.calibration_mahalanobis > rounds.params.calibration_mahalanobis_max);
+  if (!open) return rounds.sizes;
+  const SensorErrorSizes sizes = unstated(rounds.sizes);
+  health.shared_delay_sigma_s = std::sqrt(0.5) * sizes.delay_s;
+  KnownSensorErrors& found = told.found.known;
+  const KnownSensorErrors unknown = fit_about(rounds.known.errors, fit.moved.evidence, sizes, told.learnt).known;
+  const SensorErrors::Vector apart = unknown.errors.vector() - found.errors.vector();
+  found.covariance = unknown.covariance + apart * apart.transpose();
+  return sizes;
+}
+
+// The fit as it would be with readings corrected by `step` more, to first order.
+void move_by(const SensorErrors::Vector& step, RateFit& fit) {
+  for (std::size_t k = 0; k < fit.solution.estimates.size(); ++k) {
+    const Eigen::Matrix<double, 6, 1> moved = fit.model.unscaled(fit.moved.of_sample[k] * step);
+    fit.solution.estimates[k].knot.rate_rad_s += moved.head<3>();
+    fit.solution.estimates[k].knot.acceleration_rad_s2 += moved.tail<3>();
+  }
+  fit.solution.rig.add(fit.moved.of_rig * step);
+}
+
 }  // namespace
 
 Status fit_rounds(const RateSmoother::Params& params, const RateModelParams& known, std::span<const ImuSample> samples,
                   std::span<const Clipping> clippings, std::span<RateObservation> observations, RateFit& fit,
                   RateReport& health) {
-  const bool estimated = params.expert.error_rounds_max > 1;
-  const double period_s = median_period_s(samples);
-  const RigConstants rig = known.calibration ? known.calibration->constants : known.nominal;
-  bool told_before = estimated && params.learnt_errors.has_value();
-  SensorErrorEvidence learnt =
-      told_before ? learnt_about(known.errors, *params.learnt_errors, known.expert.error_sizes) : SensorErrorEvidence{};
-  // triads with clocks of their own are not sampled as alike as a sheet may have it
-  const bool own_clocks = health.gyro_update_s > 0.0 || health.accel_update_s > 0.0;
-  SensorErrorSizes sizes = known.expert.error_sizes;
-  if (own_clocks) sizes.delay_s = std::max(sizes.delay_s, sizes.delay_unknown_s);
-  TriadDelay guess;
-  if (estimated && known.expert.error_sizes.delay_unknown_s > known.expert.error_sizes.delay_s)
-    guess = guess_triad_delay(samples, clippings, rig.lever_arm_m);
-  SensorErrors errors;
-  double other_delay_s = 0.0;  // for where the descent from the first one has to hold the rig
-  const auto begin_with = [&](const SensorErrors& assumed) {
-    errors = assumed;
-    if (tells(guess) && std::abs(guess.delay_s - errors.accel_delay_s) > kGuessFar * guess.sigma_s)
-      errors.accel_delay_s = guess.delay_s;
-    other_delay_s = !tells(guess)                           ? errors.accel_delay_s
-                    : errors.accel_delay_s == guess.delay_s ? known.errors.accel_delay_s
-                                                            : guess.delay_s;
-  };
-  begin_with(told_before ? params.learnt_errors->errors : known.errors);
-  // a body that is struck and flies is no hand's: its rig may be moved by what the device makes of the motion
-  const bool struck = guess.sigma_s > 0.0;
-  std::vector<double> age_s(samples.size());
-  for (std::size_t k = 0; k < age_s.size(); ++k) age_s[k] = observations[k].accel_age_s;
-  SensorErrorFit found;
-  bool believed = true;
-  for (health.error_rounds = 1;; ++health.error_rounds) {
-    const double shift = std::round(errors.accel_delay_s / period_s);
-    shift_force(samples, clippings, static_cast<std::ptrdiff_t>(shift), age_s, observations);
-    RateModelParams corrected = known;
-    corrected.errors = errors;
-    corrected.errors.accel_delay_s -= shift * period_s;
-    if (Status status = descend_held(params, corrected, period_s, observations, struck, fit, health); !status.ok()) {
-      return status;
-    }
-    if (health.rig_held && told_before) {
-      // it may be another device
-      told_before = false;
-      learnt = {};
-      begin_with(known.errors);
-      health.error_rounds = 0;
-      continue;
-    }
-    if (health.rig_held && health.error_rounds == 1 && estimated && errors.accel_delay_s != other_delay_s) {
-      errors.accel_delay_s = other_delay_s;
-      health.error_rounds = 0;
-      continue;
-    }
-    const RateSolution& solution = fit.solution;
-    fit.moved = solution.iteration.moved_by_errors(fit.model, solution.estimates, solution.rig);
-    if (estimated) {
-      // where the descent has not come to its end, what is left of the gradient must not pass for errors
-      RateIteration again = solution.iteration;
-      if (!again.factorise(fit.model, solution.estimates, solution.rig)) {
-        return {Trouble::diverged, "iteration", static_cast<double>(health.iterations), 0.0};
-      }
-      fit.moved.evidence = again.moved_by_errors(fit.model, solution.estimates, solution.rig).evidence;
-    }
-    fit.moved.evidence.about = errors;
-    add_guess(guess, fit.moved.evidence);
-    found = fit_about(known.errors, fit.moved.evidence, sizes, learnt);
-    believed = plausible(found.known.errors, known.errors, known.expert.error_sizes);
-    if (health.rig_held || !believed || health.error_rounds >= params.expert.error_rounds_max) break;
-    if (!far_apart(found.known.errors, errors)) break;
-    errors = found.known.errors;
-  }
-  health.calibrated = found.calibrated;
-  health.together = own_clocks ? 0.0 : found.together;
-  const bool open = estimated && known.expert.error_sizes.delay_unknown_s > known.expert.error_sizes.delay_s &&
-                    (off_sheet(found, known.expert.error_sizes, own_clocks) ||
-                     health.calibration_mahalanobis > params.calibration_mahalanobis_max);
-  if (open) {
-    sizes = unstated(sizes);
-    health.shared_delay_sigma_s = std::sqrt(0.5) * sizes.delay_s;
-    // in the covariance alone: what readings are corrected for stays what they speak for plainly
-    const KnownSensorErrors unknown = fit_about(known.errors, fit.moved.evidence, sizes, learnt).known;
-    const SensorErrors::Vector apart = unknown.errors.vector() - found.known.errors.vector();
-    found.known.covariance = unknown.covariance + apart * apart.transpose();
-  }
-  if (health.rig_held || !believed || !estimated) {
+  const Rounds rounds = rounds_of(params, known, samples, clippings, observations, health);
+  Told told;
+  if (Status status = descend_rounds(rounds, observations, fit, health, told); !status.ok()) return status;
+  health.calibrated = told.found.calibrated;
+  health.together = rounds.own_clocks ? 0.0 : told.found.together;
+  const SensorErrorSizes sizes = leave_open(rounds, fit, told, health);
+  const SensorErrorSizes stated = as_stated(rounds.stated());
+  if (health.rig_held || !told.believed || !rounds.estimated) {
     // what a run without flight tells of the device is nothing, beyond what devices have it is wrong: all is left open
-    found = fit_sensor_errors({}, estimated ? sizes : as_stated(known.expert.error_sizes));
-    found.known.errors = errors;
+    told.found = fit_sensor_errors({}, rounds.estimated ? sizes : stated);
+    told.found.known.errors = told.errors;
   } else {
-    const SensorErrors::Vector step = found.known.errors.vector() - errors.vector();
-    for (std::size_t k = 0; k < samples.size(); ++k) {
-      const Eigen::Matrix<double, 6, 1> moved = fit.model.unscaled(fit.moved.of_sample[k] * step);
-      fit.solution.estimates[k].knot.rate_rad_s += moved.head<3>();
-      fit.solution.estimates[k].knot.acceleration_rad_s2 += moved.tail<3>();
-    }
-    fit.solution.rig.add(fit.moved.of_rig * step);
+    move_by(told.found.known.errors.vector() - told.errors.vector(), fit);
   }
-  health.sensor_errors = found.known;
+  health.sensor_errors = told.found.known;
   if (health.rig_held) return {};
   health.calibration.constants = fit.solution.rig;
   // the device's errors stay with the device: the next run meets them as this one did, and counts them anew
-  const SensorErrors::Matrix stated = fit_sensor_errors({}, as_stated(known.expert.error_sizes)).known.covariance;
-  health.calibration.covariance += fit.moved.of_rig * stated * fit.moved.of_rig.transpose();
+  const SensorErrors::Matrix of_device = fit_sensor_errors({}, stated).known.covariance;
+  health.calibration.covariance += fit.moved.of_rig * of_device * fit.moved.of_rig.transpose();
   return {};
 }
 

@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <numbers>
+#include <span>
 #include <tuple>
 #include <utility>
 
@@ -115,29 +116,19 @@ void measure_contact(const rolling::Contact& c, RollingMode mode, double node_s,
   }
 }
 
-}  // namespace
-
-struct RollingFilter::Candidate {
-  double log_weight = 0.0;
-  int parent = 0;
-  RollingMode mode = RollingMode::grip;
-  std::int64_t switched_node = 0;
-};
-
 /// rolling.md (R21).
-double RollingFilter::log_transition(RollingMode from, RollingMode to, double h_s) const {
-  const auto rate = [this](RollingMode a, RollingMode b) {
+double log_transition(const RollingParams& params, RollingMode from, RollingMode to, double h_s) {
+  const auto& modes = params.expert.modes;
+  const auto rate = [&](RollingMode a, RollingMode b) {
     if (b == RollingMode::incline) {
-      return params_.expert.modes.incline_begins_per_s * (a == RollingMode::bump ? kInclineAfterBump : 1.0);
+      return modes.incline_begins_per_s * (a == RollingMode::bump ? kInclineAfterBump : 1.0);
     }
-    if (b == RollingMode::rough) return params_.expert.modes.rough_begins_per_s;
-    if (b == RollingMode::slip)
-      return a == RollingMode::bump ? params_.expert.modes.slip_bump_per_s : params_.expert.modes.slip_begins_per_s;
-    if (b == RollingMode::bump)
-      return a == RollingMode::slip ? params_.expert.modes.slip_bump_per_s : params_.expert.modes.bump_begins_per_s;
-    if (a == RollingMode::incline) return params_.expert.modes.incline_ends_per_s;
-    if (a == RollingMode::rough) return params_.expert.modes.rough_ends_per_s;
-    return a == RollingMode::slip ? params_.expert.modes.slip_ends_per_s : params_.expert.modes.bump_ends_per_s;
+    if (b == RollingMode::rough) return modes.rough_begins_per_s;
+    if (b == RollingMode::slip) return a == RollingMode::bump ? modes.slip_bump_per_s : modes.slip_begins_per_s;
+    if (b == RollingMode::bump) return a == RollingMode::slip ? modes.slip_bump_per_s : modes.bump_begins_per_s;
+    if (a == RollingMode::incline) return modes.incline_ends_per_s;
+    if (a == RollingMode::rough) return modes.rough_ends_per_s;
+    return a == RollingMode::slip ? modes.slip_ends_per_s : modes.bump_ends_per_s;
   };
   if (from != to) return std::log(rate(from, to) * h_s);
   double leaving = 0.0;
@@ -145,72 +136,103 @@ double RollingFilter::log_transition(RollingMode from, RollingMode to, double h_
   return -leaving * h_s;
 }
 
-/// rolling.md (R25).
-void RollingFilter::choose_modes(const Eigen::Vector3d& rate_I_rad_s, State& state) const {
-  const rolling::Contact c = rolling::contact(params_, state.nominal, rate_I_rad_s, state.sums);
+/// A hypothesis and a mode in which it may be after the node.
+struct Candidate {
+  double log_weight = 0.0;
+  int parent = 0;
+  RollingMode mode = RollingMode::grip;
+  std::int64_t switched_node = 0;
+};
+using Candidates = std::array<Candidate, kRollingModes * RollingFilter::kHypotheses>;
+
+/// All of them, the likeliest first, in `out`.
+std::span<const Candidate> propose(const RollingParams& params, const rolling::Contact& c,
+                                   const RollingFilter::State& state, Candidates& out) {
   const double node_s = state.sums.node_s;
   const bool in_gap = state.sums.gap_s > 0.0;
-  const bool too_fast = c.rolling_speed_m_s > params_.speed_max_m_s;
-  std::array<Candidate, kRollingModes * kHypotheses> candidates;
+  const bool too_fast = c.rolling_speed_m_s > params.speed_max_m_s;
+  const auto shortest = static_cast<std::int64_t>(std::ceil(params.expert.modes.event_shortest_s / node_s - 1e-9));
   std::size_t total = 0;
-  const auto shortest = static_cast<std::int64_t>(std::ceil(params_.expert.modes.event_shortest_s / node_s - 1e-9));
   for (int parent = 0; parent < state.count; ++parent) {
-    const Hypothesis& h = state.hypotheses[static_cast<std::size_t>(parent)];
+    const RollingFilter::Hypothesis& h = state.hypotheses[static_cast<std::size_t>(parent)];
     const Eigen::Vector3d u = c.velocity(h.x);
     for (const RollingMode mode : kModes) {
       const bool bound = slips(h.mode) && state.node - h.switched_node < shortest;
       if (mode != h.mode && bound) continue;
       if (too_fast && !slips(mode)) continue;
       double likelihood = 0.0;  // a gap speaks for no mode
-      if (!in_gap) likelihood = slips(mode) ? log_moving(c, h, mode, u, params_) : log_still(c, h, mode, params_);
+      if (!in_gap) likelihood = slips(mode) ? log_moving(c, h, mode, u, params) : log_still(c, h, mode, params);
       const double blow = mode == RollingMode::bump
                               ? 0.0
-                              : state.sums.unexplained_impact_m_s / params_.expert.contact.unexplained_impact_m_s;
-      candidates[total++] = {h.log_weight + log_transition(h.mode, mode, node_s) + likelihood - blow, parent, mode,
-                             mode == h.mode ? h.switched_node : state.node};
+                              : state.sums.unexplained_impact_m_s / params.expert.contact.unexplained_impact_m_s;
+      out[total++] = {h.log_weight + log_transition(params, h.mode, mode, node_s) + likelihood - blow, parent, mode,
+                      mode == h.mode ? h.switched_node : state.node};
     }
   }
   // std::stable_sort would allocate; ties go by origin, so that the order is one
-  std::sort(candidates.begin(), candidates.begin() + static_cast<std::ptrdiff_t>(total),
-            [](const Candidate& a, const Candidate& b) {
-              return std::tuple(-a.log_weight, a.parent, a.mode) < std::tuple(-b.log_weight, b.parent, b.mode);
-            });
+  std::sort(out.begin(), out.begin() + static_cast<std::ptrdiff_t>(total), [](const Candidate& a, const Candidate& b) {
+    return std::tuple(-a.log_weight, a.parent, a.mode) < std::tuple(-b.log_weight, b.parent, b.mode);
+  });
+  return {out.data(), total};
+}
 
+/// Two beginnings of the same mode are one the sooner, the longer they are past: the first node of those that are one.
+std::int64_t beginning(std::int64_t switched_node, std::int64_t node, double node_s) {
   const auto settled = static_cast<std::int64_t>(kSettled_s / node_s);
-  // two beginnings of the same mode are one the sooner, the longer they are past
-  const auto since = [&](const Candidate& k) {
-    const std::int64_t age = std::min(state.node - k.switched_node, settled);
-    std::int64_t width = 1;
-    while (width * kAgesApart < age) width *= 2;
-    return k.switched_node >= state.node - settled ? k.switched_node / width * width : state.node - settled;
-  };
-  const auto doubts = [&](const Candidate& k) { return k.switched_node < candidates[0].switched_node; };
-  std::array<Hypothesis, kHypotheses> next;
-  std::array<Candidate, kHypotheses> kept;
+  const std::int64_t age = std::min(node - switched_node, settled);
+  std::int64_t width = 1;
+  while (width * kAgesApart < age) width *= 2;
+  return switched_node >= node - settled ? switched_node / width * width : node - settled;
+}
+
+struct Kept {
+  std::array<Candidate, RollingFilter::kHypotheses> of;
   std::size_t count = 0;
-  for (std::size_t k = 0; k < total && count < kHypotheses; ++k) {
-    const Candidate& candidate = candidates[k];
-    if (candidate.log_weight < candidates[0].log_weight + kDropped) break;
-    if (count + kDoubters >= kHypotheses && !doubts(candidate)) continue;
+};
+
+/// Those that go on, of candidates in order: the likeliest of each mode and beginning, kDoubters places being kept.
+Kept keep(std::span<const Candidate> candidates, std::int64_t node, double node_s) {
+  Kept kept;
+  for (const Candidate& candidate : candidates) {
+    if (kept.count == kept.of.size() || candidate.log_weight < candidates[0].log_weight + kDropped) break;
+    const bool doubts = candidate.switched_node < candidates[0].switched_node;
+    if (kept.count + kDoubters >= kept.of.size() && !doubts) continue;
+    const std::int64_t since = beginning(candidate.switched_node, node, node_s);
     const auto same = [&](const Candidate& other) {
-      return other.mode == candidate.mode && since(other) == since(candidate);
+      return other.mode == candidate.mode && beginning(other.switched_node, node, node_s) == since;
     };
-    if (std::any_of(kept.begin(), kept.begin() + static_cast<std::ptrdiff_t>(count), same)) continue;
-    Hypothesis& h = next[count];
+    if (std::any_of(kept.of.begin(), kept.of.begin() + static_cast<std::ptrdiff_t>(kept.count), same)) continue;
+    kept.of[kept.count++] = candidate;
+  }
+  return kept;
+}
+
+}  // namespace
+
+/// rolling.md (R25).
+void RollingFilter::choose_modes(const Eigen::Vector3d& rate_I_rad_s, State& state) const {
+  const rolling::Contact c = rolling::contact(params_, state.nominal, rate_I_rad_s, state.sums);
+  const double node_s = state.sums.node_s;
+  Candidates candidates;
+  const std::span<const Candidate> ordered = propose(params_, c, state, candidates);
+  const Kept kept = keep(ordered, state.node, node_s);
+  std::array<Hypothesis, kHypotheses> next;
+  for (std::size_t k = 0; k < kept.count; ++k) {
+    const Candidate& candidate = kept.of[k];
+    Hypothesis& h = next[k];
     h = state.hypotheses[static_cast<std::size_t>(candidate.parent)];
     rolling::change_floor(params_, h.mode, candidate.mode, node_s, state.nominal, h.x, h.P);
     measure_contact(c, candidate.mode, node_s, state.nominal.v_WI_m_s, params_, h);
     h.u_W_m_s = c.velocity(h.x);
-    h.log_weight = candidate.log_weight - candidates[0].log_weight;
+    h.log_weight = candidate.log_weight - ordered[0].log_weight;
     h.mode = candidate.mode;
     h.switched_node = candidate.switched_node;
     h.parent = candidate.parent;
-    kept[count++] = candidate;
   }
-  for (std::size_t k = 0; k < count; ++k) state.hypotheses[k] = next[k];
+  for (std::size_t k = 0; k < kept.count; ++k) state.hypotheses[k] = next[k];
   // what is not in use is blank, so that equal estimates are equal states
-  for (std::size_t k = count; k < static_cast<std::size_t>(state.count); ++k) state.hypotheses[k] = Hypothesis{};
-  state.count = static_cast<int>(count);
+  for (std::size_t k = kept.count; k < static_cast<std::size_t>(state.count); ++k) state.hypotheses[k] = Hypothesis{};
+  state.count = static_cast<int>(kept.count);
 }
 
 /// Every hypothesis stands still: velocity and, unless it spins in place, rate are zero, the contact grips. rolling.md

@@ -103,7 +103,6 @@ class RollingFilter {
   }
 
  private:
-  struct Candidate;
   struct Listener {
     void* to;
     void (*call)(void*, const State&);
@@ -119,7 +118,6 @@ class RollingFilter {
   bool spins_in_place(const State& state) const;
   void correct_at_rest(State& state) const;
   void choose_modes(const Eigen::Vector3d& rate_I_rad_s, State& state) const;
-  double log_transition(RollingMode from, RollingMode to, double h_s) const;
   void rebase(State& state) const;
   void report(State& state) const;
   void call_uncertain(State& state) const;

@@ -1,0 +1,102 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "rate_readings.hpp"
+
+#include <algorithm>
+
+#include "element_clipping.hpp"
+#include "tumble/angular_velocity/detail/recording_check.hpp"
+#include "unseen_rails.hpp"
+
+namespace tumble {
+
+namespace {
+
+double median_force(std::span<const ImuSample> samples) {
+  std::vector<double> force(samples.size());
+  for (std::size_t k = 0; k < force.size(); ++k) force[k] = samples[k].specific_force_m_s2.norm();
+  std::nth_element(force.begin(), force.begin() + static_cast<std::ptrdiff_t>(force.size() / 2), force.end());
+  return force[force.size() / 2];
+}
+
+void tell_rails(const ClippingFinder& finder, const KnownRails& rails, RateReport& health) {
+  const RailPlanes planes = rails.planes_in_use(), accel_planes = rails.planes_in_use(Triad::accelerometer);
+  health.planes = rails.planes;
+  health.accel_planes = accel_planes;
+  health.rails_upright = rails.upright;
+  for (int c = 0; c < 6; ++c) {
+    const auto channel = static_cast<std::size_t>(c);
+    health.rail[channel] = finder.walls().rail(rails.walls, c);
+    const auto& plane = (c < 3 ? planes : accel_planes).element[static_cast<std::size_t>(c % 3)];
+    if (plane) health.rail[channel] = plane->distance_rad_s;
+    health.rail_disagrees[channel] = finder.walls().disagrees(rails.walls, c);
+  }
+}
+
+void suspect_units(std::span<const ImuSample> samples, double rate_max_rad_s, RateReport& health) {
+  const double force = median_force(samples);
+  health.rate_unit_suspect = std::any_of(samples.begin(), samples.end(), [&](const ImuSample& sample) {
+    return sample.angular_velocity_rad_s.cwiseAbs().maxCoeff() > rate_max_rad_s;
+  });
+  health.force_unit_suspect = force > 0.5 && force < 2.0;
+}
+
+// Axes that met a rail in a part of their window, and those that may stand at one which was not seen.
+void mark_doubtful(const RailPlaneFinder::Params& expected, const ClippingFinder& finder, const KnownRails& rails,
+                   const RailPlanes& planes, double noise_rad_s, std::span<const ImuSample> samples,
+                   std::span<RateObservation> observations) {
+  const std::vector<Neighbours> beside = other_readings(samples, Triad::gyro);
+  LeastRails least;
+  for (const RateObservation& o : observations) {
+    if (o.clipping.void_gyro == 0) least.add(o.sample.angular_velocity_rad_s);
+  }
+  for (std::size_t k = 0; k < observations.size(); ++k) {
+    const auto [before, after] = beside[k];
+    mark_partial(planes, finder.walls(), rails.walls, noise_rad_s, before, observations[k], after);
+    if (rails.upright) continue;
+    doubt_unseen_rails(planes, least, noise_rad_s, before, observations[k], after);
+  }
+  if (!rails.upright) doubt_level_tops(planes, least, expected.offset_share, noise_rad_s, observations);
+}
+
+// Readings that a triad says twice, and how old they are.
+void mark_held(const std::optional<HeldReadings>& gyro, const std::optional<HeldReadings>& accel,
+               std::span<RateObservation> observations, RateReport& health) {
+  for (std::size_t k = 0; k < observations.size(); ++k) {
+    if (gyro) {
+      observations[k].gyro_age_s = gyro->age_s[k];
+      observations[k].gyro_repeats = gyro->repeats[k] && !observations[k].at_rest;
+    }
+    if (accel) observations[k].accel_age_s = accel->age_s[k];
+  }
+  if (gyro) health.gyro_update_s = gyro->period_s;
+  if (accel) health.accel_update_s = accel->period_s;
+}
+
+}  // namespace
+
+RateReadings read_samples(const RateSmoother::Params& params, const ClippingFinder& rails,
+                          const ClippingFinder::Found& found, const std::vector<bool>& rest,
+                          std::span<const ImuSample> samples,
+                          std::span<const std::vector<AuxiliaryReading>> auxiliary_imus, RateReport& health) {
+  health.samples = samples.size();
+  tell_rails(rails, found.rails, health);
+  suspect_units(samples, params.model.rate_max_rad_s, health);
+
+  RateReadings out{std::vector<RateObservation>(samples.size()), params.model, found.rails.planes_in_use(), {}};
+  const double period_s = median_period_s(samples);
+  out.known.calibration = with_planes(RateModel(params.model, period_s), out.planes, found.rails.upright);
+  const ElementRows accel_rows = found.rails.rows(Triad::accelerometer, params.model.element_sigma);
+  for (std::size_t k = 0; k < samples.size(); ++k) {
+    RateObservation& o = out.observations[k];
+    o = {samples[k], found.clippings[k], rest[k]};
+    o.accel_rows = accel_rows;
+    for (std::size_t i = 0; i < auxiliary_imus.size(); ++i) o.auxiliary_imus[i] = auxiliary_imus[i][k];
+  }
+  mark_doubtful(params.expert.planes, rails, found.rails, out.planes, RateModel(out.known, period_s).gyro_sigma_rad_s(),
+                samples, out.observations);
+  out.gyro_held = find_held(samples, Triad::gyro);
+  mark_held(out.gyro_held, find_held(samples, Triad::accelerometer), out.observations, health);
+  return out;
+}
+
+}  // namespace tumble

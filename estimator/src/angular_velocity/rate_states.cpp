@@ -1,0 +1,153 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "rate_states.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+
+#include "near_rails.hpp"
+#include "tumble/angular_velocity/detail/held_rates.hpp"
+
+namespace tumble {
+
+namespace {
+
+using Eigen::Vector3d;
+
+// Deviations within which a delay that both triads share lies: three in a hundred normal ones lie beyond.
+constexpr double kSharedReach = 2.0;
+
+// What a gyro that is slower than the log says of each sample's own time, where it reads all axes.
+std::vector<std::optional<HeldRate>> read_in_time(std::span<const ImuSample> samples, const RateReadings& readings) {
+  std::vector<std::uint8_t> hidden(samples.size());
+  for (std::size_t k = 0; k < hidden.size(); ++k) {
+    const RateObservation& o = readings.observations[k];
+    hidden[k] = static_cast<std::uint8_t>(o.clipping.gyro | o.clipping.void_gyro | o.read_in_part());
+  }
+  return rates_between_readings(samples, hidden, readings.gyro_held);
+}
+
+// What remains open of the device's errors, in a rate, and no more than any rate: rate_smoother.md (R41).
+Eigen::Matrix3d considered(const arrow::ErrorMatrix& moved, const SensorErrors::Matrix& covariance,
+                           double rate_max_rad_s) {
+  const Eigen::Matrix<double, 3, SensorErrors::kSize> rates = moved.topRows<3>(), spread = rates * covariance;
+  const Eigen::Matrix3d out = spread.lazyProduct(rates.transpose());
+  const double most = rate_max_rad_s * rate_max_rad_s;
+  return std::min(1.0, most / std::max(out.trace(), 1e-300)) * out;
+}
+
+// How fast the rate may change between a sample and the next, beyond the angular acceleration: by free readings that is
+// told, else force of contact bounds it.
+double change_rad_s2(const RateModelParams& params, std::span<const RateObservation> observations,
+                     std::span<const RateEstimate> estimates, std::size_t k) {
+  const RateObservation &from = observations[k], &to = observations[k + 1];
+  if (from.at_rest && to.at_rest) return 0.0;
+  if (((from.clipping.gyro | from.may_hide()) | (to.clipping.gyro | to.may_hide())) != 0)
+    return params.expert.contact.gain_rad_m *
+           std::max(estimates[k].contact_m_s2.norm(), estimates[k + 1].contact_m_s2.norm());
+  const double dt_s = seconds(to.sample.time_ns - from.sample.time_ns);
+  return (estimates[k + 1].knot.rate_rad_s - estimates[k].knot.rate_rad_s).norm() / dt_s;
+}
+
+// What a time that both triads may share makes of a rate: the most that it changes by within reach of it, where a
+// stroke of the next sample's window may belong to this one.
+Eigen::Matrix3d of_shared_delay(double variance_s2, const RateModelParams& params,
+                                std::span<const RateObservation> observations, std::span<const RateEstimate> estimates,
+                                std::size_t k) {
+  if (!(variance_s2 > 0.0)) return Eigen::Matrix3d::Zero();
+  const auto reach_ns = static_cast<TimeNs>(1e9 * kSharedReach * std::sqrt(variance_s2));
+  const TimeNs now = observations[k].sample.time_ns;
+  double change = 0.0;
+  for (std::size_t i = k; i > 0 && now - observations[i].sample.time_ns <= reach_ns; --i)
+    change = std::max(change, change_rad_s2(params, observations, estimates, i - 1));
+  for (std::size_t i = k; i + 1 < estimates.size() && observations[i].sample.time_ns - now < reach_ns; ++i)
+    change = std::max(change, change_rad_s2(params, observations, estimates, i));
+  const Vector3d& alpha = estimates[k].knot.acceleration_rad_s2;
+  return variance_s2 * (alpha * alpha.transpose() + change * change * Eigen::Matrix3d::Identity());
+}
+
+// The rate some time after a sample, cubic between the knots about that instant, and its covariance, which between two
+// knots is at most the mean of theirs.
+RateState state_later(std::span<const RateObservation> observations, std::span<const RateEstimate> estimates,
+                      std::span<const Eigen::Matrix3d> covariances, std::size_t k, double late_s) {
+  RateState out;
+  double left_s = late_s;
+  for (; k + 1 < estimates.size(); ++k) {
+    const double dt_s = seconds(observations[k + 1].sample.time_ns - observations[k].sample.time_ns);
+    if (left_s < dt_s) {
+      const RateKnot &a = estimates[k].knot, &b = estimates[k + 1].knot;
+      const double u = std::max(0.0, left_s / dt_s), v = 1.0 - u;
+      out.w_WI_I_rad_s = v * v * (1.0 + 2.0 * u) * a.rate_rad_s + u * u * (3.0 - 2.0 * u) * b.rate_rad_s +
+                         u * v * dt_s * (v * a.acceleration_rad_s2 - u * b.acceleration_rad_s2);
+      out.covariance_rad2_s2 = v * covariances[k] + u * covariances[k + 1];
+      return out;
+    }
+    left_s -= dt_s;
+  }
+  out.w_WI_I_rad_s = estimates[k].knot.rate_rad_s;
+  out.covariance_rad2_s2 = covariances[k];
+  return out;
+}
+
+std::vector<Eigen::Matrix3d> rate_covariances(const RateSmoother::Params& params, const RateReadings& readings,
+                                              const RateFit& fit, const RateReport& health) {
+  const std::vector<RateEstimate>& estimates = fit.solution.estimates;
+  const double shared_s2 = health.shared_delay_sigma_s * health.shared_delay_sigma_s;
+  std::vector<Eigen::Matrix3d> out(estimates.size());
+  fit.solution.iteration.for_each_conditional([&](std::size_t k, const arrow::Conditional& conditional) {
+    const Eigen::Matrix3d covariance =
+        arrow::rate_covariance(conditional, fit.solution.rig_covariance) +
+        considered(fit.moved.of_sample[k], health.sensor_errors.covariance, params.model.rate_max_rad_s) +
+        of_shared_delay(shared_s2, readings.known, readings.observations, estimates, k);
+    out[k] = fit.model.reported(covariance, readings.observations[k], estimates[k]);
+  });
+  return out;
+}
+
+void count(const RateState& state, const RateObservation& observation, RateReport& report) {
+  report.clipped += state.clipped_axes != 0;
+  report.recovered_flight += state.source == RateSource::recovered_flight;
+  report.recovered_contact += state.source == RateSource::recovered_contact;
+  report.bounded_only += state.source == RateSource::bounded_only;
+  report.void_readings += observation.clipping.void_gyro != 0;
+  report.doubted_axes.push_back(static_cast<std::uint8_t>(observation.may_hide() & ~state.clipped_axes));
+}
+
+}  // namespace
+
+std::vector<RateState> rate_states(const RateSmoother::Params& params, std::span<const ImuSample> samples,
+                                   const RateReadings& readings, const RateFit& fit, RateReport& health) {
+  const std::vector<RateObservation>& observations = readings.observations;
+  const RateSolution& solution = fit.solution;
+  const SensorErrors& errors = health.sensor_errors.errors;
+  const double gyro_late_s = std::max(0.0, -errors.accel_delay_s);
+  const std::vector<Eigen::Matrix3d> covariances = rate_covariances(params, readings, fit, health);
+  // upright ones show to the bit
+  const std::vector<std::uint8_t> near = may_meet_rails(samples, health.rails_upright ? RailPlanes{} : readings.planes);
+  const std::vector<std::optional<HeldRate>> own = read_in_time(samples, readings);
+  std::vector<RateState> states(samples.size());
+  std::size_t in_flight = 0;
+  for (std::size_t k = 0; k < samples.size(); ++k) {
+    const RateObservation& o = observations[k];
+    const RateEstimate& estimate = solution.estimates[k];
+    RateState& state = states[k];
+    state = state_later(observations, solution.estimates, covariances, k, gyro_late_s);
+    // a motion that flight tells is smoother than readings; of any other they say more than white jerk between them
+    const bool by_readings = estimate.flight_weight < 0.5 && !o.at_rest && gyro_late_s == 0.0;
+    if (by_readings && !own.empty() && own[k]) {
+      const Vector3d felt = errors.felt_s_m * samples[k].specific_force_m_s2;
+      state.w_WI_I_rad_s = own[k]->rate_rad_s - felt - solution.rig.gyro_bias_rad_s;
+      state.covariance_rad2_s2.diagonal() += own[k]->variance_rad2_s2;
+    }
+    state.time_ns = samples[k].time_ns;
+    state.clipped_axes = o.clipping.gyro | o.clipping.void_gyro;
+    state.source = rate_source(o, estimate, state.covariance_rad2_s2, params.recovered_sigma_rad_s);
+    if (near[k] != 0 && state.source == RateSource::measured) state.source = RateSource::bounded_only;
+    count(state, o, health);
+    in_flight += estimate.flight_weight >= 0.5;
+  }
+  health.flight_share = static_cast<double>(in_flight) / static_cast<double>(samples.size());
+  return states;
+}
+
+}  // namespace tumble
