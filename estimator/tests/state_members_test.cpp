@@ -144,7 +144,7 @@ TEST(StateMembers, AllOfAMapper) {
   expect_whole(mapping::FoundAgain{}, "found again");
   expect_whole(mapping::KnownVelocity{}, "known");
   expect_whole(mapping::WindowSweep{}, "window");
-  expect_whole(mapping::DrawnPoint{}, "drawn");
+  expect_whole(mapping::InsertedPoint{}, "inserted");
   expect_whole(MotionSample{}, "track");
   expect_whole(FlyingBody{}, "body");
 }

@@ -39,18 +39,18 @@ void LagWindow::smooth() {
   }
 }
 
-void LagWindow::redraw(LocalMap& map) const {
+void LagWindow::move_inserted(LocalMap& map) const {
   SweepTrajectory trajectory;
   for (std::size_t k = 0; k + 1 < sweeps_.size(); ++k) {
     const WindowSweep& sweep = sweeps_[k];
-    if (sweep.drawn.empty() || !sweep.motion(trajectory).ok()) continue;
-    const SweepCalibration &now = sweep.smoothed.mean.calibration, &drawn_by = sweep.filtered.mean.calibration;
-    map.redraw(trajectory, now.T_IL, now.time_offset_s - drawn_by.time_offset_s, sweep.drawn);
+    if (sweep.inserted.empty() || !sweep.motion(trajectory).ok()) continue;
+    const SweepCalibration &now = sweep.smoothed.mean.calibration, &inserted_by = sweep.filtered.mean.calibration;
+    map.move(trajectory, now.T_IL, now.time_offset_s - inserted_by.time_offset_s, sweep.inserted);
   }
 }
 
-void LagWindow::forget_drawn() {
-  for (WindowSweep& sweep : sweeps_) sweep.drawn.clear();
+void LagWindow::forget_inserted() {
+  for (WindowSweep& sweep : sweeps_) sweep.inserted.clear();
 }
 
 }  // namespace tumble::mapping

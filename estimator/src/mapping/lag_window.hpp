@@ -22,7 +22,7 @@ struct WindowSweep {
   Estimated filtered, smoothed;                                       ///< smoothed begins as filtered
   std::vector<MotionSample> samples;
   TimeNs end_ns = 0;
-  std::vector<DrawnPoint> drawn;
+  std::vector<InsertedPoint> inserted;
 
   /// As smoothed. Trouble is that of SweepTrajectory::build.
   Status motion(SweepTrajectory& trajectory) const;
@@ -39,10 +39,10 @@ class LagWindow {
   bool is_full() const { return sweeps_.size() == length_; }
   /// Each sweep but the newest by those after it: mapping.md (R52).
   void smooth();
-  /// Moves what the sweeps but the newest drew into the map to where they are now known to have seen it.
-  void redraw(LocalMap& map) const;
-  /// What was drawn so far stays where it is: indices of the map have changed.
-  void forget_drawn();
+  /// Moves what the sweeps but the newest put into the map to where they are now known to have seen it.
+  void move_inserted(LocalMap& map) const;
+  /// What was inserted so far stays where it is: indices of the map have changed.
+  void forget_inserted();
 
   const std::deque<WindowSweep>& sweeps() const { return sweeps_; }
 

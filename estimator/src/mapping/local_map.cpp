@@ -39,9 +39,9 @@ class PoseVariance {
 
 }  // namespace
 
-std::size_t LocalMap::draw(const Params& params, const SweepTrajectory& trajectory,
-                           const Registration::Matrix& covariance, std::span<const SweepPoint> points,
-                           bool rings_differ, const Registration& noise, std::vector<DrawnPoint>& drawn) {
+std::size_t LocalMap::insert(const Params& params, const SweepTrajectory& trajectory,
+                             const Registration::Matrix& covariance, std::span<const SweepPoint> points,
+                             bool rings_differ, const Registration& noise, std::vector<InsertedPoint>& inserted) {
   compute_levers(trajectory, points, levers_W_m_);
   const PoseVariance of_pose(covariance, trajectory);
   const std::uint32_t sweep = static_cast<std::uint32_t>(seen_from_W_m_.size());
@@ -57,21 +57,21 @@ std::size_t LocalMap::draw(const Params& params, const SweepTrajectory& trajecto
         map_.add(position, static_cast<float>(sigma_m), sweep, ScanLines::line(line, points[i].ring));
     if (index == VoxelMap::kNoPoint) continue;
     ++added;
-    if (params.expert.window_sweeps > 1) drawn.push_back({index, points[i]});
+    if (params.expert.window_sweeps > 1) inserted.push_back({index, points[i]});
   }
   seen_from_W_m_.push_back(middle.p_WI_m.cast<float>());
   return added;
 }
 
-void LocalMap::redraw(const SweepTrajectory& trajectory, const Eigen::Isometry3d& T_IL, double later_s,
-                      std::span<const DrawnPoint> drawn) {
+void LocalMap::move(const SweepTrajectory& trajectory, const Eigen::Isometry3d& T_IL, double later_s,
+                    std::span<const InsertedPoint> inserted) {
   std::size_t hint = 0;
-  for (const DrawnPoint& drawn_point : drawn) {
-    const double t_s = drawn_point.point.t_s + later_s;
+  for (const InsertedPoint& inserted_point : inserted) {
+    const double t_s = inserted_point.point.t_s + later_s;
     const SweepTrajectory::Instant at = trajectory.at(t_s, hint);
     const Eigen::Vector3d position = trajectory.base_m(t_s) + at.preintegrated_position_m +
-                                     at.q_WI * (T_IL * drawn_point.point.x_L_m.cast<double>());
-    map_.move(drawn_point.index, position.cast<float>());
+                                     at.q_WI * (T_IL * inserted_point.point.x_L_m.cast<double>());
+    map_.move(inserted_point.index, position.cast<float>());
   }
 }
 

@@ -13,9 +13,9 @@
 namespace tumble::mapping {
 
 /// A point of a sweep in the map.
-struct DrawnPoint {
+struct InsertedPoint {
   std::uint32_t index;  ///< in the map
-  SweepPoint point;     ///< by the calibration that it was drawn with
+  SweepPoint point;     ///< by the calibration that it was inserted with
 };
 
 /// The map about the sensor: its points, where each was seen from, and the scan lines that they lie on.
@@ -28,15 +28,15 @@ class LocalMap {
   const VoxelMap& voxels() const { return map_; }
   bool empty() const { return map_.size() == 0; }
 
-  /// Adds the points of a sweep that moved along `trajectory`, whose unknowns have that covariance; `drawn` gets those
-  /// that were added, appended. `noise` tells a return's own variance.
-  std::size_t draw(const Params& params, const SweepTrajectory& trajectory, const Registration::Matrix& covariance,
-                   std::span<const SweepPoint> points, bool rings_differ, const Registration& noise,
-                   std::vector<DrawnPoint>& drawn);
+  /// Adds the points of a sweep that moved along `trajectory`, whose unknowns have that covariance; `inserted` gets
+  /// those that were added, appended. `noise` tells a return's own variance.
+  std::size_t insert(const Params& params, const SweepTrajectory& trajectory, const Registration::Matrix& covariance,
+                     std::span<const SweepPoint> points, bool rings_differ, const Registration& noise,
+                     std::vector<InsertedPoint>& inserted);
   /// Moves points to where their sweep is now known to have seen them, with `later_s` added to their times, mapping.md
   /// (R3).
-  void redraw(const SweepTrajectory& trajectory, const Eigen::Isometry3d& T_IL, double later_s,
-              std::span<const DrawnPoint> drawn);
+  void move(const SweepTrajectory& trajectory, const Eigen::Isometry3d& T_IL, double later_s,
+            std::span<const InsertedPoint> inserted);
 
   /// Forgets what is out of reach once the sensor has moved far enough; then true, and indices have changed.
   bool prune(const Params& params, const Eigen::Vector3d& p_WI_m);
@@ -44,7 +44,7 @@ class LocalMap {
   std::size_t bytes() const { return map_.bytes() + seen_from_W_m_.capacity() * sizeof(Eigen::Vector3f); }
   std::vector<MapPoint> with_normals(const Params& params) const;
 
-  /// Whether each point was drawn by a sweep that it knows, as all of a map that was loaded have to be.
+  /// Whether each point was inserted by a sweep that it knows, as all of a map that was loaded have to be.
   bool knows_its_sweeps() const;
   /// Stated once: `mapping_members.hpp`.
   template <class Self, class Visitor>

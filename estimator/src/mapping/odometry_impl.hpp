@@ -19,7 +19,7 @@ namespace mapping {
 void check_params(const LidarInertialOdometry::Params& params);
 
 /// A sweep's unknowns at its start: as predicted, and what stands.
-struct SettledSweep {
+struct UpdatedSweep {
   Prediction prediction;
   Belief start;
 };
@@ -40,13 +40,13 @@ struct LidarInertialOdometry::Impl {
   mapping::Placed place(const mapping::Prediction& prediction, const mapping::MotionWindow& motion,
                         SweepReport& report);
   /// Leaves the trajectory as that of what stands.
-  Status settle(mapping::Prediction prediction, const mapping::Placed& placed, const mapping::MotionWindow& motion,
-                mapping::SettledSweep& settled);
-  std::vector<mapping::DrawnPoint> draw(const mapping::Belief& start, bool rings_differ, SweepReport& report);
-  void carry_on(const mapping::SettledSweep& sweep, const mapping::Placed& placed, const mapping::MotionWindow& motion,
-                std::vector<mapping::DrawnPoint> drawn, SweepReport& report);
-  void enter_window(const mapping::SettledSweep& sweep, const mapping::MotionWindow& motion,
-                    std::vector<mapping::DrawnPoint> drawn, bool aligned);
+  Status update(mapping::Prediction prediction, const mapping::Placed& placed, const mapping::MotionWindow& motion,
+                mapping::UpdatedSweep& updated);
+  std::vector<mapping::InsertedPoint> insert(const mapping::Belief& start, bool rings_differ, SweepReport& report);
+  void carry_on(const mapping::UpdatedSweep& sweep, const mapping::Placed& placed, const mapping::MotionWindow& motion,
+                std::vector<mapping::InsertedPoint> inserted, SweepReport& report);
+  void enter_window(const mapping::UpdatedSweep& sweep, const mapping::MotionWindow& motion,
+                    std::vector<mapping::InsertedPoint> inserted, bool aligned);
   void part_from_world(const mapping::Belief& start, const SweepReport& report);
   void forget_until(TimeNs end_ns);
 

@@ -30,9 +30,9 @@ Status LidarInertialOdometry::Impl::check_state() const {
   if (window.sweeps().size() > most)
     return {Trouble::out_of_range, "window.sweeps", double(window.sweeps().size()), double(most)};
   for (const mapping::WindowSweep& sweep : window.sweeps()) {
-    for (const mapping::DrawnPoint& drawn : sweep.drawn) {
-      if (drawn.index >= map.voxels().index_end() || !map.voxels().exists(drawn.index))
-        return {Trouble::out_of_range, "drawn.index", double(drawn.index), double(map.voxels().index_end())};
+    for (const mapping::InsertedPoint& inserted : sweep.inserted) {
+      if (inserted.index >= map.voxels().index_end() || !map.voxels().exists(inserted.index))
+        return {Trouble::out_of_range, "inserted.index", double(inserted.index), double(map.voxels().index_end())};
     }
   }
   if (!map.knows_its_sweeps()) return {Trouble::out_of_range, "map.sweep", 1.0, 0.0};

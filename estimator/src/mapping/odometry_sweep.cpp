@@ -8,8 +8,8 @@
 
 namespace tumble {
 
-using mapping::Belief, mapping::DrawnPoint, mapping::MotionWindow, mapping::Placed, mapping::Prediction;
-using mapping::SettledSweep, mapping::WindowSweep;
+using mapping::Belief, mapping::InsertedPoint, mapping::MotionWindow, mapping::Placed, mapping::Prediction;
+using mapping::UpdatedSweep, mapping::WindowSweep;
 
 Status LidarInertialOdometry::Impl::add_sweep(TimeNs start_ns, TimeNs end_ns, std::span<const LidarPoint> returns,
                                               SweepReport& report) {
@@ -34,13 +34,13 @@ Status LidarInertialOdometry::Impl::add_sweep(TimeNs start_ns, TimeNs end_ns, st
   report.verdict = placed.verdict;
 
   // what stands, what it adds to the map, and what the next sweep begins from
-  SettledSweep sweep;
-  if (Status status = settle(std::move(prediction), placed, motion, sweep); !status.ok()) return status;
+  UpdatedSweep sweep;
+  if (Status status = update(std::move(prediction), placed, motion, sweep); !status.ok()) return status;
   // where the map had nothing to say the prior draws on: points that it leaves too uncertain stay out by themselves
-  std::vector<DrawnPoint> drawn;
+  std::vector<InsertedPoint> inserted;
   if (placed.verdict != SweepVerdict::rejected || placed.map_says_nothing)
-    drawn = draw(sweep.start, counts.rings_differ, report);
-  carry_on(sweep, placed, motion, std::move(drawn), report);
+    inserted = insert(sweep.start, counts.rings_differ, report);
+  carry_on(sweep, placed, motion, std::move(inserted), report);
   return points_status;
 }
 
@@ -106,46 +106,47 @@ Placed LidarInertialOdometry::Impl::place(const Prediction& prediction, const Mo
   return mapping::judge(params, tracking, scene.points.size(), prior_trusted, std::move(attempt));
 }
 
-Status LidarInertialOdometry::Impl::settle(Prediction prediction, const Placed& placed, const MotionWindow& motion,
-                                           SettledSweep& settled) {
+Status LidarInertialOdometry::Impl::update(Prediction prediction, const Placed& placed, const MotionWindow& motion,
+                                           UpdatedSweep& updated) {
   if (placed.alignment) {
-    settled.start = mapping::settle(prediction, *placed.alignment);
-    settled.prediction = std::move(prediction);
+    updated.start = mapping::posterior(prediction, *placed.alignment);
+    updated.prediction = std::move(prediction);
     return {};
   }
   // the inertial prior stands; an IMU at rest stops the drift of its velocity
   const bool by_inertia = std::holds_alternative<mapping::InertialPrior>(known);
   if (mapping::is_lost(tracking) && by_inertia && track.rests_until(motion.end_ns))
     prediction = mapping::predict_rest(params, border, std::move(prediction));
-  settled.start = mapping::settle(prediction);
-  settled.prediction = std::move(prediction);
-  const Registration::Estimate& mean = settled.start.mean;
+  updated.start = mapping::posterior(prediction);
+  updated.prediction = std::move(prediction);
+  const Registration::Estimate& mean = updated.start.mean;
   return trajectory.build(mean.state, motion.samples, motion.end_ns, mean.calibration.gravity_W_m_s2,
                           mean.excess_rad_s);
 }
 
-std::vector<DrawnPoint> LidarInertialOdometry::Impl::draw(const Belief& start, bool rings_differ, SweepReport& report) {
+std::vector<InsertedPoint> LidarInertialOdometry::Impl::insert(const Belief& start, bool rings_differ,
+                                                               SweepReport& report) {
   const Belief& before = border.belief;
   if (mapping::unknowns::variances(before.weight, mapping::unknowns::calibration).maxCoeff() > 0.0) {
     const SweepCalibration& now = start.mean.calibration;
     points.move(now, now.time_offset_s - before.mean.calibration.time_offset_s);
   }
-  std::vector<DrawnPoint> drawn;
+  std::vector<InsertedPoint> inserted;
   report.map_points_added =
-      map.draw(params, trajectory, start.weight, points.all(), rings_differ, aligner.registration(), drawn);
-  return drawn;
+      map.insert(params, trajectory, start.weight, points.all(), rings_differ, aligner.registration(), inserted);
+  return inserted;
 }
 
 /// What the sweep leaves behind.
-void LidarInertialOdometry::Impl::carry_on(const SettledSweep& sweep, const Placed& placed, const MotionWindow& motion,
-                                           std::vector<DrawnPoint> drawn, SweepReport& report) {
+void LidarInertialOdometry::Impl::carry_on(const UpdatedSweep& sweep, const Placed& placed, const MotionWindow& motion,
+                                           std::vector<InsertedPoint> inserted, SweepReport& report) {
   const Registration::Result* aligned = placed.alignment ? &*placed.alignment : nullptr;
   tracking = mapping::after_sweep(tracking, placed.placement, placed.verdict);
   report.lost_sweeps = mapping::lost_sweeps(tracking);
   if (aligned && placed.verdict == SweepVerdict::degenerate && motion.resting_sweeps == 0)
     world.add_drift(report.weakest_sigma_m, report.weakest_direction);
   report.trajectory = poses_along(trajectory, motion.end_ns, sweep.start.error);
-  enter_window(sweep, motion, std::move(drawn), aligned != nullptr);
+  enter_window(sweep, motion, std::move(inserted), aligned != nullptr);
   // no later sweep refines it: it leaves with the next one
   if (window.is_full()) report.smoothed = poses_of(window.sweeps().front());
   border = mapping::border_after(params, sweep.start, motion, trajectory, aligned);
@@ -157,31 +158,31 @@ void LidarInertialOdometry::Impl::carry_on(const SettledSweep& sweep, const Plac
 
 /// What the sweep adds to the map is off by what the pose was: by so much of it the map moves where the robot is.
 void LidarInertialOdometry::Impl::part_from_world(const Belief& start, const SweepReport& report) {
-  const double drawn_share =
+  const double inserted_share =
       report.points_used == 0 ? 0.0 : double(report.map_points_added) / double(report.points_used);
-  world.add_drawing(drawn_share, trajectory, start.error, border.belief.mean.calibration.T_IL.translation());
+  world.add_insertion(inserted_share, trajectory, start.error, border.belief.mean.calibration.T_IL.translation());
 }
 
 /// All that was told of the time up to the border has been used.
 void LidarInertialOdometry::Impl::forget_until(TimeNs end_ns) {
   known = mapping::InertialPrior{};
   track.forget_until(end_ns);
-  if (map.prune(params, border.belief.mean.state.p_WI_m)) window.forget_drawn();
+  if (map.prune(params, border.belief.mean.state.p_WI_m)) window.forget_inserted();
 }
 
-void LidarInertialOdometry::Impl::enter_window(const SettledSweep& sweep, const MotionWindow& motion,
-                                               std::vector<DrawnPoint> drawn, bool aligned) {
+void LidarInertialOdometry::Impl::enter_window(const UpdatedSweep& sweep, const MotionWindow& motion,
+                                               std::vector<InsertedPoint> inserted, bool aligned) {
   WindowSweep newest;
   newest.predicted = {sweep.prediction.prior.mean, sweep.prediction.errors};
   newest.by_before = sweep.prediction.by_last * border.end_by_start;
   newest.filtered = newest.smoothed = {sweep.start.mean, sweep.start.error};
   newest.samples.assign(motion.samples.begin(), motion.samples.end());
   newest.end_ns = motion.end_ns;
-  newest.drawn = std::move(drawn);
+  newest.inserted = std::move(inserted);
   window.enter(std::move(newest));
   if (!aligned) return;
   window.smooth();
-  window.redraw(map);
+  window.move_inserted(map);
 }
 
 PoseState LidarInertialOdometry::Impl::pose_along(const SweepTrajectory& motion, double t_s,

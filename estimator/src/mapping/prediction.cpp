@@ -140,7 +140,7 @@ bool prior_is_trusted(const Params& params, const Border& border, const MotionWi
              params.expert.tracking.trusted_rad * params.expert.tracking.trusted_rad;
 }
 
-Belief settle(const Prediction& prediction) {
+Belief posterior(const Prediction& prediction) {
   Belief start{prediction.prior.mean, prediction.prior.covariance, prediction.errors};
   start.mean.state.covariance = u::block(start.weight, u::motion);
   return start;
@@ -149,7 +149,7 @@ Belief settle(const Prediction& prediction) {
 /// What the unknowns are off by after the registration, which weighed prior and surfaces by what it made of them: the
 /// errors of the prior and the pull of the surfaces, whose score_covariance is measured, through the same normal
 /// equations: mapping.md (R41).
-Belief settle(const Prediction& prediction, const Registration::Result& aligned) {
+Belief posterior(const Prediction& prediction, const Registration::Result& aligned) {
   // what is no information corrects nothing
   Registration::Matrix kept = invertible(prediction.prior.covariance).ldlt().solve(Registration::Matrix::Identity());
   kept += aligned.errors_in_variables_information;

@@ -52,9 +52,9 @@ bool prior_is_trusted(const LidarInertialOdometry::Params& params, const Border&
                       const SweepTrajectory& trajectory);
 
 /// What stands for a sweep that was not aligned: the prediction.
-Belief settle(const Prediction& prediction);
+Belief posterior(const Prediction& prediction);
 /// What stands for one that was: mapping.md (R41).
-Belief settle(const Prediction& prediction, const Registration::Result& aligned);
+Belief posterior(const Prediction& prediction, const Registration::Result& aligned);
 
 /// See SweepReport::innovation; mapping.md (R51).
 double innovation(const Prediction& prediction, const Registration::Estimate& aligned);

@@ -108,8 +108,8 @@ Status Registration::align(const Prior& prior, std::span<const MotionSample> sam
     result.verdict = result.matches < matches_needed ? RegistrationVerdict::too_few : verdict;
     return build(prior.mean);
   };
-  bool settled = false;
-  while (!settled && result.iterations < params_.iterations_max) {
+  bool converged = false;
+  while (!converged && result.iterations < params_.iterations_max) {
     ++result.iterations;
     if (unknowns.calibration && result.iterations > 1) {
       apply_calibration(now.calibration, now.calibration.time_offset_s - prior.mean.calibration.time_offset_s, given,
@@ -132,7 +132,7 @@ Status Registration::align(const Prior& prior, std::span<const MotionSample> sam
     if (!step.allFinite()) return refuse(RegistrationVerdict::diverged);
     now.add(step);
     if (Status status = build(now); !status.ok()) return status;
-    settled = is_small(step, trajectory.duration_s(), params_);
+    converged = is_small(step, trajectory.duration_s(), params_);
     result.correction_m = (now.state.p_WI_m - prior.mean.state.p_WI_m).norm();
     result.correction_rad = so3::log(now.state.q_WI * prior.mean.state.q_WI.conjugate()).norm();
     if (result.correction_m > params_.correction_max_m || result.correction_rad > params_.correction_max_rad) {
@@ -142,7 +142,7 @@ Status Registration::align(const Prior& prior, std::span<const MotionSample> sam
   // a false minimum: most matches lie off their planes
   const bool fits =
       static_cast<double>(sum.inliers) >= params_.expert.fitting_share_min * static_cast<double>(sum.matches);
-  if (!settled || !fits) return refuse(RegistrationVerdict::diverged);
+  if (!converged || !fits) return refuse(RegistrationVerdict::diverged);
   if (sum.matches < matches_needed && !agrees(prior, now)) return refuse(RegistrationVerdict::too_few);
 
   const Matrix posterior = H.ldlt().solve(Matrix::Identity());  // mapping.md (R22)

@@ -102,10 +102,10 @@ void members(Self& s, Visitor& visit) {
   visit("known.sigma_m_s", s.sigma_m_s);
 }
 
-template <StateOf<DrawnPoint> Self, class Visitor>
+template <StateOf<InsertedPoint> Self, class Visitor>
 void members(Self& s, Visitor& visit) {
-  visit("drawn.index", s.index);
-  visit("drawn.point", s.point);
+  visit("inserted.index", s.index);
+  visit("inserted.point", s.point);
 }
 
 template <StateOf<Estimated> Self, class Visitor>
@@ -122,7 +122,7 @@ void members(Self& s, Visitor& visit) {
   visit("sweep.smoothed", s.smoothed);
   visit("sweep.samples", s.samples);
   visit("sweep.end_ns", s.end_ns);
-  visit("sweep.drawn", s.drawn);
+  visit("sweep.inserted", s.inserted);
 }
 
 }  // namespace mapping

@@ -46,11 +46,11 @@ void WorldCovariance::add_drift(double weakest_sigma_m, const Eigen::Matrix<doub
 
 /// By the lidar's pose in the map in the middle of the sweep, which is what draws it: an error of the mounting is none
 /// of the map, and at its ends a sweep is known less well than as a whole. mapping.md (R48), (R49).
-void WorldCovariance::add_drawing(double drawn_share, const SweepTrajectory& trajectory,
-                                  const Registration::Matrix& errors, const Eigen::Vector3d& p_IL_m) {
+void WorldCovariance::add_insertion(double inserted_share, const SweepTrajectory& trajectory,
+                                    const Registration::Matrix& errors, const Eigen::Vector3d& p_IL_m) {
   const double middle_s = 0.5 * trajectory.duration_s();
   const Registration::Matrix F = unknowns_at(trajectory, middle_s);
-  map_ += drawn_share * drawn_share *
+  map_ += inserted_share * inserted_share *
           less_mounting(pose_and_mounting(F, errors), pose_by_mounting(trajectory.state(middle_s).q_WI, p_IL_m));
 }
 

@@ -6,7 +6,7 @@
 namespace tumble::mapping {
 
 /// What parts the map from the world, which is held by the IMU's first pose: the mounting, the tilt of the start, what
-/// the map was drawn with, and what no surface held.
+/// the map was inserted with, and what no surface held.
 class WorldCovariance {
  public:
   using Pose = Eigen::Matrix<double, 6, 6>;
@@ -21,10 +21,10 @@ class WorldCovariance {
 
   /// A sweep in motion that its surfaces hold so little, in this direction (position, scaled attitude).
   void add_drift(double weakest_sigma_m, const Eigen::Matrix<double, 6, 1>& weakest_direction);
-  /// A sweep drew this share of what is seen from here, from the middle of its motion, and was off by `errors` at its
-  /// start.
-  void add_drawing(double drawn_share, const SweepTrajectory& trajectory, const Registration::Matrix& errors,
-                   const Eigen::Vector3d& p_IL_m);
+  /// A sweep inserted this share of what is seen from here, from the middle of its motion, and was off by `errors` at
+  /// its start.
+  void add_insertion(double inserted_share, const SweepTrajectory& trajectory, const Registration::Matrix& errors,
+                     const Eigen::Vector3d& p_IL_m);
 
   /// Stated once: `mapping_members.hpp`.
   template <class Self, class Visitor>

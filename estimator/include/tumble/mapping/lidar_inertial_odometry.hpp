@@ -31,7 +31,7 @@ class StateLayout;
 /// printing. Where their standard deviation is not 0, the lidar's mounting, its clock and gravity are estimated with
 /// the motion, as one state with one covariance: an iterated error-state filter over sweeps, whose last window_sweeps
 /// are smoothed by those that follow (fixed lag), with what they drew into the map. Beyond the window the map stays
-/// where it was drawn: a caller that keeps its recording runs a second time from calibration() and gets a map of one
+/// where it was put: a caller that keeps its recording runs a second time from calibration() and gets a map of one
 /// piece.
 ///
 /// Covariances reported follow the errors through the filter's weights, the registration's share as measured from its
