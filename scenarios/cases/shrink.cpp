@@ -196,12 +196,6 @@ class Shrinking {
   std::vector<Complication> needed_;
 };
 
-void require_applies(const Method& method, const Scenario& scenario) {
-  if (method.info.for_robot(scenario.robot.type)) return;
-  throw BadInput("method '" + method.info.name + "' does not apply to the robot '" + scenario.robot.type + "' of " +
-                 scenario.name);
-}
-
 }  // namespace
 
 const char* to_string(Fate fate) {

@@ -58,6 +58,12 @@ struct OracleInput {
 
 class SettingsTable;
 
+/// What there is to run a method on.
+struct Subject {
+  std::string robot;  ///< "" when unknown
+  bool has_lidar = true;
+};
+
 /// A method under test, self-describing. `kind` and `name` together are unique.
 struct MethodInfo {
   std::string name;
@@ -69,8 +75,10 @@ struct MethodInfo {
   std::span<const sim::Parameter> parameters;
   std::size_t parameters_first = 0;  ///< so many of them, the first, are what a user sets before others
   bool needs_truth = false;
-  bool for_robot(const std::string& robot) const;  ///< whether it applies to "rig" or "sphere"
-  std::vector<std::string> robots;                 ///< empty: all
+  std::vector<std::string> robots;  ///< "rig", "sphere"; empty: all
+  /// Why it does not apply ("needs a lidar, and there is none"); empty where it does. Maps are made with a lidar alone.
+  std::string why_not(const Subject& subject) const;
+  bool applies_to(const Subject& subject) const { return why_not(subject).empty(); }
   /// Does nothing about the problem, so that the others of its kind are paired with it: of rates the clipped gyro as it
   /// is, of slam the chain on top of it. A kind may have none.
   bool baseline = false;

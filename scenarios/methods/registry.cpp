@@ -104,8 +104,12 @@ std::string full_name(const MethodInfo& info) {
   return full_name(info.kind, info.name);
 }
 
-bool MethodInfo::for_robot(const std::string& robot) const {
-  return robots.empty() || std::find(robots.begin(), robots.end(), robot) != robots.end();
+std::string MethodInfo::why_not(const Subject& subject) const {
+  const bool known = !robots.empty() && !subject.robot.empty();
+  if (known && std::find(robots.begin(), robots.end(), subject.robot) == robots.end())
+    return "does not apply to the robot '" + subject.robot + "'";
+  if (kind == Kind::slam && !subject.has_lidar) return "needs a lidar, and there is none";
+  return {};
 }
 
 Method make_method(MethodInfo info, RunCore run) {

@@ -6,10 +6,12 @@
 
 #include <algorithm>
 #include <exception>
+#include <iterator>
 #include <new>
 #include <utility>
 
 #include "scenarios/draw/without_lidars.hpp"
+#include "scenarios/errors.hpp"
 #include "scenarios/methods/external_method.hpp"
 #include "scenarios/recordings/recording_file.hpp"
 #include "sim/simulate.hpp"
@@ -37,11 +39,20 @@ std::string digest_without_lidars(const sim::Recording& recording) {
   return digest(bare.sensors, &bare.truth);
 }
 
-std::vector<MethodPointer> applicable(std::span<const MethodPointer> methods, const std::string& robot) {
+Subject subject_of(const Scenario& scenario) {
+  return {scenario.robot.type, has_lidar(scenario)};
+}
+
+std::vector<MethodPointer> applicable(std::span<const MethodPointer> methods, const Subject& subject) {
   std::vector<MethodPointer> chosen;
   std::copy_if(methods.begin(), methods.end(), std::back_inserter(chosen),
-               [&](const MethodPointer& method) { return method->info.for_robot(robot); });
+               [&](const MethodPointer& method) { return method->info.applies_to(subject); });
   return chosen;
+}
+
+void require_applies(const Method& method, const Scenario& scenario) {
+  const std::string why = method.info.why_not(subject_of(scenario));
+  if (!why.empty()) throw BadInput("method '" + method.info.name + "' on " + scenario.name + ": it " + why);
 }
 
 namespace {

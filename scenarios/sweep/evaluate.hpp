@@ -34,8 +34,14 @@ SimulatedDraw simulate_draw(const DataRoot& data, const Scenario& scenario, std:
 /// Digest of the recording as it is without its lidars.
 std::string digest_without_lidars(const sim::Recording& recording);
 
-/// The methods that apply to the scenario's robot, in the order given.
-std::vector<MethodPointer> applicable(std::span<const MethodPointer> methods, const std::string& robot);
+/// What a scenario's draws are for a method.
+Subject subject_of(const Scenario& scenario);
+
+/// The methods that apply to it, in the order given.
+std::vector<MethodPointer> applicable(std::span<const MethodPointer> methods, const Subject& subject);
+
+/// Throws BadInput that says why a method does not apply to a scenario, where it does not.
+void require_applies(const Method& method, const Scenario& scenario);
 
 /// Runs a method on the draw. What it throws or reports as trouble makes `outcome` failed; otherwise `outcome` is left
 /// ok, to be scored. CPU time of the estimate is its first score.

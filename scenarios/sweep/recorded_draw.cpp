@@ -66,8 +66,12 @@ std::vector<RecordedDraw> find_recordings(std::span<const std::string> patterns,
     }
     const RecordingInfo info = read_info(path);
     const sim::Sensors sensors = read_sensors(path);
-    recordings.push_back({path.stem().string(), path, sensors.robot, digest_of(info, sensors, path),
-                          !info.scenario.empty(), info.has_truth});
+    recordings.push_back({path.stem().string(),
+                          path,
+                          {sensors.robot, !sensors.lidars.empty()},
+                          digest_of(info, sensors, path),
+                          !info.scenario.empty(),
+                          info.has_truth});
   }
   return recordings;
 }
@@ -75,8 +79,8 @@ std::vector<RecordedDraw> find_recordings(std::span<const std::string> patterns,
 std::vector<MethodPointer> applicable(std::span<const MethodPointer> methods, const RecordedDraw& recording) {
   std::vector<MethodPointer> chosen;
   std::copy_if(methods.begin(), methods.end(), std::back_inserter(chosen), [&](const MethodPointer& method) {
-    const bool fits = recording.robot.empty() || method->info.for_robot(recording.robot);
-    return fits && (!method->info.needs_truth || (recording.simulated && recording.has_truth));
+    return method->info.applies_to(recording.subject) &&
+           (!method->info.needs_truth || (recording.simulated && recording.has_truth));
   });
   return chosen;
 }

@@ -17,7 +17,7 @@ inline constexpr std::uint64_t kRecordingSeed = 1;
 struct RecordedDraw {
   std::string name;  ///< of the file, without its ending
   std::filesystem::path path;
-  std::string robot;       ///< "" when unknown
+  Subject subject;
   std::string digest;      ///< of sensors and truth
   bool simulated = false;  ///< its truth is a simulation's, and so is all that oracles ask for
   bool has_truth = false;
@@ -27,8 +27,8 @@ struct RecordedDraw {
 /// their names. Throws BadInput: a pattern without a file, two files of one name, what the readers say of a file.
 std::vector<RecordedDraw> find_recordings(std::span<const std::string> patterns, const std::filesystem::path& folder);
 
-/// The methods, in the order given, that can run on a recording: made for its robot, where that is known; oracles on
-/// simulations alone.
+/// The methods, in the order given, that can run on a recording: made for its robot, where that is known, with the
+/// sensors that it has; oracles on simulations alone.
 std::vector<MethodPointer> applicable(std::span<const MethodPointer> methods, const RecordedDraw& recording);
 
 /// The recording as a draw. Throws BadInput when it is not the one that was found (its digest has changed).

@@ -19,7 +19,7 @@ RunResult run_situation(const DataRoot& data, const Scenario& scenario, std::uin
     draw = std::move(given);
   }
   RunResult result;
-  result.methods = applicable(methods, scenario.robot.type);
+  result.methods = applicable(methods, subject_of(scenario));
   const bool maps = std::any_of(result.methods.begin(), result.methods.end(),
                                 [](const MethodPointer& method) { return method->info.kind == Kind::slam; });
   if (maps) result.surface = std::make_shared<const sim::Surface>(*draw.built);

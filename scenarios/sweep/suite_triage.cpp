@@ -102,7 +102,7 @@ bool begin(std::list<Worker>& workers, std::size_t index, double deadline_s, con
 std::vector<DrawName> draws_of(const DataRoot& data, const Suite& suite, const Method& method) {
   std::vector<std::string> names;
   for (const std::string& name : suite.scenarios) {
-    if (method.info.for_robot(load_scenario(data, name).robot.type)) names.push_back(name);
+    if (method.info.applies_to(subject_of(load_scenario(data, name)))) names.push_back(name);
   }
   require_seeds(suite);
   std::vector<DrawName> out;

@@ -39,7 +39,7 @@ SweepPlan::SweepPlan(const DataRoot& data, const Suite& suite, const SweepOption
   }
   for (const std::string& name : suite.scenarios) {
     Planned planned{name, load_scenario(data, name), {}};
-    planned.methods = applicable(methods_, planned.scenario.robot.type);
+    planned.methods = applicable(methods_, subject_of(planned.scenario));
     scenarios_.push_back(std::move(planned));
   }
   if (!suite.recordings.empty()) {

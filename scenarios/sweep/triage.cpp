@@ -42,10 +42,7 @@ bool Failure::holds(const Outcome& outcome) const {
 
 std::vector<TriageRow> triage(const DataRoot& data, const Scenario& scenario, std::uint64_t seed, const Method& method,
                               const TriageOptions& options) {
-  if (!method.info.for_robot(scenario.robot.type)) {
-    throw BadInput("method '" + method.info.name + "' does not apply to the robot '" + scenario.robot.type + "' of " +
-                   scenario.name);
-  }
+  require_applies(method, scenario);
   const SimulatedDraw draw = simulate_draw(data, scenario, seed, 1);
   std::optional<sim::Surface> surface;
   if (method.info.kind == Kind::slam) surface.emplace(*draw.built);

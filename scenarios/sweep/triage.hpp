@@ -47,7 +47,7 @@ struct TriageOptions {
 /// Runs a method on a draw as it is, then with one input after the other replaced by its truth, each in a process of
 /// its own, all scored against the same truth and the sensors as they were. The first row is the draw as it is. The
 /// method itself is untouched: what an input's truth cannot cure lies in the method or in the scenario. Throws what
-/// simulate_draw throws; BadInput when the method does not apply to the robot.
+/// simulate_draw throws; BadInput when the method does not apply to the scenario.
 std::vector<TriageRow> triage(const DataRoot& data, const Scenario& scenario, std::uint64_t seed, const Method& method,
                               const TriageOptions& options);
 

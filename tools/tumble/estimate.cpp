@@ -38,15 +38,15 @@ std::string reason(const Status& status) {
 }
 
 /// The one method of that name which can run on this recording without the truth.
-scenarios::MethodPointer choose(const std::string& name, const std::string& robot) {
+scenarios::MethodPointer choose(const std::string& name, const scenarios::Subject& subject) {
   std::vector<scenarios::MethodPointer> fitting;
   std::string refused;
   for (const scenarios::MethodPointer& method : scenarios::find_methods(name)) {
     if (method->info.needs_truth) {
       refused =
           "method '" + full_name(method->info) + "' needs the truth, which this verb never opens; use 'tumble run'";
-    } else if (!robot.empty() && !method->info.for_robot(robot)) {
-      refused = "method '" + full_name(method->info) + "' does not apply to the robot '" + robot + "'";
+    } else if (const std::string why = method->info.why_not(subject); !why.empty()) {
+      refused = "method '" + full_name(method->info) + "': it " + why;
     } else {
       fitting.push_back(method);
     }
@@ -88,7 +88,7 @@ Table summary(const scenarios::Estimate& estimate) {
 
 int run_estimate(const Session& session, const Options& options) {
   const sim::Sensors sensors = scenarios::read_sensors(options.recording);
-  const scenarios::MethodPointer chosen = choose(options.method, sensors.robot);
+  const scenarios::MethodPointer chosen = choose(options.method, {sensors.robot, !sensors.lidars.empty()});
   const scenarios::Method& method = *chosen;
   if (!options.learnt.empty() && !method.info.learns_rig) {
     throw BadInput("--learnt is for " + LearntFile::learning_methods() + "; '" + full_name(method.info) +

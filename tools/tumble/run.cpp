@@ -52,12 +52,12 @@ fs::path free_folder(const std::string& name) {
   return folder;
 }
 
-/// Ours beside the method that does nothing about the problem, of every kind that has both for this robot.
+/// Ours beside the method that does nothing about the problem, of every kind that has both for this scenario.
 Options first_run(Options options, const scenarios::Scenario& scenario) {
   constexpr std::pair<const char*, const char*> kPairs[] = {
       {"rate/raw", "rate/tumble"}, {"position/rolling", "position/tumble"}, {"slam/icp_raw", "slam/tumble"}};
   const auto applies = [&](const char* name) {
-    return scenarios::find_methods(name).front()->info.for_robot(scenario.robot.type);
+    return scenarios::find_methods(name).front()->info.applies_to(scenarios::subject_of(scenario));
   };
   for (const auto& [baseline, ours] : kPairs) {
     if (applies(baseline) && applies(ours)) options.methods.insert(options.methods.end(), {baseline, ours});
@@ -154,11 +154,8 @@ int run(const Session& session, const Options& given) {
       std::none_of(selected.begin(), selected.end(), [](const auto& method) { return method->info.learns_rig; })) {
     throw scenarios::BadInput("--learnt is for " + LearntFile::learning_methods() + ", of which none is to run");
   }
-  if (!options.methods.empty() && std::none_of(selected.begin(), selected.end(), [&](const auto& method) {
-        return method->info.for_robot(scenario.robot.type);
-      })) {
-    throw scenarios::BadInput("none of the methods given applies to the robot '" + scenario.robot.type + "'");
-  }
+  if (!options.methods.empty() && scenarios::applicable(selected, scenarios::subject_of(scenario)).empty())
+    scenarios::require_applies(*selected.front(), scenario);
   std::vector<scenarios::Method> copies;
   for (const scenarios::MethodPointer& method : selected) copies.push_back(learnt.wrap(*method));
   const std::vector<scenarios::Method> told = scenarios::with_parameters(pointers(copies), options.parameters);

@@ -12,6 +12,7 @@
 #include "scenarios/draw/fixed_scenario.hpp"
 #include "scenarios/errors.hpp"
 #include "scenarios/recordings/replace_file.hpp"
+#include "scenarios/sweep/evaluate.hpp"
 #include "scenarios/sweep/sweep.hpp"
 #include "scenarios/sweep/sweep_notes.hpp"
 #include "tools/tumble/arguments.hpp"
@@ -42,7 +43,8 @@ scenarios::MethodPointer control_of(const Options& options, const scenarios::Met
   for (const scenarios::Method& each : scenarios::methods()) {
     const scenarios::MethodInfo& info = each.info;
     const bool other = info.kind != method.info.kind || info.name != method.info.name;
-    if (other && info.kind == method.info.kind && info.name == "oracle" && info.for_robot(scenario.robot.type))
+    if (other && info.kind == method.info.kind && info.name == "oracle" &&
+        info.applies_to(scenarios::subject_of(scenario)))
       return scenarios::unowned(each);
   }
   return nullptr;

@@ -53,7 +53,7 @@ TEST_F(EstimateFile, ScoresOfWhatIsReadBackAreTheSame) {
       testing::synthetic_rig({.angle_rad = 12.0, .start_s = 1.0, .end_s = 2.6, .duration_s = 3.2});
   const sim::Recording sphere = testing::synthetic_sphere();
   for (const Method& method : methods()) {
-    const sim::Recording& recording = method.info.for_robot("rig") ? rig : sphere;
+    const sim::Recording& recording = method.info.applies_to({"rig"}) ? rig : sphere;
     const Estimate estimate = method.run(recording.sensors, {}, {&recording.truth});
     ASSERT_TRUE(estimate.status.ok()) << method.info.name;
     write_estimate(folder_, method.info.name, method.info.kind, estimate);

@@ -24,7 +24,7 @@ class MethodContract : public ::testing::TestWithParam<Method> {
   const Method& method() const { return GetParam(); }
 
   sim::Recording recording() const {
-    return method().info.for_robot("rig") ? testing::synthetic_rig() : testing::synthetic_sphere();
+    return method().info.applies_to({"rig"}) ? testing::synthetic_rig() : testing::synthetic_sphere();
   }
 
   Estimate run(const sim::Recording& recording) const {
@@ -211,7 +211,7 @@ TEST_P(SlamContract, TakesAPointThatIsNotANumberForAMissAndCountsSweepsWithoutPo
 std::vector<Method> slam_methods() {
   std::vector<Method> chosen;
   std::copy_if(methods().begin(), methods().end(), std::back_inserter(chosen),
-               [](const Method& method) { return method.info.kind == Kind::slam && method.info.for_robot("rig"); });
+               [](const Method& method) { return method.info.kind == Kind::slam && method.info.applies_to({"rig"}); });
   return chosen;
 }
 

@@ -58,7 +58,7 @@ TEST(PublishedTraps, AMisspeltParameterIsRefusedByEverySlamMethod) {
   const sim::Recording recording = testing::synthetic_rig();
   int tried = 0;
   for (const Method& method : methods()) {
-    if (method.info.kind != Kind::slam || !method.info.for_robot("rig")) continue;
+    if (method.info.kind != Kind::slam || !method.info.applies_to({"rig"})) continue;
     sim::Values values;
     values.set("sweep_voxel_mm", 0.2);
     EXPECT_THROW(method.run(recording.sensors, values, {&recording.truth}), BadInput) << method.info.name;

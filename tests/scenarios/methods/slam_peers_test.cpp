@@ -201,7 +201,7 @@ TEST(SlamMethods, SayThatTheyNeedAnImu) {
   int tried = 0;
   for (const Method& method : methods()) {
     if (method.info.kind != Kind::slam || method.info.name == "constant_velocity") continue;
-    if (!method.info.for_robot("rig")) continue;
+    if (!method.info.applies_to({"rig"})) continue;
     const Estimate estimate = method.run(recording.sensors, {}, {&recording.truth});
     EXPECT_EQ(estimate.status.trouble, Trouble::empty) << method.info.name;
     EXPECT_EQ(std::string(estimate.status.field), "imus") << method.info.name;

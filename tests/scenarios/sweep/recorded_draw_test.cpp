@@ -28,7 +28,7 @@ class RecordedSweep : public testing::TemporaryFolder {
     std::filesystem::create_directory_symlink(test::source_dir() / "models", folder_ / "models");
     write("scenarios/suites/real.yaml",
           "name: real\ndoc: Some words.\nrecordings: [wands/*.h5]\nmethods: [rate/raw, rate/interpolate, rate/oracle, "
-          "attitude/vqf]\ntimeout_s: 60\n");
+          "attitude/vqf, slam/icp_raw]\ntimeout_s: 60\n");
     record("wand_a", 30.0, true);
     record("wand_b", 20.0, false);
   }
@@ -73,7 +73,7 @@ TEST_F(RecordedSweep, EachRecordingIsADraw) {
   EXPECT_EQ(progress.draws_done, 2u);
   const Results results(path, Results::Mode::read_only);
   const std::vector<Outcome> rows = results.outcomes();
-  ASSERT_EQ(rows.size(), 6u) << "an oracle has no truth to ask";
+  ASSERT_EQ(rows.size(), 6u) << "an oracle has no truth to ask, a map no lidar";
   for (const Outcome& row : rows) {
     EXPECT_EQ(row.status, OutcomeStatus::ok) << row.scenario << " " << row.method << ": " << row.message;
     EXPECT_EQ(row.seed, 1u);
