@@ -64,6 +64,7 @@ RegimeStream::State RegimeStream::start() const {
   state.rate = rate_.start();
   state.carried = carried_.start();
   state.signs.reserve(state.rate.window.capacity());
+  state.near.reserve(static_cast<std::size_t>(std::ceil(params_.near_s / params_.rate.period_s)) + 2);
   return state;
 }
 
@@ -156,33 +157,34 @@ void RegimeStream::judge(const RateState& rate, State& state) const {
   state.sum.carried += state.shares.carried;
 }
 
-// With which probability CarriedStream is right about the sample given out, s of carried.md (C29): the least over the
-// stretch of clipped samples that it lies in, or near to, as far as the window shows it; 0 away from all.
+// With which probability CarriedStream is right about the sample given out, s of carried.md (C41): the least over what
+// is near in the stretch of clipped samples that it lies in, or near to, as far as the window shows it; 0 away from
+// all.
 double RegimeStream::share_of(const RateState& rate, State& state) const {
   const auto near_ns = static_cast<TimeNs>(std::llround(1e9 * params_.near_s));
-  const bool after = state.clipped_ns && rate.time_ns - *state.clipped_ns <= near_ns;
   const std::vector<RateStream::Knot>& window = state.rate.window;
-  const bool before = std::any_of(window.begin(), window.end(), [&](const RateStream::Knot& knot) {
-    const TimeNs ahead_ns = knot.observation.sample.time_ns - rate.time_ns;
-    return clips(knot) && ahead_ns >= 0 && ahead_ns <= near_ns;
+  const std::size_t here = index_of(rate, state);
+  if (clips(window[here])) state.clipped_ns = rate.time_ns;
+  const bool after = state.clipped_ns && rate.time_ns - *state.clipped_ns <= near_ns;
+  const auto next_clipped = std::find_if(window.begin() + static_cast<std::ptrdiff_t>(here), window.end(), clips);
+  const TimeNs next_ns = next_clipped == window.end() ? 0 : next_clipped->observation.sample.time_ns;
+  const bool before = next_clipped != window.end() && next_ns - rate.time_ns <= near_ns;
+  const bool within = after && before && next_ns - *state.clipped_ns <= near_ns;
+  std::erase_if(state.near, [&](const Given& given) {
+    return given.time_ns < rate.time_ns - near_ns || (within && given.carried >= state.shares.carried);
   });
-  if (clips(window[index_of(rate, state)])) state.clipped_ns = rate.time_ns;
-  if (!after && !before) {
-    state.least = 1.0;
-    return 0.0;
-  }
-  state.least = std::min(state.least, state.shares.carried);
-  double out = state.least;
-  if (out < params_.carried_min) return out;
+  if (within) state.near.push_back({rate.time_ns, state.shares.carried});
+  if (!after && !before) return 0.0;
+  double out = state.near.empty() ? 1.0 : state.near.front().carried;
+  if (out < params_.carried_min || !before) return out;
   // what lies ahead, by rates that are not settled yet
   RegimeShares shares = state.shares;
   const RigCalibration rig = rate_.calibration(state.rate);
-  TimeNs clipped_ns = rate.time_ns;
-  for (std::size_t k = index_of(rate, state) + 1; k < window.size(); ++k) {
+  const bool doubted = doubts(state);
+  for (std::size_t k = here + 1; k < window.size(); ++k) {
     const TimeNs now_ns = window[k].observation.sample.time_ns;
-    if (clips(window[k])) clipped_ns = now_ns;
-    if (now_ns - clipped_ns > near_ns) break;
-    shares = next(shares, seconds(now_ns - window[k - 1].observation.sample.time_ns), window, k, rig, doubts(state));
+    if (now_ns - rate.time_ns > near_ns) break;
+    shares = next(shares, seconds(now_ns - window[k - 1].observation.sample.time_ns), window, k, rig, doubted);
     if (clips(window[k])) out = std::min(out, shares.carried);
   }
   return out;

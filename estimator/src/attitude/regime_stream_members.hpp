@@ -109,6 +109,12 @@ void members(Self& s, Visitor& visit) {
   visit("shares.carried", s.carried);
 }
 
+template <StateOf<RegimeStream::Given> Self, class Visitor>
+void members(Self& s, Visitor& visit) {
+  visit("near.time_ns", s.time_ns);
+  visit("near.carried", s.carried);
+}
+
 template <StateOf<RegimeStream::State> Self, class Visitor>
 void members(Self& s, Visitor& visit) {
   visit("regime.rate", s.rate);
@@ -122,7 +128,7 @@ void members(Self& s, Visitor& visit) {
   visit("regime.rig_resets", s.rig_resets);
   visit("regime.resets", s.resets);
   visit("regime.carrying", s.carrying);
-  visit("regime.least", s.least);
+  visit("regime.near", s.near);
   visit("regime.given_ns", s.given_ns);
   visit("regime.clipped_ns", s.clipped_ns);
 }
