@@ -193,9 +193,7 @@ void whole_windows(double noise_rad_s, const Eigen::Matrix3d& rows, GyroReadings
 
 // carried.md (C40): errors that have a memory, as readings whose errors have none
 void recovered_readings(const CarriedSmoother::Params& params, const ClippedElements& clipped, GyroReadings& rates) {
-  // of the readings that one node takes in each says the same of the error
-  const double between_s = std::min(params.expert.node_s, rates.windows.period_s);
-  const double nodes = std::sqrt(2.0 * params.expert.readings.recovered_tau_s / between_s);
+  const double nodes = std::sqrt(2.0 * params.expert.readings.recovered_tau_s / params.expert.node_s);
   for (std::size_t k = 0; k < clipped.recovered_rad2_s2.size(); ++k) {
     const Eigen::Matrix3d along = clipped.rows * clipped.recovered_rad2_s2[k] * clipped.rows.transpose();
     Vector3d& open_rad_s = rates.open_rad_s[rates.of_sample[k]];

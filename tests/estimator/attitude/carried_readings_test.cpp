@@ -181,32 +181,5 @@ TEST(CarriedReadings, TheJerkOfAHiddenStretchIsThatOfTheSlopesAtItsEnds) {
   EXPECT_LT(free[top], 0.2 * expected);
 }
 
-/// What is open of a recovered rate is a matter of time: readings that one node takes in share their error, and
-/// together say as much as one of the node's length.
-TEST(CarriedReadings, OfARecoveredRateANodeKnowsTheSameAtAnyRate) {
-  constexpr double kSigma_rad_s = 2.0;
-  const auto information_of_a_node = [](double rate_hz) {
-    const CarriedSmoother::Params params;
-    std::vector<ImuSample> samples;
-    for (int k = 1; k <= static_cast<int>(rate_hz); ++k) {
-      ImuSample sample;
-      sample.time_ns = static_cast<TimeNs>(std::llround(1e9 * k / rate_hz));
-      sample.angular_velocity_rad_s = {0.01 * k, std::sin(0.1 * k), 0.0};
-      sample.specific_force_m_s2 = {0.0, 0.01 * std::sin(0.2 * k), 9.8};
-      samples.push_back(sample);
-    }
-    const std::vector<Eigen::Matrix3d> told(samples.size(), kSigma_rad_s * kSigma_rad_s * Eigen::Matrix3d::Identity());
-    ClippedElements clipped;
-    clipped.recovered_rad2_s2 = told;
-    const carried::Collected collected = carried::collect(params, samples, clipped);
-    const double open = collected.rates.open_rad_s.at(samples.size() / 2).x();
-    return params.expert.node_s * rate_hz / (open * open);
-  };
-  const double published = information_of_a_node(100.0);
-  EXPECT_NEAR(published, 1.0 / (kSigma_rad_s * kSigma_rad_s), 1e-9);
-  EXPECT_NEAR(information_of_a_node(250.0), published, 1e-3 * published);
-  EXPECT_NEAR(information_of_a_node(2000.0), published, 1e-3 * published);
-}
-
 }  // namespace
 }  // namespace tumble
