@@ -55,18 +55,23 @@ Estimate run_rig(const sim::Sensors& sensors, const sim::Values& parameters) {
   (void)check_imu(sensors, samples, estimate);  // a warning: a body that is pushed about all the time may look so
   (void)check_flights(sensors, samples, estimate);
   tell_frozen_axes(sensors, samples, estimate);
-  const std::vector<Eigen::Matrix3d> covariances =
-      recover_in_time(sensors, samples, estimate.health).covariances_rad2_s2;
+  const std::vector<ImuSample> read = samples;
+  const RecoveredRates recovered = recover_in_time(sensors, samples, estimate.health);
   TumbleAttitude::Params params = stated(sensors);
   attitude_tumble_settings().apply(parameters, params);
   const TumbleAttitude filter(params);
   TumbleAttitude::State state;
   estimate.attitudes.reserve(samples.size());
+  std::vector<RateState> turned(samples.size());
   for (std::size_t k = 0; k < samples.size(); ++k) {
-    estimate.status = filter.step(samples[k], covariances[k], state);
+    estimate.status = filter.step(samples[k], recovered.covariances_rad2_s2[k], state);
     if (!estimate.status.ok()) return estimate;
     estimate.attitudes.push_back({samples[k].time_ns, state.q_WI, TumbleAttitude::attitude_covariance_rad2(state)});
+    turned[k].time_ns = samples[k].time_ns;
+    turned[k].w_WI_I_rad_s = samples[k].angular_velocity_rad_s - state.bias_rad_s;
+    turned[k].source = recovered.sources[k];
   }
+  (void)check_turning_about_pivots(sensors, read, turned, estimate);
   return estimate;
 }
 

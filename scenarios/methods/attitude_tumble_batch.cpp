@@ -18,17 +18,16 @@ namespace {
 constexpr double kCarried = 0.5;
 
 /// Of a body that nobody held while its gyro clipped: the rates that flight and contact tell, those of `recovered`,
-/// stand for readings.
+/// stand for readings. `rates`: those of the smoother.
 Status run_thrown(const sim::Sensors& sensors, const sim::Values& parameters, const std::vector<ImuSample>& samples,
                   const std::vector<ImuSample>& recovered, const std::vector<Eigen::Matrix3d>& covariances,
-                  Estimate& estimate) {
+                  std::vector<RateState>& rates, Estimate& estimate) {
   CarriedElements known = find_clipped(sensors.imus.front(), samples);
   for (std::size_t k = 0; k < samples.size(); ++k) {
     if (!covariances[k].isZero(0.0)) known.signs[k].gyro = {};
   }
   ClippedElements clipped = known.clipped();
   clipped.recovered_rad2_s2 = covariances;
-  std::vector<RateState> rates;
   CarriedSmoother::Report report;
   const Status status = CarriedSmoother(carried_params(sensors, parameters))
                             .estimate(recovered, clipped, rates, estimate.attitudes, report);
@@ -47,12 +46,13 @@ Estimate run(const sim::Sensors& sensors, const sim::Values& parameters, const O
   std::vector<ImuSample> recovered = samples;
   RecoveredRates told;
   if (sensors.sphere_radius_m <= 0.0) told = recover_clipped(sensors, recovered, estimate.health);
+  std::vector<RateState> rates;
   if (estimate.health.contains("samples_recovered") && told.carried < kCarried) {
-    estimate.status = run_thrown(sensors, parameters, samples, recovered, told.covariances_rad2_s2, estimate);
+    estimate.status = run_thrown(sensors, parameters, samples, recovered, told.covariances_rad2_s2, rates, estimate);
   } else {
-    std::vector<RateState> rates;
     estimate.status = run_carried(sensors, parameters, rates, estimate.attitudes, estimate.health);
   }
+  if (estimate.status.ok()) (void)check_turning_about_pivots(sensors, samples, rates, estimate);
   return estimate;
 }
 

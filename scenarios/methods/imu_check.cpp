@@ -34,10 +34,25 @@ double fastest_rad_s(std::span<const ImuSample> samples) {
   return fastest;
 }
 
-void widen_frozen(const FrozenAxis& frozen, double sigma_rad_s, std::vector<RateState>& rates) {
+/// Whether the rates of a run are doubted as a whole; the covariance of each holds its square then.
+constexpr const char* kRatesDoubted = "imu_rates_doubted";
+
+/// What a doubt about a rate adds to its covariance: of such rates the size alone is known: one of the other sense is
+/// off by twice itself, one of half the scale by half.
+Eigen::Matrix3d square_of_rate(const RateState& rate) {
+  return rate.w_WI_I_rad_s.squaredNorm() * Eigen::Matrix3d::Identity();
+}
+
+std::string key_of(const sim::Sensors& sensors, const FrozenAxis& frozen) {
+  return sensors.imus.front().name + "_" + to_string(frozen) + "_frozen_since_s";
+}
+
+/// Of a gyro's axis that froze: `share` of its variance.
+void add_frozen(const FrozenAxis& frozen, double sigma_rad_s, double share, std::vector<RateState>& rates) {
+  if (frozen.triad != Triad::gyro) return;
   for (RateState& rate : rates) {
     if (rate.time_ns < frozen.from_ns || rate.time_ns > frozen.to_ns) continue;
-    rate.covariance_rad2_s2(frozen.axis, frozen.axis) += sigma_rad_s * sigma_rad_s;
+    rate.covariance_rad2_s2(frozen.axis, frozen.axis) += share * sigma_rad_s * sigma_rad_s;
   }
 }
 
@@ -68,21 +83,6 @@ Status check_turning_between_rests(const sim::Sensors& sensors, std::span<const 
   estimate.health["rest_velocity_share"] = state.velocity_share;
   estimate.health["rest_velocity_allowed_share"] = state.velocity_allowed_share;
   return told(gravity.verdict(state), estimate);
-}
-
-Status check_turning_about_pivots(const sim::Sensors& sensors, std::span<const ImuSample> samples, Estimate& estimate) {
-  PivotCheck::Params params;
-  params.gravity_m_s2 = sensors.gravity_m_s2;
-  params.accel_range_m_s2 = sensors.imus.front().stated_accel_range_m_s2;
-  const PivotCheck pivots(params);
-  const PivotCheck::Found found = pivots.find(samples, estimate.rates);
-  estimate.health["pivot_evidence"] = found.evidence;
-  estimate.health["pivot_stretches"] = static_cast<double>(found.counted);
-  if (std::isfinite(found.scale_sigma)) {
-    estimate.health["pivot_scale"] = found.scale;
-    estimate.health["pivot_scale_sigma"] = found.scale_sigma;
-  }
-  return told(pivots.verdict(found), estimate);
 }
 
 }  // namespace
@@ -137,25 +137,50 @@ Status check_flights(const sim::Sensors& sensors, std::span<const ImuSample> sam
   return status;
 }
 
+Status check_turning_about_pivots(const sim::Sensors& sensors, std::span<const ImuSample> samples,
+                                  std::span<const RateState> rates, Estimate& estimate) {
+  PivotCheck::Params params;
+  params.gravity_m_s2 = sensors.gravity_m_s2;
+  params.accel_range_m_s2 = sensors.imus.front().stated_accel_range_m_s2;
+  const PivotCheck pivots(params);
+  const PivotCheck::Found found = pivots.find(samples, rates);
+  estimate.health["pivot_evidence"] = found.evidence;
+  estimate.health["pivot_stretches"] = static_cast<double>(found.counted);
+  if (std::isfinite(found.scale_sigma)) {
+    estimate.health["pivot_scale"] = found.scale;
+    estimate.health["pivot_scale_sigma"] = found.scale_sigma;
+  }
+  return told(pivots.verdict(found), estimate);
+}
+
 void check_rates(const sim::Sensors& sensors, std::span<const ImuSample> samples, Estimate& estimate) {
   const Status of_flights = check_flights(sensors, samples, estimate);
   const Status of_readings = check_imu(sensors, samples, estimate);
   const Status of_rates = check_turning_between_rests(sensors, samples, estimate);
-  const Status of_pivots = check_turning_about_pivots(sensors, samples, estimate);
+  const Status of_pivots = check_turning_about_pivots(sensors, samples, estimate.rates, estimate);
   if (of_flights.ok() && of_readings.ok() && of_rates.ok() && of_pivots.ok()) return;
-  // of such rates the size alone is known: one of the other sense is off by twice itself, one of half the scale by half
-  for (RateState& rate : estimate.rates) {
-    rate.covariance_rad2_s2 += rate.w_WI_I_rad_s.squaredNorm() * Eigen::Matrix3d::Identity();
-  }
+  for (RateState& rate : estimate.rates) rate.covariance_rad2_s2 += square_of_rate(rate);
+  estimate.health[kRatesDoubted] = 1.0;
 }
 
 void tell_frozen_axes(const sim::Sensors& sensors, std::span<const ImuSample> samples, Estimate& estimate) {
   for (const FrozenAxis& frozen : find_frozen_axes(sensors.imus.front(), samples)) {
-    const std::string key = sensors.imus.front().name + "_" + to_string(frozen) + "_frozen_since_s";
-    estimate.health.try_emplace(key, seconds(frozen.from_ns - samples.front().time_ns));
+    estimate.health.try_emplace(key_of(sensors, frozen), seconds(frozen.from_ns - samples.front().time_ns));
     estimate.health["imu_implausible"] = 1.0;
-    if (frozen.triad == Triad::gyro) widen_frozen(frozen, fastest_rad_s(samples), estimate.rates);
+    add_frozen(frozen, fastest_rad_s(samples), 1.0, estimate.rates);
   }
+}
+
+std::vector<RateState> rates_before_doubt(const sim::Sensors& sensors, std::span<const ImuSample> samples,
+                                          const Estimate& estimate) {
+  std::vector<RateState> rates = estimate.rates;
+  if (estimate.health.contains(kRatesDoubted)) {
+    for (RateState& rate : rates) rate.covariance_rad2_s2 -= square_of_rate(rate);
+  }
+  for (const FrozenAxis& frozen : find_frozen_axes(sensors.imus.front(), samples)) {
+    if (estimate.health.contains(key_of(sensors, frozen))) add_frozen(frozen, fastest_rad_s(samples), -1.0, rates);
+  }
+  return rates;
 }
 
 }  // namespace tumble::scenarios

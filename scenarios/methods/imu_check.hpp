@@ -2,6 +2,7 @@
 #pragma once
 
 #include <span>
+#include <vector>
 
 #include "scenarios/methods/method.hpp"
 #include "scenarios/methods/sphere_imus.hpp"
@@ -21,10 +22,16 @@ Status check_imus(const sim::Sensors& sensors, const MergedImus& imus, Estimate&
 
 /// The same of a rig's primary IMU whose rates the estimate holds, one for each sample, and what gravity at its rests
 /// says of them (RestGravity: `rest_gravity_missed_rad` with its deviation, `rest_velocity_share` with its bound), and
-/// what its turning about a point does (PivotCheck: `pivot_evidence` for another reading of the gyro and from how many
-/// stretches, `pivot_scale` by which its rates explain most, with its deviation). Where one of them speaks against the
-/// readings, the covariance of every rate grows by the square of the rate. O(N).
+/// what its turning about a point does (check_turning_about_pivots). Where one of them speaks against the readings, the
+/// covariance of every rate grows by the square of the rate (`imu_rates_doubted`). O(N).
 void check_rates(const sim::Sensors& sensors, std::span<const ImuSample> samples, Estimate& estimate);
+
+/// Whether a body that is held turns as `rates` say, one for each sample, those of an estimate of rates or what an
+/// attitude was turned by (PivotCheck): `pivot_evidence` for another reading of the gyro and from how many stretches,
+/// `pivot_scale` by which the rates explain most, with its deviation, and `imu_implausible`. Rates that are not
+/// `measured` do not count. O(N), a millisecond for a second at 100 Hz.
+Status check_turning_about_pivots(const sim::Sensors& sensors, std::span<const ImuSample> samples,
+                                  std::span<const RateState> rates, Estimate& estimate);
 
 /// Whether flights of a rig show forces of the other sense than its lever arm makes, or of twice the rate
 /// (FlightSense): `imu_implausible` and the seconds of it, as `imu_flight_against_s`. O(N).
@@ -34,5 +41,11 @@ Status check_flights(const sim::Sensors& sensors, std::span<const ImuSample> sam
 /// `imu_gyro_z_frozen_since_s`. Of a gyro's axis nothing is known meanwhile but that it turns no faster than any
 /// reading of the run: so much is added to the variance of the rates that the estimate holds. O(N).
 void tell_frozen_axes(const sim::Sensors& sensors, std::span<const ImuSample> samples, Estimate& estimate);
+
+/// The rates of an estimate with the covariances that they had before check_rates and tell_frozen_axes spoke against
+/// its readings: by them a run is wrong or right, whatever is said of it then. `samples`: those that the two were
+/// given. Exact to rounding beside the square of the rate. O(N).
+std::vector<RateState> rates_before_doubt(const sim::Sensors& sensors, std::span<const ImuSample> samples,
+                                          const Estimate& estimate);
 
 }  // namespace tumble::scenarios

@@ -60,10 +60,12 @@ RecoveredRates recover(const Recovery& recovery, std::vector<ImuSample>& samples
                        std::map<std::string, double>& health) {
   RecoveredRates out;
   out.covariances_rad2_s2.assign(samples.size(), Eigen::Matrix3d::Zero());
+  out.sources.assign(samples.size(), RateSource::measured);
   out.carried = recovery.carried;
   if (recovery.rates.empty()) return out;
   double recovered = 0.0;
   for (std::size_t k = 0; k < samples.size(); ++k) {
+    out.sources[k] = recovery.rates[k].source;
     if (recovery.rates[k].clipped_axes == 0) continue;
     recovery.put(k, samples, out.covariances_rad2_s2);
     recovered += 1.0;

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "sim/recording.hpp"
+#include "tumble/angular_velocity/rate_state.hpp"
 #include "tumble/common/imu.hpp"
 
 /// Rates that a rail hid and a smoother of the rate recovered, for methods that take them as readings.
@@ -14,6 +15,7 @@ namespace tumble::scenarios {
 
 struct RecoveredRates {
   std::vector<Eigen::Matrix3d> covariances_rad2_s2;  ///< one per sample, sensor axes; zero of those that are as read
+  std::vector<RateSource> sources;                   ///< one per sample, of rate/tumble; all `measured` without it
   /// Largest probability that a hand held the body throughout a stretch of clipped samples; 0 where nothing was asked.
   double carried = 0.0;
 };

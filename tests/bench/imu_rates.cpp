@@ -1,15 +1,18 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// imu_rates SCENARIO FIRST LAST KIND/METHOD... [--rate HZ]... [--keep FOLDER]: the same draws with IMUs of other rates.
-// A line per method and rate: its error (rate: median at clipped samples; attitude: inclination; position: at the end;
-// slam: ate_m; median and mean over the draws), both against the scenario's own rate, the share within three reported
-// deviations (slam: of the draws whose last pose lies within the 99.7 % of its NEES), that of the worst draw, and the
-// CPU time against the length of the recording. FOLDER keeps the recordings. Not a test: 2 to 10 s a draw and rate.
+// imu_rates SCENARIO FIRST LAST KIND/METHOD... [--rate HZ]... [--set NUMBER=VALUE]... [--keep FOLDER] [--draws]: the
+// same draws with IMUs of other rates, and with other numbers of a data sheet (`gyro_range_rad_s=8.7`; SCENARIO may be
+// the path of a file, with other devices). A line per method and rate: its error (rate: median at clipped samples;
+// attitude: inclination; position: at the end; slam: ate_m; median and mean over the draws), both against the
+// scenario's own rate, the share within three reported deviations (slam: of the draws whose last pose lies within the
+// 99.7 % of its NEES), that of the worst draw, and the CPU time against the length of the recording. FOLDER keeps the
+// recordings (of one set of numbers); --draws prints a line a draw too. Not a test: 2 to 10 s a draw and rate.
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
 #include <filesystem>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "scenarios/draw/scenario.hpp"
@@ -33,7 +36,9 @@ struct Request {
   std::uint64_t first = 0, last = 0;
   std::vector<std::string> methods;
   std::vector<double> rates_hz = {50, 100, 125, 250, 500, 1000, 2000, 4000, 8000};
+  std::vector<std::pair<std::string, double>> changes;  ///< of the numbers of the IMUs whose rate changes
   std::filesystem::path keep;
+  bool draws = false;
 };
 
 bool parse(int count, char** words, Request& request) {
@@ -41,11 +46,18 @@ bool parse(int count, char** words, Request& request) {
   std::vector<double> rates_hz;
   for (int i = 1; i < count; ++i) {
     const std::string word = words[i];
-    if ((word == "--rate" || word == "--keep") && i + 1 == count) return false;
+    if ((word == "--rate" || word == "--keep" || word == "--set") && i + 1 == count) return false;
     if (word == "--rate") {
       rates_hz.push_back(std::strtod(words[++i], nullptr));
     } else if (word == "--keep") {
       request.keep = words[++i];
+    } else if (word == "--draws") {
+      request.draws = true;
+    } else if (word == "--set") {
+      const std::string change = words[++i];
+      const std::size_t equals = change.find('=');
+      if (equals == std::string::npos) return false;
+      request.changes.emplace_back(change.substr(0, equals), std::strtod(change.c_str() + equals + 1, nullptr));
     } else {
       plain.push_back(word);
     }
@@ -59,7 +71,7 @@ bool parse(int count, char** words, Request& request) {
   return true;
 }
 
-/// The draw with the primary IMU's rate, that of a sphere's others too; 0: as the scenario has it.
+/// The draw with the primary IMU's rate and numbers, those of a sphere's others too; 0: as the scenario has it.
 scenarios::SimulatedDraw draw_of(const scenarios::DataRoot& data, const Request& request, std::uint64_t seed,
                                  double rate_hz, bool lidar) {
   scenarios::SimulatedDraw draw;
@@ -72,7 +84,9 @@ scenarios::SimulatedDraw draw_of(const scenarios::DataRoot& data, const Request&
     sim::Situation out = lidar ? drawn : scenarios::without_lidars(drawn);
     for (sim::SensorSpec& sensor : out.sensors) {
       const bool one_of_them = &sensor == &out.sensors.front() || out.robot.type == "sphere";
-      if (rate_hz > 0.0 && sensor.kind == "imu" && one_of_them) sensor.values.set("output_rate_hz", rate_hz);
+      if (sensor.kind != "imu" || !one_of_them) continue;
+      for (const auto& [number, value] : request.changes) sensor.values.set(number, value);
+      if (rate_hz > 0.0) sensor.values.set("output_rate_hz", rate_hz);
     }
     return out;
   };
@@ -86,7 +100,7 @@ struct Metrics {
 
 Metrics metrics_of(Kind kind) {
   if (kind == Kind::rate) return {"rate_error_clipped_median_rad_s", "rate_coverage_3sigma"};
-  if (kind == Kind::attitude) return {"inclination_rmse_rad", ""};
+  if (kind == Kind::attitude) return {"inclination_rmse_rad", "inclination_coverage_3sigma"};
   if (kind == Kind::position) return {"position_end_error_m", "position_coverage_3sigma"};
   return {"ate_m", "pose_nees"};
 }
@@ -104,7 +118,7 @@ double mean(const std::vector<double>& values) {
   return values.empty() ? std::nan("") : sum / static_cast<double>(values.size());
 }
 
-void add(const scenarios::Method& method, const scenarios::SimulatedDraw& draw, Pool& pool) {
+void add(const scenarios::Method& method, const scenarios::SimulatedDraw& draw, bool draws, Pool& pool) {
   scenarios::Outcome outcome;
   const double start_s = scenarios::process_cpu_s();
   const scenarios::Estimate estimate = scenarios::run_method(method, draw, outcome);
@@ -124,6 +138,12 @@ void add(const scenarios::Method& method, const scenarios::SimulatedDraw& draw, 
     const bool nees = method.info.kind == Kind::slam;
     pool.coverage.push_back(nees ? static_cast<double>(score.value <= kPoseNees) : score.value);
   }
+  if (!draws) return;
+  std::printf("  %s draw %llu:", method.info.name.c_str(), static_cast<unsigned long long>(draw.seed));
+  for (const scenarios::Score& score : outcome.scores) {
+    if (score.metric == metrics.error || score.metric == metrics.coverage) std::printf(" %.5f", score.value);
+  }
+  std::printf("\n");
 }
 
 void print(const std::string& name, double rate_hz, const Pool& pool, const Pool& own) {
@@ -153,7 +173,7 @@ int run(const Request& request) {
     std::vector<Pool> pools(methods.size());
     tumble::bench::for_each_draw(request.first, request.last, [&](std::uint64_t seed) {
       const scenarios::SimulatedDraw draw = draw_of(data, request, seed, rate_hz, lidar);
-      for (std::size_t m = 0; m < methods.size(); ++m) add(*methods[m], draw, pools[m]);
+      for (std::size_t m = 0; m < methods.size(); ++m) add(*methods[m], draw, request.draws, pools[m]);
     });
     if (rate_hz == 0.0) own = pools;
     for (std::size_t m = 0; m < methods.size(); ++m) print(request.methods[m], rate_hz, pools[m], own[m]);
@@ -165,5 +185,7 @@ int run(const Request& request) {
 
 int main(int count, char** words) {
   return tumble::bench::run_program(
-      count, words, "imu_rates SCENARIO FIRST LAST KIND/METHOD... [--rate HZ]... [--keep FOLDER]", parse, run);
+      count, words,
+      "imu_rates SCENARIO FIRST LAST KIND/METHOD... [--rate HZ]... [--set NUMBER=VALUE]... [--keep FOLDER] [--draws]",
+      parse, run);
 }

@@ -142,7 +142,7 @@ double RateIteration::apply(const RateModel& model, double step_max, std::span<R
   return largest;
 }
 
-// rate_smoother.md (R36), (R37)
+// rate_smoother.md (R36), (R37), (R37a)
 RateIteration::Moved RateIteration::moved_by_errors(const RateModel& model, std::span<const RateEstimate> estimates,
                                                     const RigConstants& rig) const {
   Moved out;
@@ -164,6 +164,7 @@ RateIteration::Moved RateIteration::moved_by_errors(const RateModel& model, std:
     const arrow::ErrorMatrix* const next = k + 1 == blocks_.size() ? nullptr : &out.of_sample[k + 1];
     out.of_sample[k] = arrow::back_substitute_errors(blocks_[k], out.of_sample[k], next, out.of_rig);
   }
+  discount_untold(model.said_once_share(), out.evidence);
   return out;
 }
 

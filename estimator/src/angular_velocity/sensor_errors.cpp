@@ -115,6 +115,21 @@ SensorErrors SensorErrors::from(const Vector& v) {
   return out;
 }
 
+void discount_untold(double share, SensorErrorEvidence& evidence) {
+  if (share >= 1.0) return;
+  // orthonormal columns
+  Eigen::Matrix<double, SensorErrors::kSize, 5> untold = Eigen::Matrix<double, SensorErrors::kSize, 5>::Zero();
+  for (int i = 0; i < 3; ++i) {
+    const int j = (i + 1) % 3, k = (i + 2) % 3;
+    untold(4 * i, 0) = untold(SensorErrors::kAccel + 4 * i, 1) = std::sqrt(1.0 / 3.0);
+    untold(3 * j + k, 2 + i) = untold(SensorErrors::kAccel + 3 * j + k, 2 + i) = 0.5;
+    untold(3 * k + j, 2 + i) = untold(SensorErrors::kAccel + 3 * k + j, 2 + i) = -0.5;
+  }
+  const Matrix left = Matrix::Identity() - (1.0 - share) * untold * untold.transpose();
+  evidence.gradient = (left * evidence.gradient).eval();
+  evidence.information = (left * evidence.information * left).eval();
+}
+
 SensorErrorFit fit_sensor_errors(const SensorErrorEvidence& evidence, const SensorErrorSizes& sizes,
                                  const SensorErrorEvidence& learnt) {
   const Matrix information = evidence_of(evidence.information, sizes);

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 #include <vector>
 
 #include "estimator/src/angular_velocity/sample_hold.hpp"
@@ -12,6 +13,7 @@
 #include "oracles/gaussian.hpp"
 #include "tumble/angular_velocity/detail/rate_model.hpp"
 #include "tumble/angular_velocity/rate_smoother.hpp"
+#include "tumble/common/so3.hpp"
 #include "tumble_recording.hpp"
 
 namespace tumble {
@@ -55,6 +57,42 @@ TEST(SensorErrors, ComeBackFromTheirVector) {
   EXPECT_EQ(errors.gyro(0, 1), v[1]);
   EXPECT_EQ(errors.accel(2, 0), v[SensorErrors::kAccel + 6]);
   EXPECT_EQ(errors.accel_delay_s, v[SensorErrors::kDelay]);
+}
+
+// What any motion explains counts by time, whatever the number of samples; all else stays: (R37a).
+TEST(SensorErrors, WhatNoMotionTellsIsDiscounted) {
+  oracles::Gaussian noise(2);
+  SensorErrors::Matrix root;
+  for (double& x : root.reshaped()) x = noise();
+  SensorErrorEvidence evidence;
+  evidence.information = root * root.transpose();
+  for (double& x : evidence.gradient) x = noise();
+  SensorErrors both_turned;
+  both_turned.gyro = both_turned.accel = so3::hat({0.3, -0.2, 0.5});
+  SensorErrors gyro_longer, accel_longer, gyro_turned, one_axis;
+  gyro_longer.gyro.setIdentity(), accel_longer.accel.setIdentity();
+  gyro_turned.gyro = so3::hat({0.3, -0.2, 0.5}), gyro_turned.accel = -gyro_turned.gyro;
+  one_axis.gyro.diagonal() << 2.0, -1.0, -1.0;
+  SensorErrors late;
+  late.accel_delay_s = 1.0;
+
+  SensorErrorEvidence same = evidence, tenth = evidence;
+  discount_untold(1.0, same);
+  EXPECT_EQ(same.information, evidence.information);
+  EXPECT_EQ(same.gradient, evidence.gradient);
+  discount_untold(0.1, tenth);
+  const auto along = [](const SensorErrors& error, const SensorErrorEvidence& of) {
+    const SensorErrors::Vector v = error.vector();
+    return std::pair(v.dot(of.gradient), v.dot(of.information * v));
+  };
+  for (const SensorErrors& untold : {both_turned, gyro_longer, accel_longer}) {
+    EXPECT_NEAR(along(untold, tenth).first, 0.1 * along(untold, evidence).first, 1e-12);
+    EXPECT_NEAR(along(untold, tenth).second, 0.01 * along(untold, evidence).second, 1e-10);
+  }
+  for (const SensorErrors& told : {gyro_turned, one_axis, late}) {
+    EXPECT_NEAR(along(told, tenth).first, along(told, evidence).first, 1e-12);
+    EXPECT_NEAR(along(told, tenth).second, along(told, evidence).second, 1e-10);
+  }
 }
 
 TEST(SensorErrors, WithoutReadingsTheyAreWhatIsAssumed) {

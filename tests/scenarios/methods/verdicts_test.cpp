@@ -1,10 +1,15 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <string>
+#include <utility>
+#include <vector>
 
 #include "scenarios/draw/scenario.hpp"
+#include "scenarios/methods/bridge.hpp"
+#include "scenarios/methods/imu_check.hpp"
 #include "scenarios/methods/method.hpp"
 #include "scenarios/sweep/evaluate.hpp"
 #include "tests/scenarios/methods/wrong_inputs.hpp"
@@ -166,6 +171,52 @@ TEST(Verdicts, RatesTellAWandWhoseGyroIsNamedOrScaledOtherwise) {
   EXPECT_FALSE(rates_of(draw, "none").implausible);
   EXPECT_TRUE(rates_of(draw, "gyro_z_flipped").implausible) << "about which it hardly turns";
   EXPECT_TRUE(rates_of(draw, "gyro_scale_5_percent").implausible);
+}
+
+// What turns an attitude is asked the same as what is reported as a rate.
+TEST(Verdicts, AttitudesTellAWandWhoseGyroIsNamedOtherwise) {
+  const DataRoot data{test::source_dir()};
+  const SimulatedDraw draw = simulate_draw(data, load_scenario(data, "twirl"), 81201, 1, Lidars::left_out);
+  const auto tells = [&](const char* method, const char* wrong) {
+    SimulatedDraw given = draw;
+    testing::wrong_inputs().at(wrong)(given.recording.sensors);
+    Outcome outcome;
+    const Estimate estimate = run_method(*find_methods(method).at(0), given, outcome);
+    return estimate.health.contains("imu_implausible");
+  };
+  EXPECT_FALSE(tells("attitude/tumble", "none"));
+  EXPECT_TRUE(tells("attitude/tumble", "gyro_z_flipped")) << "about which it hardly turns";
+  EXPECT_TRUE(tells("attitude/tumble_batch", "gyro_z_flipped"));
+}
+
+// A run is wrong by what it stated before it told of trouble, whatever it adds then.
+TEST(Verdicts, CovariancesBeforeADoubtComeBack) {
+  const DataRoot data{test::source_dir()};
+  SimulatedDraw draw = simulate_draw(data, load_scenario(data, "hill"), 62001, 1, Lidars::left_out);
+  const auto trace = [](const std::vector<RateState>& rates) {
+    double sum = 0.0;
+    for (const RateState& rate : rates) sum += rate.covariance_rad2_s2.trace();
+    return sum;
+  };
+  const auto of = [&](const std::string& wrong) {
+    SimulatedDraw given = draw;
+    testing::wrong_inputs().at(wrong)(given.recording.sensors);
+    Outcome outcome;
+    const Estimate estimate = run_method(*find_methods("rate/tumble").at(0), given, outcome);
+    std::vector<ImuSample> samples;
+    EXPECT_TRUE(bridge::primary_imu_samples(given.recording.sensors, samples).ok());
+    const std::vector<RateState> before = rates_before_doubt(given.recording.sensors, samples, estimate);
+    EXPECT_EQ(before.size(), estimate.rates.size());
+    double squares = 0.0, least = 1.0;
+    for (const RateState& rate : estimate.rates) squares += 3.0 * rate.w_WI_I_rad_s.squaredNorm();
+    for (const RateState& rate : before) least = std::min(least, rate.covariance_rad2_s2.diagonal().minCoeff());
+    EXPECT_GT(least, 0.0);
+    return std::pair((trace(estimate.rates) - trace(before)) / squares, estimate.health.contains("imu_rates_doubted"));
+  };
+  EXPECT_EQ(of("none"), std::pair(0.0, false));
+  const auto [share, doubted] = of("gyro_flipped");
+  EXPECT_NEAR(share, 1.0, 1e-9);
+  EXPECT_TRUE(doubted);
 }
 
 }  // namespace

@@ -72,6 +72,12 @@ struct SensorErrorEvidence {
   SensorErrors::Vector gradient = SensorErrors::Vector::Zero();
 };
 
+/// Leaves `share` of the evidence along what a motion that is as free as its model cannot tell: a scale that all axes
+/// of a gyro or of an accelerometer share, and a turn of both triads together. What stands there is the pull of the
+/// model's own residuals, which a motion that is scaled down makes smaller, and counts samples. rate_smoother.md
+/// (R37a).
+void discount_untold(double share, SensorErrorEvidence& evidence);
+
 /// The errors as the readings tell them and what is assumed beforehand allows.
 struct SensorErrorFit {
   KnownSensorErrors known;

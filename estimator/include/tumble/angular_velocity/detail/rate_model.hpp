@@ -76,6 +76,8 @@ class RateModel {
   Eigen::Matrix3d reported(const Eigen::Matrix3d& covariance_rad2_s2, const RateObservation& observation,
                            const RateEstimate& estimate) const;
   double gyro_sigma_rad_s() const { return gyro_sigma_rad_s_; }
+  /// Of what lasts `model_error_s`, what one sample may say; 1 for samples as long as that.
+  double said_once_share() const { return share_; }
 
  private:
   struct ForceFactor {

@@ -23,7 +23,7 @@ struct PivotCheckParams {
   double explains_m_s = 0.3;       ///< root mean square of a velocity below which a stretch is explained
   double noise_m_s = 0.03;         ///< nothing is explained better than so
   double evidence_least = 5.0;     ///< sum over the stretches of the logarithm of the ratio of squares, and
-  double evidence_of_each = 0.4;   ///< on the average of a stretch at least
+  double evidence_of_each = 0.6;   ///< on the average of a stretch at least
   double stretches_least = 6.0;    ///< that are explained better; each moment is in two
   double better_over_worse = 4.0;  ///< and so many for each that is explained worse
   double arm_most_m = 0.25;        ///< of a stretch that tells the scale
