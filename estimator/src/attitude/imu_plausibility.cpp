@@ -164,12 +164,14 @@ std::optional<AxisLabels> ImuPlausibility::other_labels(const State& state) cons
   return axis_labels()[static_cast<std::size_t>(least - state.unexplained_rad2.begin())];
 }
 
-/// Pushes take from the slope as well, and leave as much unexplained whatever it is; to turn it they would have to be
-/// more than gravity: imu_merge.md (I21).
+/// Pushes turn the force as well, and leave as much unexplained whatever the gyro's scale: imu_merge.md (I21).
 bool ImuPlausibility::explains_more(const State& state) const {
-  if (turning_slope(state) <= 0.0) return true;
-  const double left = state.by_force_rad2 * (1.0 - turning_agreement(state) * turning_agreement(state));
-  return left < params_.expert.naming.unexplained_share_max * state.unexplained_rad2.front();
+  const double slope = turning_slope(state), agreement = turning_agreement(state);
+  const double left = state.by_force_rad2 * (1.0 - agreement * agreement);
+  // they take from a slope easily, and turn it or add half of it hardly ever
+  const bool low = slope > 0.0 && slope < 1.0;
+  const double most = low ? params_.expert.naming.unexplained_share_max : params_.expert.turning.unexplained_share_max;
+  return left < most * state.unexplained_rad2.front();
 }
 
 Status ImuPlausibility::verdict(const State& state) const {
@@ -199,7 +201,7 @@ Status ImuPlausibility::verdict(const State& state) const {
   }
   const double slope = turning_slope(state);
   const double least = params_.expert.turning.slope_min, most = params_.expert.turning.slope_max;
-  if (slope > most || (slope < least && explains_more(state)))
+  if ((slope > most || slope < least) && explains_more(state))
     return {Trouble::out_of_range, "turning of gravity over that of the gyro", slope, slope < least ? least : most};
   return {};
 }

@@ -79,7 +79,8 @@ void RestGravity::end_stretch(State& state) const {
 /// imu_merge.md (I19).
 void RestGravity::arrive(State& state) const {
   end_stretch(state);
-  if (state.from_m_s2.isZero(0.0) || state.way_rad < params_.turned_least_rad) return;
+  if (state.from_m_s2.isZero(0.0) || state.way_rad < params_.turned_least_rad || state.way_s > params_.way_most_s)
+    return;
   const Eigen::Vector3d here_m_s2 = state.rest.mean_force_m_s2();
   const double miss_rad = (state.turned.conjugate() * state.from_m_s2.normalized() - here_m_s2.normalized()).norm();
   const double sigma_rad = std::sqrt(state.variance_rad2);

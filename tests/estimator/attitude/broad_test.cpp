@@ -15,6 +15,7 @@
 #include "scenarios/baselines/attitude/mahony.hpp"
 #include "stand_ins/broad_trial.hpp"
 #include "stand_ins/stand_ins.hpp"
+#include "tumble/attitude/imu_plausibility.hpp"
 #include "tumble/attitude/tumble_attitude.hpp"
 #include "tumble/attitude/vqf.hpp"
 #include "tumble/common/so3.hpp"
@@ -141,6 +142,30 @@ TEST_P(Broad, OtherFiltersStayWhereTheyAre) {
   EXPECT_NEAR(mahony.inclination_motion_deg, 2.48, 0.1);
   const BroadError eskf = run_trials("eskf", baselines::Eskf({}), trials()).back();
   EXPECT_NEAR(eskf.inclination_motion_deg, 0.72, 0.03);
+}
+
+/// Hands push a sensor that they turn about a point of theirs: with the turning (trials 07, 11) or against it (27).
+TEST_P(Broad, GoodSensorsAreNotDoubtedAndOtherScalesAndSensesAre) {
+  const auto verdict_of = [](const BroadTrial& trial, double gyro_scale) {
+    const ImuPlausibility plausibility({});
+    ImuPlausibility::State state;
+    for (ImuSample sample : trial.samples) {
+      sample.angular_velocity_rad_s *= gyro_scale;
+      plausibility.step(sample, state);
+    }
+    return plausibility.verdict(state);
+  };
+  std::size_t wrong = 0, told = 0;
+  for (std::size_t k = 0; k < trials().size(); ++k) {
+    const Status good = verdict_of(trials()[k], 1.0);
+    EXPECT_TRUE(good.ok()) << kTrials[k] << ": " << good.message();
+    for (const double scale : {-1.0, 0.5, 2.0}) {
+      ++wrong;
+      told += !verdict_of(trials()[k], scale).ok();
+    }
+  }
+  std::printf("%zu of %zu wrong gyros told\n", told, wrong);
+  EXPECT_GE(told, wrong / 3);
 }
 
 /// 0.02 per sample at these 285.7 Hz, as the anchors over the whole data set were made.

@@ -33,8 +33,9 @@ Eigen::Vector3d shaken_m_s2(double share_of_turn) {
 }
 
 // At rest, turning at a constant rate while it is shaken, and at rest again: R is known in closed form.
-RestGravity::State after(const Way& way, const Harm& harm, double scale_of_estimate = 1.0) {
-  const RestGravity gravity({});
+RestGravity::State after(const Way& way, const Harm& harm, double scale_of_estimate = 1.0,
+                         const RestGravity::Params& params = {}) {
+  const RestGravity gravity(params);
   RestGravity::State state;
   oracles::Gaussian noise(3);
   const Eigen::Vector3d up = Eigen::Vector3d(0.3, -0.2, 1.0).normalized();
@@ -70,6 +71,16 @@ TEST(RestGravity, RatesCarryGravityFromOneRestToTheNext) {
   EXPECT_LT(good.miss_rad, 0.04) << "a sample of the turn, at most";
   EXPECT_LT(good.velocity_share, 0.04);
   EXPECT_NEAR(gravity.size_share(good), 1.0, 1e-3);
+}
+
+// BROAD 16: three minutes in a hand, in which a bias of 3 mrad/s turns gravity by half a radian
+TEST(RestGravity, OfALongWayNothingIsSaid) {
+  const Harm halved = [](ImuSample& s) { s.angular_velocity_rad_s *= 0.5; };
+  EXPECT_FALSE(RestGravity({}).verdict(after({}, halved)).ok());
+  const RestGravity::Params brief = {.way_most_s = 2.5};
+  const RestGravity::State state = after({}, halved, 1.0, brief);
+  EXPECT_EQ(state.ways, 0u) << "three seconds from rest to rest";
+  EXPECT_TRUE(RestGravity(brief).verdict(state).ok());
 }
 
 TEST(RestGravity, AGyroOfAnotherSenseNamingOrScaleMisses) {

@@ -27,6 +27,8 @@ struct GravityTurningParams {
   double turn_least_rad = 0.15;  ///< of a window, to count as turning
   /// So many of them: in one or two a push may pass for gravity, or what a rig that spins in flight feels at its place.
   double turned_windows_min = 5.0;
+  /// Of what the gyro leaves unexplained, by one of the slope's scale, where that is not between 0 and 1.
+  double unexplained_share_max = 0.75;
   double still_share = 1e-6;  ///< of the gyro's turning; a spin in flight leaves 0.006 and less
 
   template <class Self, class Visitor>
@@ -38,6 +40,8 @@ struct GravityTurningParams {
     visit(p.turn_least_rad, {"turn_least_rad", "rad", 1e-12, 3.0, "of a window, to count as turning"});
     visit(p.turned_windows_min,
           {"turned_windows_min", "1", 1.0, 1e6, "windows in which the force turned, to say something of it"});
+    visit(p.unexplained_share_max, {"turning_unexplained_share_max", "1", 0.0, 1.0,
+                                    "of what the gyro leaves unexplained: one of such a scale or sense leaves less"});
     visit(p.still_share, {"still_share", "1", 0.0, 1.0, "of the gyro's turning, by which a force stands still"});
   }
 };

@@ -36,6 +36,7 @@ class RestGravity {
     double miss_most_rad = 0.6;     ///< at most: rates that may be off by more tell nothing of the way
     double correlation_s = 0.1;     ///< for which errors of a rate last at least
     double turned_least_rad = 1.0;  ///< of the way between two rests, to count
+    double way_most_s = 60.0;       ///< likewise: in so long a good gyro's bias turns by a part of `miss_most_rad`
     double gap_max_s = 1.0;         ///< a longer gap parts the rests
     double accel_range_m_s2 = 0.0;  ///< as the device states it; 0: not stated
 
@@ -52,6 +53,7 @@ class RestGravity {
       visit(p.miss_most_rad, {"miss_most_rad", "rad", 1e-3, 2.0, "and at most"});
       visit(p.correlation_s, {"correlation_s", "s", 1e-4, 1e3, "for which errors of a rate last"});
       visit(p.turned_least_rad, {"turned_least_rad", "rad", 0.0, 1e3, "of the way between two rests, to be compared"});
+      visit(p.way_most_s, {"way_most_s", "s", 0.1, 1e6, "between two rests, at most, to be compared"});
       visit(p.gap_max_s, {"gap_max_s", "s", 1e-6, 3600.0, "a longer time between two samples parts the rests"});
       visit(p.accel_range_m_s2,
             {"accel_range_m_s2", "m/s^2", 0.0, kUnbounded, "as the device states it; 0: not stated"});
