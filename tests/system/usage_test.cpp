@@ -136,7 +136,8 @@ INSTANTIATE_TEST_SUITE_P(
               "no file"},
         Wrong{"methods that do not apply",
               {"run", "roll", "--seed", "1", "--method", "slam/icp"},
-              "applies to the robot"},
+              "does not apply to the robot 'sphere'"},
+        Wrong{"a map without a lidar", {"run", "twirl", "--seed", "1", "--method", "slam/icp"}, "needs a lidar"},
         Wrong{"output that is a device", {"record", "roll", "--seed", "1", "-o", "/dev/null"}, "no regular file"},
         Wrong{"render without seed", {"render", "hill", "-o", "x.png"}, "--seed"}));
 
