@@ -43,11 +43,14 @@ RateState joined_rate(const RateState& rate, const RateState& carried, double sh
 // That of the rates themselves about sample k, over kTurn_s where there are so many. RateStream's own is bent by the
 // very force that is to be judged, also where the gyro reads all of the rate: carried.md (C33)
 Eigen::Vector3d angular_acceleration(std::span<const RateStream::Knot> window, std::size_t k) {
-  const auto at_s = [&](std::size_t i) { return seconds(window[i].observation.sample.time_ns); };
+  // differences of whole nanoseconds: in seconds since the clock's start they would hang on when that was
+  const auto between_s = [&](std::size_t from, std::size_t to) {
+    return seconds(window[to].observation.sample.time_ns - window[from].observation.sample.time_ns);
+  };
   std::size_t a = k, b = k;
-  while (b + 1 < window.size() && at_s(b) - at_s(k) < kTurn_s) ++b;
-  while (a > 0 && at_s(k) - at_s(a) < kTurn_s) --a;
-  const double dt_s = at_s(b) - at_s(a);
+  while (b + 1 < window.size() && between_s(k, b) < kTurn_s) ++b;
+  while (a > 0 && between_s(a, k) < kTurn_s) --a;
+  const double dt_s = between_s(a, b);
   if (!(dt_s > 0.0)) return Eigen::Vector3d::Zero();
   return (window[b].estimate.knot.rate_rad_s - window[a].estimate.knot.rate_rad_s) / dt_s;
 }

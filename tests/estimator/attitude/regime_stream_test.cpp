@@ -126,6 +126,22 @@ TEST(RegimeStream, AHandIsKnownAndBelieved) {
   }
 }
 
+/// Samples lie as far apart as the time over which rates are differentiated is long: seconds since the clock's start
+/// are rounded otherwise at every start.
+TEST(RegimeStream, WhenTheClockStartedIsNothingToTheRates) {
+  std::vector<ImuSample> samples = SlowlyBegun().record(100.0, 10.0, 7.3).samples;
+  const Joined at_zero = joined(samples, at_its_hand());
+  constexpr TimeNs kLater_ns = 1'000'000'000'000;
+  for (ImuSample& sample : samples) sample.time_ns += kLater_ns;
+  const Joined later = joined(samples, at_its_hand());
+  ASSERT_EQ(later.rates.size(), at_zero.rates.size());
+  for (std::size_t k = 0; k < later.rates.size(); ++k) {
+    ASSERT_EQ(later.rates[k].time_ns, at_zero.rates[k].time_ns + kLater_ns);
+    ASSERT_EQ(later.rates[k].w_WI_I_rad_s, at_zero.rates[k].w_WI_I_rad_s) << k;
+    ASSERT_EQ(later.rates[k].covariance_rad2_s2, at_zero.rates[k].covariance_rad2_s2) << k;
+  }
+}
+
 /// The rig says that the IMU is 10 cm from the centre of mass: the lever arm's force could pass for gravity, if the
 /// angular acceleration were free to follow the force. The gyro reads it between the spins, and so the hand is known.
 TEST(RegimeStream, AHandIsKnownByAnImuFarFromTheCentreOfMass) {
