@@ -57,7 +57,10 @@ bool parse(int count, char** words, Request& request) {
       const std::string change = words[++i];
       const std::size_t equals = change.find('=');
       if (equals == std::string::npos) return false;
-      request.changes.emplace_back(change.substr(0, equals), std::strtod(change.c_str() + equals + 1, nullptr));
+      char* end = nullptr;
+      const double value = std::strtod(change.c_str() + equals + 1, &end);
+      if (end == change.c_str() + equals + 1 || *end != '\0') return false;
+      request.changes.emplace_back(change.substr(0, equals), value);
     } else {
       plain.push_back(word);
     }

@@ -33,7 +33,6 @@ struct Options {
 std::string reason(const Status& status) {
   const std::string field = status.field;
   if (status.trouble == Trouble::empty && field == "imus") return "it needs an IMU, and the recording has none";
-  if (status.trouble == Trouble::empty && field == "lidars") return "it needs a lidar, and the recording has none";
   return status.message();
 }
 
