@@ -61,8 +61,9 @@ MethodSummary of_kept(const Seeds& kept, const MethodSummary& method) {
                     of_kept(kept, method.seeds),
                     of_kept(kept, method.not_ok_seeds),
                     {}};
-  for (const auto& [name, metric] : method.metrics) {
-    MetricSummary& own = out.metrics[name];
+  for (const auto& entry : method.metrics) {
+    const MetricSummary& metric = entry.second;  // by name: Clang 14 captures no binding
+    MetricSummary& own = out.metrics[entry.first];
     own.centre = metric.centre;
     own.quantile_95 = metric.quantile_95;
     own.wins = metric.wins;

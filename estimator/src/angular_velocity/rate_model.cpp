@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "../common/dense.hpp"
 #include "tumble/angular_velocity/rate_model_params.hpp"
 #include "tumble/common/status.hpp"
 
@@ -143,11 +144,11 @@ RateModel::RateModel(const RateModelParams& params, double period_s) : params_(p
   exact_ = params.errors == SensorErrors{};
   prior_constants_ = params.calibration ? params.calibration->constants : params.nominal;
   prior_covariance_ = covariance_of(params);
-  const Eigen::LLT<RigConstants::Matrix> factor(prior_covariance_);
-  if (factor.info() != Eigen::Success || !prior_covariance_.allFinite()) {
+  const dense::Cholesky factor(prior_covariance_);
+  if (!factor.ok() || !prior_covariance_.allFinite()) {
     throw InvalidParams("calibration covariance", prior_covariance_.trace(), "positive definite");
   }
-  prior_information_ = factor.solve(RigConstants::Matrix::Identity());
+  prior_information_ = factor.inverse<RigConstants::Matrix>();
 }
 
 void RateModel::weigh(const RateObservation& observation, const RigConstants& rig,

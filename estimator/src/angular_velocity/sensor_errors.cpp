@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "tumble/angular_velocity/sensor_errors.hpp"
 
-#include <Eigen/Cholesky>
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <vector>
+
+#include "../common/dense.hpp"
 
 namespace tumble {
 
@@ -73,15 +73,16 @@ Hypothesis posterior(const Matrix& information, const Matrix& learnt, const Vect
   const Vector scaled_h = deviation.cwiseProduct(h);
   Hypothesis out;
   const Matrix sharp = Matrix::Identity() + scaled;
-  const Eigen::LLT<Matrix> all(sharp), believed(Matrix::Identity() + scaled_believed);
-  double log_determinant = 0.0;
-  for (int i = 0; i < SensorErrors::kSize; ++i) log_determinant += std::log(all.matrixLLT()(i, i));
-  out.log_odds = log_prior + 0.5 * scaled_h.dot(all.solve(scaled_h)) - log_determinant;
+  const dense::Cholesky all(sharp), believed(Matrix::Identity() + scaled_believed);
+  Vector sharpened = scaled_h;
+  all.solve_vector(sharpened);
+  out.log_odds = log_prior + 0.5 * scaled_h.dot(sharpened) - all.half_log_determinant();
   // scale and misalignment stay what they are held for: what the model of flight misses looks like them
   Vector mean = Vector::Zero();
-  mean.tail<kRest>() = sharp.bottomRightCorner<kRest, kRest>().llt().solve(scaled_h.tail<kRest>());
+  mean.tail<kRest>() = scaled_h.tail<kRest>();
+  dense::Cholesky(sharp.bottomRightCorner<kRest, kRest>()).solve_vector(mean.tail<kRest>());
   out.mean = deviation.cwiseProduct(mean);
-  out.covariance = deviation.asDiagonal() * believed.solve(Matrix::Identity()) * deviation.asDiagonal();
+  out.covariance = deviation.asDiagonal() * believed.inverse<Matrix>() * deviation.asDiagonal();
   return out;
 }
 
@@ -89,9 +90,10 @@ Hypothesis posterior(const Matrix& information, const Matrix& learnt, const Vect
 Matrix evidence_of(const Matrix& information, const SensorErrorSizes& sizes) {
   const Vector unit = deviations(sizes, {});
   const Matrix scaled = unit.asDiagonal() * (0.5 * (information + information.transpose())) * unit.asDiagonal();
-  const Eigen::SelfAdjointEigenSolver<Matrix> parts(scaled);
-  const Matrix positive =
-      parts.eigenvectors() * parts.eigenvalues().cwiseMax(0.0).asDiagonal() * parts.eigenvectors().transpose();
+  Vector values;
+  Matrix vectors;
+  dense::decompose(scaled, values, vectors);
+  const Matrix positive = vectors * values.cwiseMax(0.0).asDiagonal() * vectors.transpose();
   return unit.cwiseInverse().asDiagonal() * positive * unit.cwiseInverse().asDiagonal();
 }
 
@@ -183,12 +185,14 @@ SensorErrorEvidence learnt_evidence(const KnownSensorErrors& learnt, const Senso
   const Vector unit = deviations(sizes, {});
   const Matrix symmetric = 0.5 * (learnt.covariance + learnt.covariance.transpose());
   const Matrix scaled = unit.cwiseInverse().asDiagonal() * symmetric * unit.cwiseInverse().asDiagonal();
-  const Eigen::SelfAdjointEigenSolver<Matrix> parts(scaled);
+  Vector values;
+  Matrix vectors;
+  dense::decompose(scaled, values, vectors);
   // a direction that is as open as it was before tells nothing
-  const Vector told = parts.eigenvalues().cwiseMax(1e-12).cwiseInverse();
+  const Vector told = values.cwiseMax(1e-12).cwiseInverse();
   const Vector of_mean = (told.array() > 1.0).select(told, Vector::Zero());
-  const auto in_units = [&](const Vector& values) -> Matrix {
-    const Matrix kept = parts.eigenvectors() * values.asDiagonal() * parts.eigenvectors().transpose();
+  const auto in_units = [&](const Vector& kept_values) -> Matrix {
+    const Matrix kept = vectors * kept_values.asDiagonal() * vectors.transpose();
     return unit.cwiseInverse().asDiagonal() * kept * unit.cwiseInverse().asDiagonal();
   };
   SensorErrorEvidence out;

@@ -4,6 +4,7 @@
 #include <Eigen/Cholesky>
 #include <utility>
 
+#include "../common/dense.hpp"
 #include "belief.hpp"
 
 namespace tumble::mapping {
@@ -29,8 +30,9 @@ void LagWindow::smooth() {
   for (std::size_t k = sweeps_.size() - 1; k-- > 0;) {
     WindowSweep& sweep = sweeps_[k];
     const WindowSweep& next = sweeps_[k + 1];
-    const Registration::Matrix gain =
-        invertible(next.predicted.errors).ldlt().solve(next.by_before * sweep.filtered.errors).transpose();
+    Registration::Matrix solved = next.by_before * sweep.filtered.errors;
+    dense::solve_semidefinite(invertible(next.predicted.errors), solved);
+    const Registration::Matrix gain = solved.transpose();
     sweep.smoothed.mean = sweep.filtered.mean;
     sweep.smoothed.mean.add(gain * next.smoothed.mean.minus(next.predicted.mean));
     const Registration::Matrix P =

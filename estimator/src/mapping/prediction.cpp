@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "../common/dense.hpp"
 #include "inertial_prior.hpp"
 #include "tumble/common/so3.hpp"
 #include "unknowns.hpp"
@@ -151,7 +152,8 @@ Belief posterior(const Prediction& prediction) {
 /// equations: mapping.md (R41).
 Belief posterior(const Prediction& prediction, const Registration::Result& aligned) {
   // what is no information corrects nothing
-  Registration::Matrix kept = invertible(prediction.prior.covariance).ldlt().solve(Registration::Matrix::Identity());
+  Registration::Matrix kept = Registration::Matrix::Identity();
+  dense::solve_semidefinite(invertible(prediction.prior.covariance), kept);
   kept += aligned.errors_in_variables_information;
   const Registration::Matrix from_prior = aligned.covariance * kept;
   const Registration::Matrix sum = from_prior * prediction.errors * from_prior.transpose() +

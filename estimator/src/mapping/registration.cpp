@@ -2,11 +2,11 @@
 #include "tumble/mapping/registration.hpp"
 
 #include <Eigen/Cholesky>
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <array>
 #include <cmath>
 
+#include "../common/dense.hpp"
 #include "registration_sums.hpp"
 #include "tumble/common/so3.hpp"
 #include "unknowns.hpp"
@@ -21,7 +21,7 @@ using Matrix = Registration::Matrix;
 Matrix information_of(const Matrix& covariance) {
   Matrix positive = covariance;
   positive.diagonal().array() += mapping::unknowns::kLeastVariance;
-  return positive.llt().solve(Matrix::Identity());
+  return dense::Cholesky(positive).inverse<Matrix>();
 }
 
 /// Pulls the estimate towards the prior: adds its information and gradient to normal equations over all unknowns, those
@@ -79,81 +79,120 @@ Registration::Registration(const Params& params) : params_(params) {
   require_within("plane_neighbours_min", params.expert.plane.neighbours_min, 3, params.neighbours);
 }
 
+/// What stays the same from iteration to iteration.
+struct Registration::Problem {
+  const Prior& prior;
+  std::span<const MotionSample> samples;
+  TimeNs end_ns;
+  std::span<const SweepPoint> points;  ///< placed by the prior's calibration
+  const VoxelMap& map;
+  Unknowns unknowns{prior.covariance};
+  Matrix information = information_of(prior.covariance);
+  std::size_t matches_needed = 0;
+
+  /// The trajectory of an estimate.
+  Status build(const Estimate& of, SweepTrajectory& trajectory) const {
+    return trajectory.build(of.state, samples, end_ns, of.calibration.gravity_W_m_s2, of.excess_rad_s);
+  }
+};
+
+/// What an iteration hands to the next.
+struct Registration::Descent {
+  Estimate now;
+  std::span<const SweepPoint> points;  ///< placed by its calibration
+  Sums sum;                            ///< over the matches
+  Matrix H = Matrix::Zero();           ///< normal matrix, the prior's included
+  double kernel_m = 0.0;
+  bool converged = false;
+  RegistrationVerdict verdict = RegistrationVerdict::converged;  ///< any other ends it
+};
+
 Status Registration::align(const Prior& prior, std::span<const MotionSample> samples, TimeNs end_ns,
-                           std::span<const SweepPoint> given, const VoxelMap& map, SweepTrajectory& trajectory,
+                           std::span<const SweepPoint> points, const VoxelMap& map, SweepTrajectory& trajectory,
                            Result& result) {
-  const Unknowns unknowns(prior.covariance);
-  const Matrix information = information_of(prior.covariance);
+  Problem problem{prior, samples, end_ns, points, map};
+  problem.matches_needed = std::max(params_.matches_min, static_cast<std::size_t>(params_.expert.matched_share_min *
+                                                                                  static_cast<double>(points.size())));
   result = Result{};
   result.mean = prior.mean;
   result.covariance = prior.covariance;
-  result.points = given.size();
-  Estimate now = prior.mean;
-  now.excess_rad_s = prior.excess_start_rad_s;
-  if (prior.start) now.state = *prior.start;
-  const auto build = [&](const Estimate& from) {
-    return trajectory.build(from.state, samples, end_ns, from.calibration.gravity_W_m_s2, from.excess_rad_s);
-  };
-  if (Status status = build(now); !status.ok()) return status;
+  result.points = points.size();
+  Descent at{.now = prior.mean, .points = points, .sum = {}, .kernel_m = params_.expert.kernel_min_m};
+  at.now.excess_rad_s = prior.excess_start_rad_s;
+  if (prior.start) at.now.state = *prior.start;
+  if (Status status = problem.build(at.now, trajectory); !status.ok()) return status;
 
-  std::span<const SweepPoint> points = given;
   matches_.assign(points.size(), Match{});
-  const std::size_t matches_needed =
-      std::max(params_.matches_min,
-               static_cast<std::size_t>(params_.expert.matched_share_min * static_cast<double>(points.size())));
-  Sums sum;
-  Matrix H = Matrix::Zero();
-  double kernel_m = params_.expert.kernel_min_m;
-  const auto refuse = [&](RegistrationVerdict verdict) {
-    result.verdict = result.matches < matches_needed ? RegistrationVerdict::too_few : verdict;
-    return build(prior.mean);
-  };
-  bool converged = false;
-  while (!converged && result.iterations < params_.iterations_max) {
+  while (at.verdict == RegistrationVerdict::converged && !at.converged && result.iterations < params_.iterations_max) {
     ++result.iterations;
-    if (unknowns.calibration && result.iterations > 1) {
-      apply_calibration(now.calibration, now.calibration.time_offset_s - prior.mean.calibration.time_offset_s, given,
-                        moved_);
-      points = moved_;
-    }
-    place(trajectory, points, map);
-    kernel_m = kernel_width_m();
-    accumulate(points, trajectory, now.calibration, unknowns, kernel_m, sum);
-    result.matches = sum.matches;
-    result.inliers = sum.inliers;
-    if (sum.matches < std::min(matches_needed, params_.expert.agreeing_min))
-      return refuse(RegistrationVerdict::too_few);
-
-    Vector g;
-    unknowns.expand(sum, H, g);
-    add_prior(prior, information, now, H, g);
-    unknowns.hold(H, g);
-    const Vector step = -H.ldlt().solve(g);  // mapping.md (R21)
-    if (!step.allFinite()) return refuse(RegistrationVerdict::diverged);
-    now.add(step);
-    if (Status status = build(now); !status.ok()) return status;
-    converged = is_small(step, trajectory.duration_s(), params_);
-    result.correction_m = (now.state.p_WI_m - prior.mean.state.p_WI_m).norm();
-    result.correction_rad = so3::log(now.state.q_WI * prior.mean.state.q_WI.conjugate()).norm();
-    if (result.correction_m > params_.correction_max_m || result.correction_rad > params_.correction_max_rad) {
-      return refuse(RegistrationVerdict::diverged);
-    }
+    if (Status status = iterate(problem, at, trajectory, result); !status.ok()) return status;
   }
+  if (at.verdict == RegistrationVerdict::converged) at.verdict = judge(problem, at);
+  if (at.verdict == RegistrationVerdict::converged) return conclude(problem, at, trajectory, result);
+  result.verdict = result.matches < problem.matches_needed ? RegistrationVerdict::too_few : at.verdict;
+  return problem.build(prior.mean, trajectory);
+}
+
+/// One step of Gauss-Newton.
+Status Registration::iterate(const Problem& problem, Descent& at, SweepTrajectory& trajectory, Result& result) {
+  const Estimate& mean = problem.prior.mean;
+  if (problem.unknowns.calibration && result.iterations > 1) {
+    apply_calibration(at.now.calibration, at.now.calibration.time_offset_s - mean.calibration.time_offset_s,
+                      problem.points, moved_);
+    at.points = moved_;
+  }
+  place(trajectory, at.points, problem.map);
+  at.kernel_m = kernel_width_m();
+  accumulate(at.points, trajectory, at.now.calibration, problem.unknowns, at.kernel_m, at.sum);
+  result.matches = at.sum.matches;
+  result.inliers = at.sum.inliers;
+  if (at.sum.matches < std::min(problem.matches_needed, params_.expert.agreeing_min)) {
+    at.verdict = RegistrationVerdict::too_few;
+    return {};
+  }
+
+  Vector g;
+  problem.unknowns.expand(at.sum, at.H, g);
+  add_prior(problem.prior, problem.information, at.now, at.H, g);
+  problem.unknowns.hold(at.H, g);
+  dense::solve_semidefinite_vector(at.H, g);
+  const Vector step = -g;  // mapping.md (R21)
+  if (!step.allFinite()) {
+    at.verdict = RegistrationVerdict::diverged;
+    return {};
+  }
+  at.now.add(step);
+  if (Status status = problem.build(at.now, trajectory); !status.ok()) return status;
+  at.converged = is_small(step, trajectory.duration_s(), params_);
+  result.correction_m = (at.now.state.p_WI_m - mean.state.p_WI_m).norm();
+  result.correction_rad = so3::log(at.now.state.q_WI * mean.state.q_WI.conjugate()).norm();
+  if (result.correction_m > params_.correction_max_m || result.correction_rad > params_.correction_max_rad)
+    at.verdict = RegistrationVerdict::diverged;
+  return {};
+}
+
+/// Whether the end of a descent is believed.
+RegistrationVerdict Registration::judge(const Problem& problem, const Descent& at) const {
   // a false minimum: most matches lie off their planes
   const bool fits =
-      static_cast<double>(sum.inliers) >= params_.expert.fitting_share_min * static_cast<double>(sum.matches);
-  if (!converged || !fits) return refuse(RegistrationVerdict::diverged);
-  if (sum.matches < matches_needed && !agrees(prior, now)) return refuse(RegistrationVerdict::too_few);
+      static_cast<double>(at.sum.inliers) >= params_.expert.fitting_share_min * static_cast<double>(at.sum.matches);
+  if (!at.converged || !fits) return RegistrationVerdict::diverged;
+  if (at.sum.matches < problem.matches_needed && !agrees(problem.prior, at.now)) return RegistrationVerdict::too_few;
+  return RegistrationVerdict::converged;
+}
 
-  const Matrix posterior = H.ldlt().solve(Matrix::Identity());  // mapping.md (R22)
+/// Mean, covariance and what the matches tell about both, of a descent that is believed.
+Status Registration::conclude(const Problem& problem, const Descent& at, SweepTrajectory& trajectory, Result& result) {
+  Matrix posterior = Matrix::Identity();  // mapping.md (R22)
+  dense::solve_semidefinite(at.H, posterior);
   result.covariance = 0.5 * (posterior + posterior.transpose());
-  unknowns.clear_held(result.covariance);
-  result.mean = now;
+  problem.unknowns.clear_held(result.covariance);
+  result.mean = at.now;
   result.mean.state.covariance = result.covariance.topLeftCorner<kMotion, kMotion>();
-  result.verdict = RegistrationVerdict::converged;
-  if (Status status = build(result.mean); !status.ok()) return status;
-  describe_errors(points, trajectory, now.calibration, unknowns, kernel_m, result);
-  describe_shape(points, kernel_m, sum, result);
+  result.verdict = at.verdict;
+  if (Status status = problem.build(result.mean, trajectory); !status.ok()) return status;
+  describe_errors(at.points, trajectory, at.now.calibration, problem.unknowns, at.kernel_m, result);
+  describe_shape(at.points, at.kernel_m, at.sum, result);
   return {};
 }
 
@@ -175,16 +214,14 @@ void Registration::describe_shape(std::span<const SweepPoint> points, double ker
   const double lever_m = std::sqrt(std::max(lever2 / weight, 1e-12));
   Eigen::Matrix<double, 6, 1> scale;
   scale << 1.0, 1.0, 1.0, 1.0 / lever_m, 1.0 / lever_m, 1.0 / lever_m;
-  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix<double, 6, 6>> solver(scale.asDiagonal() * shape *
-                                                                          scale.asDiagonal() / weight);
-  result.eigenvalues = solver.eigenvalues().cwiseMax(0.0);
-  result.directions = solver.eigenvectors();
-  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix<double, 6, 6>> information(
-      scale.asDiagonal() *
-          (sum.H.topLeftCorner<6, 6>() - result.errors_in_variables_information.topLeftCorner<6, 6>()) *
-          scale.asDiagonal(),
-      Eigen::EigenvaluesOnly);
-  result.weakest_sigma_m = 1.0 / std::sqrt(std::max(information.eigenvalues()[0], 1e-12));
+  dense::decompose(scale.asDiagonal() * shape * scale.asDiagonal() / weight, result.eigenvalues, result.directions);
+  result.eigenvalues = result.eigenvalues.cwiseMax(0.0).eval();
+  Eigen::Matrix<double, 6, 1> information;
+  dense::eigenvalues(scale.asDiagonal() *
+                         (sum.H.topLeftCorner<6, 6>() - result.errors_in_variables_information.topLeftCorner<6, 6>()) *
+                         scale.asDiagonal(),
+                     information);
+  result.weakest_sigma_m = 1.0 / std::sqrt(std::max(information[0], 1e-12));
 }
 
 }  // namespace tumble

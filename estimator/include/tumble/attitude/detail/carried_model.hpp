@@ -122,4 +122,6 @@ class Motion {
 Eigen::Vector3d turned(const Node& from, const Node& to, double step_s);
 
 }  // namespace carried
+
+extern template class ArrowSystem<carried::kState, carried::kBorder>;  // carried_arrow.cpp
 }  // namespace tumble
