@@ -16,7 +16,7 @@ void set_lane(const Pose34& pose, int lane, double (*to)[kLanes]) {
 }
 
 /// One world coordinate of all lanes: `row` of the rotation and the position's coordinate of that row.
-void aim_coordinate(const double (*pose)[kLanes], const double (*rate)[kLanes], int row, double after_s,
+[[gnu::target("avx2")]] void aim_coordinate(const double (*pose)[kLanes], const double (*rate)[kLanes], int row, double after_s,
                     const ChannelFirings& firings, float* origin, float* direction) {
   const double *ax = pose[3 * row], *ay = pose[3 * row + 1], *az = pose[3 * row + 2], *ap = pose[9 + row];
   const double *bx = rate[3 * row], *by = rate[3 * row + 1], *bz = rate[3 * row + 2], *bp = rate[9 + row];
@@ -81,7 +81,7 @@ void BlockPoses::aim_slowly(const ChannelFirings& firings, int broken, int chann
   rays.direction_z[s] = static_cast<float>(direction.z());
 }
 
-void aim_in_lidar_axes(const ChannelFirings& firings, RayPacket& rays) {
+[[gnu::target("avx2")]] void aim_in_lidar_axes(const ChannelFirings& firings, RayPacket& rays) {
   for (int s = 0; s < kLanes; ++s) {
     rays.origin_x[s] = static_cast<float>(firings.origin_x_m[s]);
     rays.origin_y[s] = static_cast<float>(firings.origin_y_m[s]);
