@@ -22,8 +22,9 @@ struct LocalRays {
     // in the order in which Eigen adds up
     const double x = shape.R_FS(0, axis), y = shape.R_FS(1, axis), z = shape.R_FS(2, axis);
     for (int i = 0; i < kShapeLanes; ++i) {
-      local.origin[axis][i] = x * (rays[0][i] - px) + y * (rays[1][i] - py) + z * (rays[2][i] - pz);
-      local.direction[axis][i] = x * rays[3][i] + y * rays[4][i] + z * rays[5][i];
+      local.origin[axis][i] =
+          x * (rays.origin_x_m[i] - px) + y * (rays.origin_y_m[i] - py) + z * (rays.origin_z_m[i] - pz);
+      local.direction[axis][i] = x * rays.direction_x[i] + y * rays.direction_y[i] + z * rays.direction_z[i];
     }
   }
 }
@@ -44,7 +45,8 @@ struct LocalRays {
   }
 }
 
-/// Slabs (T. L. Kay, J. T. Kajiya, SIGGRAPH 1986): the last side that is entered, or from inside the first that is left.
+/// Slabs (T. L. Kay, J. T. Kajiya, SIGGRAPH 1986): the last side that is entered, or from inside the first that is
+/// left.
 [[gnu::target("avx2")]] void cast_on_box(const Shape& shape, const LocalRays& rays, ShapeHits& hits) {
   // axes are numbers of the lanes' own width, so that a compiler selects them by the same masks
   alignas(64) double enter[kShapeLanes], enter_axis[kShapeLanes], enter_sign[kShapeLanes];
@@ -89,9 +91,11 @@ struct LocalRays {
   }
 }
 
-void cast_one_by_one(const Shape& shape, const ShapeRays& rays, ShapeHits& hits) {
+void cast_one_by_one(const Shape& shape, const ShapeRays& rays, const int* wanted, ShapeHits& hits) {
   for (int i = 0; i < kShapeLanes; ++i) {
-    const Vector3d origin(rays[0][i], rays[1][i], rays[2][i]), direction(rays[3][i], rays[4][i], rays[5][i]);
+    if (wanted[i] == 0) continue;
+    const Vector3d origin(rays.origin_x_m[i], rays.origin_y_m[i], rays.origin_z_m[i]);
+    const Vector3d direction(rays.direction_x[i], rays.direction_y[i], rays.direction_z[i]);
     Vector3d normal = Vector3d::Zero();
     hits.range_m[i] = cast_ray(shape, origin, direction, normal);
     hits.normal_x[i] = normal.x();
@@ -102,9 +106,9 @@ void cast_one_by_one(const Shape& shape, const ShapeRays& rays, ShapeHits& hits)
 
 }  // namespace
 
-void cast_rays(const Shape& shape, const ShapeRays& rays, ShapeHits& hits) {
+void cast_rays(const Shape& shape, const ShapeRays& rays, const int* wanted, ShapeHits& hits) {
   if (shape.kind != ShapeKind::plane && shape.kind != ShapeKind::box) {
-    cast_one_by_one(shape, rays, hits);
+    cast_one_by_one(shape, rays, wanted, hits);
     return;
   }
   LocalRays local;

@@ -16,11 +16,14 @@ struct ShapeHits {
   alignas(64) double normal_x[kShapeLanes], normal_y[kShapeLanes], normal_z[kShapeLanes];
 };
 
-/// Eight rays in F, a coordinate at a time: `ray[0]` to `ray[2]` are the origins [m], `ray[3]` to `ray[5]` the unit
-/// directions.
-using ShapeRays = float[6][kShapeLanes];
+/// Eight rays in F, a coordinate at a time.
+struct ShapeRays {
+  const float *origin_x_m, *origin_y_m, *origin_z_m;
+  const float *direction_x, *direction_y, *direction_z;  ///< unit
+};
 
-/// cast_ray() of eight rays, to the last bit. Planes and boxes, of which rooms are made, are met by all at once.
-void cast_rays(const Shape& shape, const ShapeRays& rays, ShapeHits& hits);
+/// cast_ray() of eight rays, to the last bit. Planes and boxes, of which rooms are made, are met by all at once. Hits
+/// of rays that are not `wanted` (0) have no meaning.
+void cast_rays(const Shape& shape, const ShapeRays& rays, const int* wanted, ShapeHits& hits);
 
 }  // namespace tumble::sim
