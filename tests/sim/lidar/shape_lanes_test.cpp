@@ -6,6 +6,7 @@
 #include <Eigen/Geometry>
 #include <array>
 #include <cmath>
+#include <string>
 
 #include "sim/random/stream.hpp"
 
