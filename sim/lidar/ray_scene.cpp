@@ -10,6 +10,7 @@
 #include <stdexcept>
 #include <vector>
 
+#include "sim/lidar/nearest_hits.hpp"
 #include "sim/lidar/shape_lanes.hpp"
 #include "sim/lidar/triangle.hpp"
 
@@ -35,7 +36,7 @@ constexpr const char* kDevice =
     // not "threads=1", which would limit oneTBB in the whole process for as long as the device lives
     "start_threads=0,set_affinity=0,isa=avx2,frequency_level=simd256,ignore_config_files=1";
 constexpr int kKernelLanes = 8;
-static_assert(kKernelLanes == kShapeLanes);
+static_assert(kKernelLanes == kShapeLanes && NearestHits::kNone == RTC_INVALID_GEOMETRY_ID);
 /// Embree divides by way of an approximate reciprocal that vendors are free to choose. Its ranges only decide what is
 /// looked at: whatever they put within this share of the nearest hit is looked at too.
 constexpr float kReach = 1.0f + 4e-6f;
@@ -52,36 +53,11 @@ struct MeshLabel {
   }
 };
 
-/// The nearest hit of each lane so far, in our own arithmetic.
-struct Nearest {
-  alignas(64) double range_m[kLanes];
-  alignas(64) double normal_x[kLanes], normal_y[kLanes], normal_z[kLanes];  ///< of any length
-  std::array<unsigned int, kLanes> geometry, primitive;                     ///< geometry: none where nothing was hit
-
-  /// Of hits at the same range the first by number is taken, in whatever order they come.
-  bool replaced_at(unsigned int lane, double by_range_m, unsigned int by_geometry, unsigned int by_primitive) const {
-    if (!(by_range_m > 0.0) || by_range_m > range_m[lane]) return false;
-    return by_range_m < range_m[lane] ||
-           (geometry[lane] != RTC_INVALID_GEOMETRY_ID &&
-            (by_geometry < geometry[lane] || (by_geometry == geometry[lane] && by_primitive < primitive[lane])));
-  }
-  void set(unsigned int lane, double to_range_m, unsigned int to_geometry, unsigned int to_primitive) {
-    range_m[lane] = to_range_m;
-    geometry[lane] = to_geometry;
-    primitive[lane] = to_primitive;
-  }
-  void set_normal(unsigned int lane, double x, double y, double z) {
-    normal_x[lane] = x;
-    normal_y[lane] = y;
-    normal_z[lane] = z;
-  }
-};
-
 /// What the callbacks are given; Embree hands its first member on. A lane's place is in the ray's id.
 struct CastContext {
   RTCIntersectContext embree;
-  const std::vector<MeshLabel>* meshes = nullptr;
-  Nearest nearest;
+  const std::vector<MeshLabel>* meshes;
+  NearestHits nearest;
 };
 
 CastContext& cast_context(RTCIntersectContext* context) {
@@ -163,9 +139,8 @@ void keep_nearest(const RTCFilterFunctionNArguments* args) {
     const double range_m =
         meet_face((*cast.meshes)[geometry], face, ray_at(args->ray, args->N, i), second_half, normal);
     args->valid[i] = 0;
-    if (!cast.nearest.replaced_at(lane, range_m, geometry, face)) continue;
-    cast.nearest.set(lane, range_m, geometry, face);
-    cast.nearest.set_normal(lane, normal.x(), normal.y(), normal.z());
+    if (!cast.nearest.is_replaced(lane, range_m, geometry, face)) continue;
+    cast.nearest.replace(lane, range_m, normal.x(), normal.y(), normal.z(), geometry, face);
     RTCRayN_tfar(args->ray, args->N, i) = searched_to(range_m);
     args->valid[i] = -1;
   }
@@ -181,34 +156,13 @@ void intersect_shape(const RTCIntersectFunctionNArguments* args) {
   cast_rays(shape, {rays.org_x, rays.org_y, rays.org_z, rays.dir_x, rays.dir_y, rays.dir_z}, args->valid, hits);
   for (int i = 0; i < kShapeLanes; ++i) {
     const unsigned int lane = rays.id[i];
-    if (args->valid[i] == 0 || !cast.nearest.replaced_at(lane, hits.range_m[i], args->geomID, args->primID)) continue;
-    cast.nearest.set(lane, hits.range_m[i], args->geomID, args->primID);
-    cast.nearest.set_normal(lane, hits.normal_x[i], hits.normal_y[i], hits.normal_z[i]);
+    if (args->valid[i] == 0 || !cast.nearest.is_replaced(lane, hits.range_m[i], args->geomID, args->primID)) continue;
+    cast.nearest.replace(lane, hits.range_m[i], hits.normal_x[i], hits.normal_y[i], hits.normal_z[i], args->geomID,
+                         args->primID);
     rays.tfar[i] = searched_to(hits.range_m[i]);
     all.hit.geomID[i] = args->geomID;
     all.hit.primID[i] = args->primID;
     all.hit.instID[0][i] = RTC_INVALID_GEOMETRY_ID;
-  }
-}
-
-[[gnu::target("avx2")]] void begin(const RayPacket& packet, Nearest& nearest) {
-  for (int i = 0; i < kLanes; ++i) {
-    nearest.range_m[i] = packet.range[i];
-    nearest.normal_x[i] = nearest.normal_y[i] = nearest.normal_z[i] = 0.0;
-  }
-  nearest.geometry.fill(RTC_INVALID_GEOMETRY_ID);
-}
-
-/// Ranges and cosines of what was hit.
-[[gnu::target("avx2")]] void finish(const Nearest& nearest, RayPacket& packet) {
-  for (int i = 0; i < kLanes; ++i) {
-    const double x = nearest.normal_x[i], y = nearest.normal_y[i], z = nearest.normal_z[i];
-    // in the order in which Eigen adds up
-    const double along = x * packet.direction_x[i] + y * packet.direction_y[i] + z * packet.direction_z[i];
-    const double cosine = std::abs(along) / std::sqrt(x * x + y * y + z * z);
-    const bool hit = nearest.geometry[i] != RTC_INVALID_GEOMETRY_ID;
-    packet.range[i] = hit ? static_cast<float>(nearest.range_m[i]) : packet.range[i];
-    packet.cosine[i] = hit ? static_cast<float>(cosine < 1.0 ? cosine : 1.0) : packet.cosine[i];
   }
 }
 
@@ -348,19 +302,17 @@ void RayScene::Impl::cast_lanes(const RayPacket& packet, int first, CastContext&
 void RayScene::cast(RayPacket& packet) const {
   impl_->cast_planes(packet);
   if (impl_->bounded.empty() && impl_->meshes.empty()) return;
-  CastContext cast;
+  CastContext cast{{}, &impl_->meshes, NearestHits(packet)};
   rtcInitIntersectContext(&cast.embree);
   // a channel's rays look in almost the same direction
   cast.embree.flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
-  cast.meshes = &impl_->meshes;
-  begin(packet, cast.nearest);
   for (int first = 0; first < packet.count; first += kKernelLanes) impl_->cast_lanes(packet, first, cast);
-  finish(cast.nearest, packet);
+  cast.nearest.write(packet);
   for (int i = 0; i < packet.count; ++i) {
-    const unsigned int geometry = cast.nearest.geometry[static_cast<std::size_t>(i)];
-    if (geometry == RTC_INVALID_GEOMETRY_ID) continue;
+    const unsigned int geometry = cast.nearest.geometry(i);
+    if (geometry == NearestHits::kNone) continue;
     if (geometry == impl_->shape_geometry) {
-      const SceneShape& part = impl_->bounded[cast.nearest.primitive[static_cast<std::size_t>(i)]];
+      const SceneShape& part = impl_->bounded[cast.nearest.primitive(i)];
       packet.surface_id[i] = part.surface_id;
       packet.reflectivity[i] = part.reflectivity;
     } else {
