@@ -6,6 +6,7 @@
 #include <string_view>
 
 #include "sim/engine/field_contact.hpp"
+#include "sim/engine/near_geoms.hpp"
 #include "sim/robot/robot_type.hpp"
 #include "sim/simulate.hpp"
 #include "sim/world/world_type.hpp"
@@ -41,6 +42,51 @@ void install_handlers() {
   (void)kInstalled;
 }
 
+bool touches(const mjModel& model, int geom) {
+  return model.geom_contype[geom] != 0 || model.geom_conaffinity[geom] != 0;
+}
+
+/// Pairs of a geom that moves and one that does not.
+int count_pairs(const mjModel& model) {
+  int moving = 0, all = 0;
+  for (int i = 0; i < model.ngeom; ++i) {
+    all += touches(model, i);
+    moving += touches(model, i) && model.geom_bodyid[i] != 0;
+  }
+  return moving * (all - moving);
+}
+
+/// Whether contacts of a robot of one geom come in the same order out of the engine's tree as from asking each pair:
+/// the tree sorts by the pair's first geom, which is the one whose type comes first.
+bool sorts_as_asked(const mjModel& model) {
+  int robot = -1;
+  for (int i = 0; i < model.ngeom; ++i) {
+    if (model.geom_bodyid[i] == 0 || !touches(model, i)) continue;
+    if (robot >= 0) return false;
+    robot = i;
+  }
+  if (robot < 0) return false;
+  const auto comes_after = [&](int geom) { return model.geom_type[geom] > model.geom_type[robot]; };
+  bool after = false;
+  for (int i = 0; i < model.ngeom; ++i) {
+    if (model.geom_bodyid[i] != 0 || !touches(model, i)) continue;
+    if (after && !comes_after(i)) return false;
+    after = comes_after(i);
+  }
+  return true;
+}
+
+/// Whether nothing but gravity, contacts and the motion's wrench acts on what moves.
+bool moves_freely(const mjModel& model) {
+  const auto none = [](const mjtNum* numbers, int count) {
+    return std::all_of(numbers, numbers + count, [](mjtNum number) { return number == 0.0; });
+  };
+  return NearGeoms::serves(model) && model.ntendon == 0 && model.nu == 0 && model.neq == 0 && model.nplugin == 0 &&
+         model.ngravcomp == 0 && model.opt.density == 0.0 && model.opt.viscosity == 0.0 &&
+         none(model.jnt_stiffness, model.njnt) && none(model.dof_damping, model.nv) &&
+         none(model.dof_frictionloss, model.nv);
+}
+
 /// Leaves out what the engine would work out for nobody; no bit of a motion depends on any of it. Its sleeping is on
 /// for what comes with it: what cannot move is then placed once and not at every stage of a step. The robot never
 /// sleeps.
@@ -53,15 +99,14 @@ void spare_work(mjModel& model) {
     if (model.geom_type[i] == mjGEOM_HFIELD)
       std::fill(model.geom_aabb + 6 * i + 3, model.geom_aabb + 6 * i + 6, mjMAXVAL);
   }
-  const auto touching = [&](bool moves) {
-    int count = 0;
-    for (int i = 0; i < model.ngeom; ++i) {
-      count += (model.geom_bodyid[i] != 0) == moves && (model.geom_contype[i] != 0 || model.geom_conaffinity[i] != 0);
-    }
-    return count;
-  };
-  // a tree over the world's geoms costs more than it saves where there are few pairs
-  if (touching(true) * touching(false) <= kFewPairs) model.opt.disableflags |= mjDSBL_MIDPHASE;
+  // a tree over the world's geoms costs more than it saves where there are few pairs, unless it holds near ones alone
+  if (count_pairs(model) <= kFewPairs && !(NearGeoms::serves(model) && sorts_as_asked(model))) {
+    model.opt.disableflags |= mjDSBL_MIDPHASE;
+  }
+  if (moves_freely(model)) {
+    model.opt.disableflags |=
+        mjDSBL_SPRING | mjDSBL_DAMPER | mjDSBL_LIMIT | mjDSBL_FRICTIONLOSS | mjDSBL_EQUALITY | mjDSBL_ACTUATION;
+  }
 }
 
 SpecPtr parse(const std::filesystem::path& file) {

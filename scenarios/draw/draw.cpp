@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include <algorithm>
+
 #include "scenarios/draw/scenario.hpp"
 #include "scenarios/draw/scenario_text.hpp"
 #include "scenarios/errors.hpp"
@@ -13,6 +15,12 @@ Registry Registry::of_simulation() {
 sim::ResolvedSituation draw(const DataRoot& data, const Scenario& scenario, std::uint64_t seed) {
   std::vector<DataSheet> sheets;
   for (const Scenario::Sensor& sensor : scenario.sensors) {
+    const auto of_the_same = std::find_if(sheets.begin(), sheets.end(),
+                                          [&](const DataSheet& sheet) { return sheet.device == sensor.device; });
+    if (of_the_same != sheets.end()) {
+      sheets.push_back(DataSheet(*of_the_same));
+      continue;
+    }
     try {
       sheets.push_back(load_data_sheet(data, sensor.device));
     } catch (const BadInput& error) {

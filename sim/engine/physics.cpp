@@ -30,7 +30,10 @@ Eigen::Vector3d vector(const mjtNum* numbers) {
 }  // namespace
 
 Physics::Physics(World& world)
-    : world_(world), data_(mj_makeData(world.model.get())), surface_of_geom_(world.model->ngeom, -1) {
+    : world_(world),
+      near_geoms_(*world.model),
+      data_(mj_makeData(world.model.get())),
+      surface_of_geom_(world.model->ngeom, -1) {
   if (!data_) throw std::bad_alloc();
   if (!world.free) update_bodies(*world.model, *data_);
   for (std::size_t i = 0; i < world.surface_geom.size(); ++i)
@@ -73,6 +76,7 @@ void Physics::step(const Wrench& wrench) {
     data_->xfrc_applied[6 * world_.robot_body + i] = wrench.force_W_n[i];
     data_->xfrc_applied[6 * world_.robot_body + 3 + i] = wrench.torque_W_nm[i];
   }
+  if (world_.free) near_geoms_.around(vector(data_->qpos));
   mj_step(world_.model.get(), data_.get());
   if (!world_.free) update_bodies(*world_.model, *data_);
   check();

@@ -7,6 +7,7 @@
 
 #include "sim/body_state.hpp"
 #include "sim/engine/model.hpp"
+#include "sim/engine/near_geoms.hpp"
 #include "sim/recording.hpp"
 
 namespace tumble::sim::engine {
@@ -15,7 +16,8 @@ namespace tumble::sim::engine {
 /// warning of the engine ends it: a run that lost contacts or numbers is not evidence.
 class Physics {
  public:
-  /// Works on `world`'s model (the floor's friction changes with the place of the contact). `world` outlives it.
+  /// Works on `world`'s model (the floor's friction changes with the place of the contact, the tree over the world's
+  /// geoms with the robot's place, which ends with this). `world` outlives it.
   explicit Physics(World& world);
 
   double step_s() const { return world_.model->opt.timestep; }
@@ -43,6 +45,7 @@ class Physics {
   void check() const;
 
   World& world_;
+  NearGeoms near_geoms_;
   DataPtr data_;
   std::vector<int> surface_of_geom_;
   int floor_geom_ = -1;

@@ -29,6 +29,36 @@ double left_of(const Vector3d& edge_m, const Vector3d& beside_m) {
   return edge_m.x() * beside_m.y() - edge_m.y() * beside_m.x();
 }
 
+/// The box around the axis, in which what lies beyond the closest pair so far is told without working out where.
+class AxisBox {
+ public:
+  AxisBox(const Vector3d& a_m, const Vector3d& b_m)
+      : low_m_(a_m.cwiseMin(b_m) - Vector3d::Constant(kSlack_m)),
+        high_m_(a_m.cwiseMax(b_m) + Vector3d::Constant(kSlack_m)) {}
+
+  bool is_beyond(const Vector3d& from_m, const Vector3d& to_m, const Pair& closest) const {
+    const double x = apart_m(0, std::min(from_m.x(), to_m.x()), std::max(from_m.x(), to_m.x()));
+    const double y = apart_m(1, std::min(from_m.y(), to_m.y()), std::max(from_m.y(), to_m.y()));
+    const double z = apart_m(2, std::min(from_m.z(), to_m.z()), std::max(from_m.z(), to_m.z()));
+    return x * x + y * y + z * z > closest.distance2_m2;
+  }
+  /// Of all that is below a point.
+  bool is_beyond_below(const Vector3d& top_m, const Pair& closest) const {
+    const double x = apart_m(0, top_m.x(), top_m.x()), y = apart_m(1, top_m.y(), top_m.y());
+    const double z = std::max(low_m_.z() - top_m.z(), 0.0);
+    return x * x + y * y + z * z > closest.distance2_m2;
+  }
+
+ private:
+  static constexpr double kSlack_m = 1e-9;  // more than all rounding here
+
+  double apart_m(int axis, double low_m, double high_m) const {
+    return std::max(std::max(low_m_[axis] - high_m, low_m - high_m_[axis]), 0.0);
+  }
+
+  Vector3d low_m_, high_m_;
+};
+
 /// The axis p + s u and an edge q + t v, both with s and t in [0, 1] (Ericson, Real-Time Collision Detection, 5.1.9).
 void meet_edge(const Vector3d& p, const Vector3d& u, const Vector3d& q, const Vector3d& v, Pair& closest) {
   const Vector3d r = p - q;
@@ -86,6 +116,7 @@ Meeting meet(const Vector3d& a_m, const Vector3d& b_m, const Prism& prism, doubl
   if (std::min(normal.dot(a_m - prism.top_m[0]), normal.dot(b_m - prism.top_m[0])) >= reach_m) return Meeting::apart;
   if (pierces(a_m, along_m, prism, normal)) return Meeting::pierced;
 
+  const AxisBox box(a_m, b_m);
   Pair pair{reach_m * reach_m, a_m, a_m};
   meet_top(a_m, prism, normal, pair);
   meet_top(b_m, prism, normal, pair);
@@ -93,8 +124,9 @@ Meeting meet(const Vector3d& a_m, const Vector3d& b_m, const Prism& prism, doubl
     const Vector3d &from_m = prism.top_m[i], &to_m = prism.top_m[(i + 1) % 3];
     meet_side(a_m, prism, i, pair);
     meet_side(b_m, prism, i, pair);
-    meet_edge(a_m, along_m, from_m, to_m - from_m, pair);
-    meet_edge(a_m, along_m, from_m, Vector3d(0, 0, prism.foot_m - from_m.z()), pair);
+    if (!box.is_beyond(from_m, to_m, pair)) meet_edge(a_m, along_m, from_m, to_m - from_m, pair);
+    if (!box.is_beyond_below(from_m, pair))
+      meet_edge(a_m, along_m, from_m, Vector3d(0, 0, prism.foot_m - from_m.z()), pair);
   }
   if (pair.distance2_m2 >= reach_m * reach_m) return Meeting::apart;
   if (pair.distance2_m2 < kTouching_m * kTouching_m) return Meeting::pierced;

@@ -59,7 +59,8 @@ std::uint32_t SpinningPattern::reported_start_ns(std::int64_t sweep, std::int64_
   return static_cast<std::uint32_t>(start_ns);
 }
 
-void SpinningPattern::aim(const std::array<double, kLanes>& azimuth_rad, FiringBlock& block) const {
+[[gnu::target("avx2")]] void SpinningPattern::aim(const std::array<double, kLanes>& azimuth_rad,
+                                                  FiringBlock& block) const {
   alignas(64) double cos_start[kLanes], sin_start[kLanes];
   for (int s = 0; s < kLanes; ++s) {
     cos_start[s] = std::cos(azimuth_rad[s]);
@@ -137,7 +138,8 @@ RosettePattern::RosettePattern(const Values& values) {
   }
 }
 
-void RosettePattern::fire(std::int64_t sweep, std::int64_t slot, int slots, FiringBlock& block) const {
+[[gnu::target("avx2")]] void RosettePattern::fire(std::int64_t sweep, std::int64_t slot, int slots,
+                                                  FiringBlock& block) const {
   block.first_slot = slot;
   block.slots = slots;
   const std::int64_t start_ns = slot * slot_period_ns_;

@@ -44,7 +44,7 @@ BeamSpread::BeamSpread(const Values& values) : echo_length_m_(static_cast<float>
   }
 }
 
-void BeamSpread::bend(const ChannelFirings& axis, int k, ChannelFirings& firings) const {
+[[gnu::target("avx2")]] void BeamSpread::bend(const ChannelFirings& axis, int k, ChannelFirings& firings) const {
   firings = axis;
   for (int s = 0; s < kLanes; ++s) {
     const double x = axis.direction_x[s], y = axis.direction_y[s], z = axis.direction_z[s];
@@ -101,7 +101,7 @@ void BeamSpread::merge(const std::array<RayPacket, kMaxBeamRays>& rays, Echoes& 
   }
 }
 
-void set_hits(Echoes& echoes) {
+[[gnu::target("avx2")]] void set_hits(Echoes& echoes) {
   const RayPacket& p = echoes.packet;
   for (int s = 0; s < kLanes; ++s) {
     echoes.hit_x[s] = p.origin_x[s] + p.range[s] * p.direction_x[s];

@@ -15,7 +15,7 @@ struct Words {
 };
 
 /// philox4x32_10 of the counters (first + i), all rounds in step.
-void philox(std::uint64_t first, std::array<std::uint32_t, 2> key, Words& words) {
+[[gnu::target("avx2")]] void philox(std::uint64_t first, std::array<std::uint32_t, 2> key, Words& words) {
   for (int i = 0; i < kBlocks; ++i) {
     const std::uint64_t counter = first + static_cast<std::uint64_t>(i);
     words.word[0][i] = static_cast<std::uint32_t>(counter);
@@ -72,7 +72,7 @@ LaneNoiseSource::LaneNoiseSource(const Stream& stream) {
   key_ = {block[0], block[1]};
 }
 
-void LaneNoiseSource::draw(std::uint64_t index, LaneNoise& noise) const {
+[[gnu::target("avx2")]] void LaneNoiseSource::draw(std::uint64_t index, LaneNoise& noise) const {
   Words words;
   philox(index * kBlocks, key_, words);
   for (int i = 0; i < kBlocks; ++i) {

@@ -46,7 +46,7 @@ bool RangeErrors::is_detected(float signal, double uniform) const {
   return u < 1.0 - 1.0 / (1.0 + odds);
 }
 
-void RangeErrors::apply(const RayPacket& hits, std::uint64_t index, Returns& returns) const {
+[[gnu::target("avx2")]] void RangeErrors::apply(const RayPacket& hits, std::uint64_t index, Returns& returns) const {
   LaneNoise noise;
   noise_.draw(index, noise);
   alignas(64) float strength[kLanes], signal[kLanes];

@@ -1,23 +1,67 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "sim/lidar/ray_aim.hpp"
 
+#include <algorithm>
+
 namespace tumble::sim {
 
 namespace {
 
 using Eigen::Vector3d;
 
-/// Rotation row by row, then position.
-void set_lane(const Pose34& pose, int lane, double (*to)[kLanes]) {
-  for (int row = 0; row < 3; ++row) {
-    for (int column = 0; column < 3; ++column) to[3 * row + column][lane] = pose(row, column);
-    to[9 + row][lane] = pose(row, 3);
+/// How much of an interval is over at each lane, and by that the weights of its turns.
+struct Shares {
+  alignas(64) double share[kLanes], first[kLanes], second[kLanes];
+  alignas(64) double within[kLanes];  ///< 1 from the first lane on that the interval is for, 0 before
+};
+
+[[gnu::target("avx2")]] void weigh(const TrackCursor::Interval& now, Shares& shares) {
+  alignas(64) double angle2[kLanes], sinc[kLanes], cosc[kLanes];
+  double largest2 = 0.0;
+  for (int s = 0; s < kLanes; ++s) {
+    angle2[s] = shares.share[s] * shares.share[s] * now.turn2;
+    sinc[s] = TrackCursor::sinc_of_small(angle2[s]);
+    cosc[s] = TrackCursor::cosc_of_small(angle2[s]);
+  }
+  for (int s = 0; s < kLanes; ++s) largest2 = std::max(largest2, angle2[s]);
+  for (int s = largest2 < TrackCursor::kSmall2 ? kLanes : 0; s < kLanes; ++s) {
+    if (angle2[s] < TrackCursor::kSmall2) continue;
+    sinc[s] = TrackCursor::sinc_of(angle2[s]);
+    cosc[s] = TrackCursor::cosc_of(angle2[s]);
+  }
+  for (int s = 0; s < kLanes; ++s) {
+    shares.first[s] = shares.share[s] * sinc[s];
+    shares.second[s] = shares.share[s] * shares.share[s] * cosc[s];
+  }
+}
+
+/// One number of the pose, and its rate of change per second, of the lanes that the interval is for.
+[[gnu::target("avx2")]] void follow_number(const TrackCursor::Interval& now, const Shares& shares, int row, int column,
+                                           double (&pose)[kLanes], double (&rate)[kLanes]) {
+  const double start = now.start(row, column), turned = now.turned(row, column), twice = now.turned_twice(row, column);
+  const double per_s = now.per_s, turn2 = now.turn2;
+  alignas(64) double to[kLanes], to_rate[kLanes];
+  for (int s = 0; s < kLanes; ++s) {
+    to[s] = start + shares.first[s] * turned + shares.second[s] * twice;
+    to_rate[s] = per_s * ((1.0 - shares.second[s] * turn2) * turned + shares.first[s] * twice);
+  }
+  if (column == 3) {
+    const double step_m = now.step_m[row];
+    for (int s = 0; s < kLanes; ++s) {
+      to[s] += shares.share[s] * step_m;
+      to_rate[s] += per_s * step_m;
+    }
+  }
+  for (int s = 0; s < kLanes; ++s) {
+    pose[s] = shares.within[s] != 0.0 ? to[s] : pose[s];
+    rate[s] = shares.within[s] != 0.0 ? to_rate[s] : rate[s];
   }
 }
 
 /// One world coordinate of all lanes: `row` of the rotation and the position's coordinate of that row.
-void aim_coordinate(const double (*pose)[kLanes], const double (*rate)[kLanes], int row, double after_s,
-                    const ChannelFirings& firings, float* origin, float* direction) {
+[[gnu::target("avx2")]] void aim_coordinate(const double (*pose)[kLanes], const double (*rate)[kLanes], int row,
+                                            double after_s, const ChannelFirings& firings, float* origin,
+                                            float* direction) {
   const double *ax = pose[3 * row], *ay = pose[3 * row + 1], *az = pose[3 * row + 2], *ap = pose[9 + row];
   const double *bx = rate[3 * row], *by = rate[3 * row + 1], *bz = rate[3 * row + 2], *bp = rate[9 + row];
   for (int s = 0; s < kLanes; ++s) {
@@ -33,24 +77,34 @@ void aim_coordinate(const double (*pose)[kLanes], const double (*rate)[kLanes], 
 
 void BlockPoses::follow(const BeamPattern& pattern, const FiringBlock& block, TrackCursor& track) {
   const std::int64_t length_ns = pattern.slot_length_ns();
-  broken_count_ = 0;
-  Pose34 pose, rate_s;
-  for (int s = 0; s < block.slots; ++s) {
-    const std::int64_t start_ns = block.start_ns[s];
-    track.at(start_ns + length_ns / 2, pose, rate_s);
-    set_lane(pose, s, pose_);
-    set_lane(rate_s, s, rate_);
-    if (track.is_smooth(start_ns, start_ns + length_ns)) continue;
-    for (int c = 0; c < pattern.channels(); ++c) {
-      track.at(start_ns + pattern.lag_ns(c), broken_pose_[broken_count_][c], rate_s);
-    }
-    broken_lane_[broken_count_++] = s;
-  }
   // lanes without a slot follow the last one, so that nothing is computed from numbers never set
-  for (int i = 0; i < kPose; ++i) {
-    for (int s = block.slots; s < kLanes; ++s) {
-      pose_[i][s] = pose_[i][block.slots - 1];
-      rate_[i][s] = rate_[i][block.slots - 1];
+  const auto start_ns = [&](int lane) { return block.start_ns[std::min(lane, block.slots - 1)]; };
+  const auto middle_ns = [&](int lane) { return start_ns(lane) + length_ns / 2; };
+  broken_count_ = 0;
+  for (int from = 0; from < kLanes;) {
+    const TrackCursor::Interval& now = track.interval(middle_ns(from));
+    Shares shares;
+    for (int s = 0; s < kLanes; ++s) {
+      // later lanes that the interval does not hold are set anew by the next
+      shares.within[s] = s >= from ? 1.0 : 0.0;
+      shares.share[s] = now.share(middle_ns(std::max(s, from)));
+    }
+    weigh(now, shares);
+    for (int row = 0; row < 3; ++row) {
+      for (int column = 0; column < 3; ++column)
+        follow_number(now, shares, row, column, pose_[3 * row + column], rate_[3 * row + column]);
+      follow_number(now, shares, row, 3, pose_[9 + row], rate_[9 + row]);
+    }
+    int end = from;
+    for (; end < kLanes && now.holds(middle_ns(end)); ++end) {
+      const bool smooth = start_ns(end) >= now.start_ns && start_ns(end) + length_ns < now.end_ns;
+      if (!smooth && end < block.slots) broken_lane_[broken_count_++] = end;
+    }
+    from = end;
+  }
+  for (int i = 0; i < broken_count_; ++i) {
+    for (int c = 0; c < pattern.channels(); ++c) {
+      broken_pose_[i][c] = track.at(start_ns(broken_lane_[i]) + pattern.lag_ns(c));
     }
   }
 }
@@ -81,7 +135,7 @@ void BlockPoses::aim_slowly(const ChannelFirings& firings, int broken, int chann
   rays.direction_z[s] = static_cast<float>(direction.z());
 }
 
-void aim_in_lidar_axes(const ChannelFirings& firings, RayPacket& rays) {
+[[gnu::target("avx2")]] void aim_in_lidar_axes(const ChannelFirings& firings, RayPacket& rays) {
   for (int s = 0; s < kLanes; ++s) {
     rays.origin_x[s] = static_cast<float>(firings.origin_x_m[s]);
     rays.origin_y[s] = static_cast<float>(firings.origin_y_m[s]);

@@ -10,6 +10,8 @@
 #include <stdexcept>
 #include <vector>
 
+#include "sim/lidar/nearest_hits.hpp"
+#include "sim/lidar/shape_lanes.hpp"
 #include "sim/lidar/triangle.hpp"
 
 namespace tumble::sim {
@@ -34,6 +36,7 @@ constexpr const char* kDevice =
     // not "threads=1", which would limit oneTBB in the whole process for as long as the device lives
     "start_threads=0,set_affinity=0,isa=avx2,frequency_level=simd256,ignore_config_files=1";
 constexpr int kKernelLanes = 8;
+static_assert(kKernelLanes == kShapeLanes && NearestHits::kNone == RTC_INVALID_GEOMETRY_ID);
 /// Embree divides by way of an approximate reciprocal that vendors are free to choose. Its ranges only decide what is
 /// looked at: whatever they put within this share of the nearest hit is looked at too.
 constexpr float kReach = 1.0f + 4e-6f;
@@ -50,26 +53,11 @@ struct MeshLabel {
   }
 };
 
-/// The nearest hit of a lane so far, in our own arithmetic.
-struct Nearest {
-  double range_m = 0.0;
-  Vector3d normal = Vector3d::Zero();  ///< of any length
-  unsigned int geometry = RTC_INVALID_GEOMETRY_ID, primitive = 0;
-
-  /// Of hits at the same range the first by number is taken, in whatever order they come.
-  bool replaced_by(const Nearest& other) const {
-    if (!(other.range_m > 0.0) || other.range_m > range_m) return false;
-    return other.range_m < range_m ||
-           (geometry != RTC_INVALID_GEOMETRY_ID &&
-            (other.geometry < geometry || (other.geometry == geometry && other.primitive < primitive)));
-  }
-};
-
 /// What the callbacks are given; Embree hands its first member on. A lane's place is in the ray's id.
 struct CastContext {
   RTCIntersectContext embree;
-  const std::vector<MeshLabel>* meshes = nullptr;
-  std::array<Nearest, kLanes> nearest;
+  const std::vector<MeshLabel>* meshes;
+  NearestHits nearest;
 };
 
 CastContext& cast_context(RTCIntersectContext* context) {
@@ -115,14 +103,13 @@ Ray ray_at(RTCRayN* rays, unsigned int count, unsigned int i) {
           Vector3d(RTCRayN_dir_x(rays, count, i), RTCRayN_dir_y(rays, count, i), RTCRayN_dir_z(rays, count, i))};
 }
 
-/// Where a ray meets the plane of a face that Embree found it to hit; of a quad, that of the half which it passes.
+/// Range at which a ray meets the plane of a face that Embree found it to hit, and the plane's normal, of any length;
+/// of a quad, that of the half which it passes.
 /// `second_half` is Embree's word on that, which it says by way of its approximate reciprocal: good enough for a quad
 /// whose halves lie one behind the other.
-void meet_face(const MeshLabel& mesh, const Ray& ray, bool second_half, Nearest& hit) {
+double meet_face(const MeshLabel& mesh, unsigned int face, const Ray& ray, bool second_half, Vector3d& normal) {
   // relative to the origin, where double holds what float gave without loss
-  const auto corner = [&](std::uint32_t i) -> Vector3d {
-    return mesh.corner(hit.primitive, i).cast<double>() - ray.origin;
-  };
+  const auto corner = [&](std::uint32_t i) -> Vector3d { return mesh.corner(face, i).cast<double>() - ray.origin; };
   Vector3d a = corner(0), b = corner(1), c = corner(2);
   if (mesh.as_quads) {
     const Vector3d d = corner(3);
@@ -136,8 +123,8 @@ void meet_face(const MeshLabel& mesh, const Ray& ray, bool second_half, Nearest&
     else
       c = d;
   }
-  hit.normal = (b - a).cross(c - a);
-  hit.range_m = hit.normal.dot(a) / hit.normal.dot(ray.direction);
+  normal = (b - a).cross(c - a);
+  return normal.dot(a) / normal.dot(ray.direction);
 }
 
 /// Embree's filter: called at every hit that it finds within a ray's reach, in no stated order.
@@ -145,37 +132,37 @@ void keep_nearest(const RTCFilterFunctionNArguments* args) {
   CastContext& cast = cast_context(args->context);
   for (unsigned int i = 0; i < args->N; ++i) {
     if (args->valid[i] == 0) continue;
-    Nearest& nearest = cast.nearest[RTCRayN_id(args->ray, args->N, i)];
-    Nearest hit;
-    hit.geometry = RTCHitN_geomID(args->hit, args->N, i);
-    hit.primitive = RTCHitN_primID(args->hit, args->N, i);
+    const unsigned int lane = RTCRayN_id(args->ray, args->N, i);
+    const unsigned int geometry = RTCHitN_geomID(args->hit, args->N, i), face = RTCHitN_primID(args->hit, args->N, i);
     const bool second_half = RTCHitN_u(args->hit, args->N, i) + RTCHitN_v(args->hit, args->N, i) > 1.0f;
-    meet_face((*cast.meshes)[hit.geometry], ray_at(args->ray, args->N, i), second_half, hit);
+    Vector3d normal;
+    const double range_m =
+        meet_face((*cast.meshes)[geometry], face, ray_at(args->ray, args->N, i), second_half, normal);
     args->valid[i] = 0;
-    if (!nearest.replaced_by(hit)) continue;
-    nearest = hit;
-    RTCRayN_tfar(args->ray, args->N, i) = searched_to(hit.range_m);
+    if (!cast.nearest.is_replaced(lane, range_m, geometry, face)) continue;
+    cast.nearest.replace(lane, range_m, normal.x(), normal.y(), normal.z(), geometry, face);
+    RTCRayN_tfar(args->ray, args->N, i) = searched_to(range_m);
     args->valid[i] = -1;
   }
 }
 
+/// Packets alone are cast, so that there are always eight rays, of which some may be spent.
 void intersect_shape(const RTCIntersectFunctionNArguments* args) {
   const Shape& shape = static_cast<const SceneShape*>(args->geometryUserPtr)[args->primID].shape;
   CastContext& cast = cast_context(args->context);
-  RTCRayN* rays = RTCRayHitN_RayN(args->rayhit, args->N);
-  RTCHitN* hits = RTCRayHitN_HitN(args->rayhit, args->N);
-  for (unsigned int i = 0; i < args->N; ++i) {
-    if (args->valid[i] == 0) continue;
-    const Ray ray = ray_at(rays, args->N, i);
-    Nearest hit{0.0, Vector3d::Zero(), args->geomID, args->primID};
-    hit.range_m = cast_ray(shape, ray.origin, ray.direction, hit.normal);
-    Nearest& nearest = cast.nearest[RTCRayN_id(rays, args->N, i)];
-    if (!nearest.replaced_by(hit)) continue;
-    nearest = hit;
-    RTCRayN_tfar(rays, args->N, i) = searched_to(hit.range_m);
-    RTCHitN_geomID(hits, args->N, i) = args->geomID;
-    RTCHitN_primID(hits, args->N, i) = args->primID;
-    RTCHitN_instID(hits, args->N, i, 0) = RTC_INVALID_GEOMETRY_ID;
+  auto& all = *reinterpret_cast<RTCRayHit8*>(args->rayhit);
+  RTCRay8& rays = all.ray;
+  ShapeHits hits;
+  cast_rays(shape, {rays.org_x, rays.org_y, rays.org_z, rays.dir_x, rays.dir_y, rays.dir_z}, args->valid, hits);
+  for (int i = 0; i < kShapeLanes; ++i) {
+    const unsigned int lane = rays.id[i];
+    if (args->valid[i] == 0 || !cast.nearest.is_replaced(lane, hits.range_m[i], args->geomID, args->primID)) continue;
+    cast.nearest.replace(lane, hits.range_m[i], hits.normal_x[i], hits.normal_y[i], hits.normal_z[i], args->geomID,
+                         args->primID);
+    rays.tfar[i] = searched_to(hits.range_m[i]);
+    all.hit.geomID[i] = args->geomID;
+    all.hit.primID[i] = args->primID;
+    all.hit.instID[0][i] = RTC_INVALID_GEOMETRY_ID;
   }
 }
 
@@ -308,7 +295,6 @@ void RayScene::Impl::cast_lanes(const RayPacket& packet, int first, CastContext&
     rays.ray.flags[i] = 0;
     rays.hit.Ng_x[i] = rays.hit.Ng_y[i] = rays.hit.Ng_z[i] = rays.hit.u[i] = rays.hit.v[i] = 0.0f;
     rays.hit.primID[i] = rays.hit.geomID[i] = rays.hit.instID[0][i] = RTC_INVALID_GEOMETRY_ID;
-    if (used) cast.nearest[static_cast<std::size_t>(lane)].range_m = packet.range[lane];
   }
   rtcIntersect8(valid, scene.get(), &cast.embree, &rays);
 }
@@ -316,24 +302,21 @@ void RayScene::Impl::cast_lanes(const RayPacket& packet, int first, CastContext&
 void RayScene::cast(RayPacket& packet) const {
   impl_->cast_planes(packet);
   if (impl_->bounded.empty() && impl_->meshes.empty()) return;
-  CastContext cast;
+  CastContext cast{{}, &impl_->meshes, NearestHits(packet)};
   rtcInitIntersectContext(&cast.embree);
   // a channel's rays look in almost the same direction
   cast.embree.flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
-  cast.meshes = &impl_->meshes;
   for (int first = 0; first < packet.count; first += kKernelLanes) impl_->cast_lanes(packet, first, cast);
+  cast.nearest.write(packet);
   for (int i = 0; i < packet.count; ++i) {
-    const Nearest& hit = cast.nearest[static_cast<std::size_t>(i)];
-    if (hit.geometry == RTC_INVALID_GEOMETRY_ID) continue;
-    const Vector3d direction(packet.direction_x[i], packet.direction_y[i], packet.direction_z[i]);
-    packet.range[i] = static_cast<float>(hit.range_m);
-    packet.cosine[i] = static_cast<float>(std::min(1.0, std::abs(hit.normal.dot(direction)) / hit.normal.norm()));
-    if (hit.geometry == impl_->shape_geometry) {
-      const SceneShape& part = impl_->bounded[hit.primitive];
+    const unsigned int geometry = cast.nearest.geometry(i);
+    if (geometry == NearestHits::kNone) continue;
+    if (geometry == impl_->shape_geometry) {
+      const SceneShape& part = impl_->bounded[cast.nearest.primitive(i)];
       packet.surface_id[i] = part.surface_id;
       packet.reflectivity[i] = part.reflectivity;
     } else {
-      const MeshLabel& label = impl_->meshes[hit.geometry];
+      const MeshLabel& label = impl_->meshes[geometry];
       packet.surface_id[i] = label.surface_id;
       packet.reflectivity[i] = label.reflectivity;
     }

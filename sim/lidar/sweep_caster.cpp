@@ -26,7 +26,7 @@ struct ChannelReturns {
   Echoes echoes;
 };
 
-void place(const ChannelFirings& firings, ChannelReturns& out) {
+[[gnu::target("avx2")]] void place(const ChannelFirings& firings, ChannelReturns& out) {
   for (int s = 0; s < kLanes; ++s) {
     const double range = out.returns.range_m[s];
     out.position_x[s] = static_cast<float>(firings.origin_x_m[s] + range * firings.direction_x[s]);

@@ -20,48 +20,65 @@ using Pose34 = Eigen::Matrix<double, 3, 4>;
 /// is in, so that ascending times are cheap.
 class TrackCursor {
  public:
+  /// Between two samples. `x`, the share of it that is over, has turned the body by a = x |turn| [rad]; with
+  /// first = x sin(a)/a and second = x^2 (1 - cos(a))/a^2 the pose is start + first turned + second turned_twice, and
+  /// x step_m farther on (Rodrigues: exp(x K) = I + first K + second K^2).
+  struct Interval {
+    std::int64_t start_ns = 0, end_ns = 0;
+    double per_ns = 0.0, per_s = 0.0;
+    double turn2 = 0.0;  ///< of the angle turned over the whole of it
+    Eigen::Vector3d step_m = Eigen::Vector3d::Zero();
+    Pose34 start = Pose34::Zero(), turned = Pose34::Zero(), turned_twice = Pose34::Zero();
+
+    bool holds(std::int64_t time_ns) const { return time_ns >= start_ns && time_ns < end_ns; }
+    double share(std::int64_t time_ns) const { return static_cast<double>(time_ns - start_ns) * per_ns; }
+  };
+
+  /// Below this square of an angle the series of sin(a)/a and (1 - cos(a))/a^2 are exact to 1e-16: 0.02 rad, which is
+  /// 40 rad/s over 0.5 ms.
+  static constexpr double kSmall2 = 4e-4;
+  static double sinc_of_small(double angle2) {
+    return 1.0 - angle2 / 6.0 * (1.0 - angle2 / 20.0 * (1.0 - angle2 / 42.0));
+  }
+  static double cosc_of_small(double angle2) {
+    return 0.5 - angle2 / 24.0 * (1.0 - angle2 / 30.0 * (1.0 - angle2 / 56.0));
+  }
+  static double sinc_of(double angle2) { return std::sin(std::sqrt(angle2)) / std::sqrt(angle2); }
+  static double cosc_of(double angle2) { return (1.0 - std::cos(std::sqrt(angle2))) / angle2; }
+
   /// `motion` has at least two samples and must outlive the cursor.
   TrackCursor(const MotionTrack& motion, const Eigen::Isometry3d& T_BL) : motion_(motion) {
     T_BL_ << T_BL.linear(), T_BL.translation();
   }
 
-  /// Pose at a time, and its rate of change per second.
-  void at(std::int64_t time_ns, Pose34& T_WL, Pose34& rate_s) {
-    if (time_ns < start_ns_ || time_ns >= end_ns_) enter_interval(time_ns);
-    const double into = static_cast<double>(time_ns - start_ns_) * per_ns_;
-    const double angle2 = into * into * turn2_;
-    // sin(a)/a and (1 - cos(a))/a^2; the series are exact to 1e-16 at 0.02 rad, which is 40 rad/s over 0.5 ms
-    double sinc, cosc;
-    if (angle2 < 4e-4) {
-      sinc = 1.0 - angle2 / 6.0 * (1.0 - angle2 / 20.0 * (1.0 - angle2 / 42.0));
-      cosc = 0.5 - angle2 / 24.0 * (1.0 - angle2 / 30.0 * (1.0 - angle2 / 56.0));
-    } else {
-      const double angle = std::sqrt(angle2);
-      sinc = std::sin(angle) / angle;
-      cosc = (1.0 - std::cos(angle)) / angle2;
-    }
-    // Rodrigues: exp(x K) = I + first K + second K^2, and K^3 = -|turn|^2 K
-    const double first = into * sinc, second = into * into * cosc;
-    T_WL = start_ + first * turned_ + second * turned_twice_;
-    T_WL.col(3) += into * step_m_;
-    rate_s = per_s_ * ((1.0 - second * turn2_) * turned_ + first * turned_twice_);
-    rate_s.col(3) += per_s_ * step_m_;
+  /// The interval that a time lies in, until the next call.
+  const Interval& interval(std::int64_t time_ns) {
+    if (!now_.holds(time_ns)) enter_interval(time_ns);
+    return now_;
   }
 
-  /// Whether one interval of constant rate holds from `from_ns` up to and including `to_ns`. After at() of a time
-  /// between the two.
-  bool is_smooth(std::int64_t from_ns, std::int64_t to_ns) const { return from_ns >= start_ns_ && to_ns < end_ns_; }
+  /// Pose at a time.
+  Pose34 at(std::int64_t time_ns) {
+    const Interval& now = interval(time_ns);
+    const double share = now.share(time_ns), angle2 = share * share * now.turn2;
+    const bool small = angle2 < kSmall2;
+    const double first = share * (small ? sinc_of_small(angle2) : sinc_of(angle2));
+    const double second = share * share * (small ? cosc_of_small(angle2) : cosc_of(angle2));
+    Pose34 T_WL = now.start + first * now.turned + second * now.turned_twice;
+    T_WL.col(3) += share * now.step_m;
+    return T_WL;
+  }
 
  private:
   void enter_interval(std::int64_t time_ns) {
     const auto last = static_cast<std::int64_t>(motion_.p_WB_m.size()) - 2;
     const std::int64_t k = std::clamp<std::int64_t>(time_ns / motion_.period_ns, 0, last);
     const auto i = static_cast<std::size_t>(k);
-    start_ns_ = k * motion_.period_ns;
-    end_ns_ = k == last ? INT64_MAX : start_ns_ + motion_.period_ns;
-    per_ns_ = 1.0 / static_cast<double>(motion_.period_ns);
-    per_s_ = 1e9 * per_ns_;
-    step_m_ = motion_.p_WB_m[i + 1] - motion_.p_WB_m[i];
+    now_.start_ns = k * motion_.period_ns;
+    now_.end_ns = k == last ? INT64_MAX : now_.start_ns + motion_.period_ns;
+    now_.per_ns = 1.0 / static_cast<double>(motion_.period_ns);
+    now_.per_s = 1e9 * now_.per_ns;
+    now_.step_m = motion_.p_WB_m[i + 1] - motion_.p_WB_m[i];
     Eigen::Quaterniond relative = motion_.q_WB[i].conjugate() * motion_.q_WB[i + 1];
     if (relative.w() < 0.0) relative.coeffs() = -relative.coeffs();
     // atan2 keeps its precision at small angles, where acos loses it
@@ -69,22 +86,19 @@ class TrackCursor {
     const Eigen::Vector3d turn_rad =
         sine > 0.0 ? Eigen::Vector3d(relative.vec() * (2.0 * std::atan2(sine, relative.w()) / sine))
                    : Eigen::Vector3d::Zero();
-    turn2_ = turn_rad.squaredNorm();
+    now_.turn2 = turn_rad.squaredNorm();
     Eigen::Matrix3d K;
     K << 0.0, -turn_rad.z(), turn_rad.y(), turn_rad.z(), 0.0, -turn_rad.x(), -turn_rad.y(), turn_rad.x(), 0.0;
     const Eigen::Matrix3d R_WB = motion_.q_WB[i].toRotationMatrix();
-    start_ = R_WB * T_BL_;
-    turned_ = R_WB * K * T_BL_;
-    turned_twice_ = R_WB * K * K * T_BL_;
-    start_.col(3) += motion_.p_WB_m[i];
+    now_.start = R_WB * T_BL_;
+    now_.turned = R_WB * K * T_BL_;
+    now_.turned_twice = R_WB * K * K * T_BL_;
+    now_.start.col(3) += motion_.p_WB_m[i];
   }
 
   MotionTrack motion_;
   Pose34 T_BL_;
-  std::int64_t start_ns_ = 0, end_ns_ = 0;
-  double per_ns_ = 0.0, per_s_ = 0.0, turn2_ = 0.0;
-  Eigen::Vector3d step_m_ = Eigen::Vector3d::Zero();
-  Pose34 start_ = Pose34::Zero(), turned_ = Pose34::Zero(), turned_twice_ = Pose34::Zero();
+  Interval now_;
 };
 
 }  // namespace tumble::sim

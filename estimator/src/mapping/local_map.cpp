@@ -50,6 +50,7 @@ std::size_t LocalMap::insert(const Params& params, const SweepTrajectory& trajec
   std::size_t added = 0;
   for (std::size_t i = 0; i < points.size(); ++i) {
     const Eigen::Vector3f position = levers_W_m_[i] + trajectory.base_m(points[i].t_s).cast<float>();
+    if (map_.is_taken(position)) continue;  // most are
     // mapping.md (R53)
     const double sigma_m = std::sqrt(noise.point_variance_m2(points[i]) + of_pose.at_m2(points[i]));
     if (sigma_m > params.expert.map.sigma_max_m) continue;

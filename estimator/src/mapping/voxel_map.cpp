@@ -153,6 +153,12 @@ bool VoxelMap::has_room_for(const Eigen::Vector3f& position) const {
   return (position * cubes_per_m_).cwiseAbs().maxCoeff() < static_cast<float>(SpatialHash::kLimit - 2);
 }
 
+bool VoxelMap::is_taken(const Eigen::Vector3f& position) const {
+  if (!has_room_for(position)) return true;
+  return params_.spacing_m > 0.0 &&
+         taken_.find(SpatialHash::key(cube_of(position, cubes_per_m_))) != SpatialHash::kAbsent;
+}
+
 std::uint32_t VoxelMap::add(const Eigen::Vector3f& position, float sigma_m, std::uint32_t sweep, std::uint32_t line) {
   if (!has_room_for(position)) return kNoPoint;
   if (params_.spacing_m > 0.0 && !taken_.add(SpatialHash::key(cube_of(position, cubes_per_m_)))) return kNoPoint;

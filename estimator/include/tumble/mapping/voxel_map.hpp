@@ -61,6 +61,8 @@ class VoxelMap {
 
   /// The same; returns the point's index, or kNoPoint where it was not added.
   std::uint32_t add(const Eigen::Vector3f& position_W_m, float sigma_m, std::uint32_t sweep, std::uint32_t line);
+  /// Whether add() would find the place taken, or out of the map's range: what a point is worth need not be known then.
+  bool is_taken(const Eigen::Vector3f& position_W_m) const;
 
   /// Moves a point that is now known better. Where it would leave its cell it stays where it was, and false is
   /// returned.
