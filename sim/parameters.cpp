@@ -41,11 +41,11 @@ double Values::at(std::string_view name) const {
 
 std::string nearest_name(std::string_view name, std::span<const std::string> known) {
   std::string best;
-  // half of the letters may differ: farther names would mislead
+  // half of the letters may differ, and not all of them: farther names would mislead
   std::size_t best_distance = std::max<std::size_t>(2, name.size() / 2) + 1;
   for (const std::string& candidate : known) {
     const std::size_t distance = edit_distance(name, candidate);
-    if (distance < best_distance) {
+    if (distance < best_distance && distance < std::max(name.size(), candidate.size())) {
       best_distance = distance;
       best = candidate;
     }

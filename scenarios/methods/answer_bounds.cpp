@@ -22,6 +22,7 @@ constexpr std::int64_t kMargin_ns = 10'000'000'000;
 constexpr double kPositionMax_m = 1e7;
 constexpr double kRateMax_rad_s = 1e6;
 constexpr double kNormTolerance = 1e-2;
+constexpr double kCorrelationTolerance = 1e-3;  // covariances that were written with few digits
 
 template <typename Vector>
 std::string text_of(const Vector& v) {
@@ -38,6 +39,22 @@ void require_attitude(const Eigen::Quaterniond& q, const std::string& where) {
   const double norm = q.coeffs().stableNorm();
   if (std::abs(norm - 1.0) <= kNormTolerance) return;
   throw BadInput(fmt::format("{}: quaternion of norm {:g}, must be 1 within {:g}", where, norm, kNormTolerance));
+}
+
+/// Finite, no variance below 0, and no correlation beyond 1.
+template <int N>
+void require_covariance(const Eigen::Matrix<double, N, N>& C, const std::string& where) {
+  if (!C.allFinite()) throw BadInput(where + ": a covariance that is not finite, must be");
+  if (const double least = C.diagonal().minCoeff(); least < 0.0)
+    throw BadInput(fmt::format("{}: a variance of {:g}, must be at least 0", where, least));
+  for (int i = 0; i < N; ++i) {
+    for (int j = i + 1; j < N; ++j) {
+      const double most = std::sqrt(C(i, i)) * std::sqrt(C(j, j));
+      if (std::abs(C(i, j)) > (1.0 + kCorrelationTolerance) * most)
+        throw BadInput(fmt::format("{}: a covariance of {:g} beside variances of {:g} and {:g}, must be within {:g}",
+                                   where, C(i, j), C(i, i), C(j, j), most));
+    }
+  }
 }
 
 }  // namespace
@@ -95,8 +112,7 @@ void AnswerBounds::require_rates(const std::vector<RateState>& rates, const Plac
     if (!rate_rad_s.allFinite() || rate_rad_s.cwiseAbs().maxCoeff() > kRateMax_rad_s)
       throw BadInput(fmt::format("{}: rate {} rad/s, must be finite and within {:g} rad/s", place(k),
                                  text_of(rate_rad_s), kRateMax_rad_s));
-    if (!rates[k].covariance_rad2_s2.allFinite())
-      throw BadInput(place(k) + ": a covariance that is not finite, must be");
+    require_covariance(rates[k].covariance_rad2_s2, place(k));
     require_time(rates[k].time_ns, place(k));
   }
 }
@@ -104,7 +120,7 @@ void AnswerBounds::require_rates(const std::vector<RateState>& rates, const Plac
 void AnswerBounds::require_poses(const std::vector<PoseState>& poses, const Place& place) const {
   for (std::size_t k = 0; k < poses.size(); ++k) {
     require_pose(poses[k], place(k));
-    if (!poses[k].covariance.allFinite()) throw BadInput(place(k) + ": a covariance that is not finite, must be");
+    require_covariance(poses[k].covariance, place(k));
   }
 }
 
@@ -112,6 +128,7 @@ void AnswerBounds::require_attitudes(const std::vector<AttitudeState>& attitudes
   for (std::size_t k = 0; k < attitudes.size(); ++k) {
     require_time(attitudes[k].time_ns, place(k));
     require_attitude(attitudes[k].q_WA, place(k));
+    require_covariance(attitudes[k].covariance_rad2, place(k));
   }
 }
 

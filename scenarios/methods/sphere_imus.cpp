@@ -104,11 +104,41 @@ struct Units {
   int resampled = 0, beyond_range = 0;
 };
 
+/// The longest time within `first_ns` to `last_ns` for which a unit reads nothing.
+TimeNs longest_silence(const std::vector<ImuSample>& unit, TimeNs first_ns, TimeNs last_ns) {
+  TimeNs longest_ns = std::max(unit.front().time_ns - first_ns, last_ns - unit.back().time_ns);
+  for (std::size_t k = 1; k < unit.size(); ++k) {
+    longest_ns = std::max(longest_ns, unit[k].time_ns - unit[k - 1].time_ns);
+  }
+  return longest_ns;
+}
+
+/// Whose times are taken, of those without trouble: the first one's, but of a later one that reads on where it is
+/// silent.
+std::optional<std::size_t> choose_base(const std::vector<std::vector<ImuSample>>& readings,
+                                       const std::vector<Status>& statuses) {
+  TimeNs first_ns = std::numeric_limits<TimeNs>::max(), last_ns = std::numeric_limits<TimeNs>::min();
+  for (const std::vector<ImuSample>& unit : readings) {
+    first_ns = std::min(first_ns, unit.front().time_ns);
+    last_ns = std::max(last_ns, unit.back().time_ns);
+  }
+  std::optional<std::size_t> base;
+  double least_s = std::numeric_limits<double>::infinity();
+  for (std::size_t k = 0; k < readings.size(); ++k) {
+    if (!statuses[k].ok()) continue;
+    const double silent_s = seconds(longest_silence(readings[k], first_ns, last_ns));
+    if (base && silent_s + kSilentMaxS >= least_s) continue;
+    base = k;
+    least_s = silent_s;
+  }
+  return base;
+}
+
 Status units_of(const sim::Sensors& sensors, Units& units) {
   if (sensors.imus.empty()) return {Trouble::empty, "imus", 0.0, 1.0};
   std::vector<const sim::ImuRecord*> records;
   std::vector<std::vector<ImuSample>> readings;
-  std::optional<std::size_t> base;
+  std::vector<Status> statuses;
   Status primary_status;
   for (const sim::ImuRecord& record : sensors.imus) {
     if (&record != &sensors.imus.front() && record.name == "imu_reference") continue;
@@ -117,11 +147,12 @@ Status units_of(const sim::Sensors& sensors, Units& units) {
     std::vector<ImuSample> samples = readings_of(record, status, units.beyond_range);
     if (&record == &sensors.imus.front()) primary_status = status;
     if (samples.empty()) continue;
-    if (status.ok() && !base) base = records.size();
     judge(record, samples, units.gyro_elements.emplace_back(), units.accel_elements.emplace_back());
     records.push_back(&record);
     readings.push_back(std::move(samples));
+    statuses.push_back(status);
   }
+  const std::optional<std::size_t> base = choose_base(readings, statuses);
   if (!base) return primary_status;
   const std::vector<ImuSample> times = readings[*base];
   for (std::size_t k = 0; k < records.size(); ++k) {

@@ -169,8 +169,19 @@ std::string method_name(const std::string& text, const std::filesystem::path& fo
 }
 
 // names are checked here, so that a suite with a slip of the pen does not begin
+void require_no_scenario(const YamlNode& root) {
+  if (!root.is_map()) return;
+  for (const auto& [key, value] : root.entries()) {
+    if (key == "motion")
+      value.fail(
+          "a scenario has it, and a suite names scenarios of the catalogue: put this file there "
+          "(scenarios/catalogue) and give its name, or draw from it with 'tumble run'");
+  }
+}
+
 Suite read_suite(const DataRoot& data, const std::filesystem::path& path) {
   const YamlNode root = YamlNode::parse(read_text_file(path), path.string());
+  require_no_scenario(root);
   const std::array<std::string, 2> required = {"name", "doc"};
   const std::array<std::string, 8> optional = {"scenarios", "seeds",   "draws",     "recordings",
                                                "methods",   "metrics", "timeout_s", "vary"};

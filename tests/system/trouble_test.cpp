@@ -95,6 +95,28 @@ TEST(Trouble, ScenarioFileWithAnUnknownKeyNamesItsLineAndTheNearest) {
   EXPECT_THAT(ended.err, HasSubstr("did you mean 'motion'?"));
 }
 
+TEST(Trouble, AGapIsSaidWithItsPlace) {
+  const fs::path folder = test_folder();
+  std::ofstream csv(folder / "gap.csv");
+  csv << "sec,nsec,wx,wy,wz,fx,fy,fz\n";
+  for (int k = 0; k < 500; ++k) {
+    const int cs = k < 200 ? k : k + 150;  // nothing for one and a half seconds
+    csv << cs / 100 << ',' << cs % 100 * 10'000'000 << ",0.01,0," << 0.001 * (k % 7) << ",0,0,9.8\n";
+  }
+  csv.close();
+  const std::string recording = (folder / "gap.h5").string();
+  ASSERT_EQ(run_program({"import", (folder / "gap.csv").string(), "-o", recording}).status, 0);
+  const Ended ended = run_program({"estimate", recording, "--method", "rate/raw", "-o", (folder / "e").string()});
+  EXPECT_EQ(ended.status, 2);
+  EXPECT_THAT(ended.err, HasSubstr("imu has no readings between 1.990 and 3.500 s"));
+}
+
+TEST(Trouble, AFrameIsCheckedWithoutATrajectoryToo) {
+  expect_one_line(run_program({"replay", (shared_run("roll") / "recording.h5").string(), "--frame", "limu", "-o",
+                               (test_folder() / "p.html").string()}),
+                  "unknown frame 'limu'");
+}
+
 TEST(Trouble, ForeignFilesAreRefused) {
   const fs::path folder = test_folder();
   std::ofstream(folder / "text") << "this is neither HDF5 nor SQLite\n";

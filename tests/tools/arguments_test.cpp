@@ -29,6 +29,16 @@ TEST(ParseSeed, TakesWholeNumbersAlone) {
   }
 }
 
+TEST(RequireKnown, NamesWhatIsNearAndNothingThatSharesNoLetter) {
+  const std::vector<std::string> known = {"qx", "stamp_s"};
+  const auto said = [&](const char* name) { return [&known, name] { require_known("column", name, known); }; };
+  EXPECT_NO_THROW(said("qx")());
+  EXPECT_THAT(said("stamp"), ThrowsMessage<BadInput>(HasSubstr("did you mean 'stamp_s'?")));
+  EXPECT_THAT(said("qy"), ThrowsMessage<BadInput>(HasSubstr("did you mean 'qx'?")));
+  for (const char* far : {"t", "", "gy"})
+    EXPECT_THAT(said(far), ThrowsMessage<BadInput>(HasSubstr("; known: qx stamp_s"))) << far;
+}
+
 TEST(ParseSeeds, TakesARangeOrOne) {
   EXPECT_EQ(parse_seeds("3..9"), std::make_pair(std::uint64_t{3}, std::uint64_t{9}));
   EXPECT_EQ(parse_seeds("7"), std::make_pair(std::uint64_t{7}, std::uint64_t{7}));

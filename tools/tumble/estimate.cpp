@@ -1,6 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include <fmt/format.h>
+
+#include <cstdint>
 #include <memory>
 #include <nlohmann/json.hpp>
+#include <string>
 
 #include "scenarios/errors.hpp"
 #include "scenarios/methods/estimate_file.hpp"
@@ -29,10 +33,27 @@ struct Options {
   std::filesystem::path learnt;
 };
 
+/// Where the longest gap of an IMU is; empty where there is none.
+std::string place_of_gap(const sim::Sensors& sensors) {
+  std::int64_t longest_ns = 0;
+  std::string place;
+  for (const sim::ImuRecord& imu : sensors.imus) {
+    for (std::size_t k = 1; k < imu.time_ns.size(); ++k) {
+      const std::int64_t from_ns = imu.time_ns[k - 1], to_ns = imu.time_ns[k];
+      if (to_ns - from_ns <= longest_ns) continue;
+      longest_ns = to_ns - from_ns;
+      place = fmt::format("{} has no readings between {:.3f} and {:.3f} s", imu.name,
+                          1e-9 * static_cast<double>(from_ns), 1e-9 * static_cast<double>(to_ns));
+    }
+  }
+  return place;
+}
+
 /// Why a run failed; a sensor that the recording does not have is called by its name.
-std::string reason(const Status& status) {
+std::string reason(const Status& status, const sim::Sensors& sensors) {
   const std::string field = status.field;
   if (status.trouble == Trouble::empty && field == "imus") return "it needs an IMU, and the recording has none";
+  if (status.trouble == Trouble::gap) return status.message() + ": " + place_of_gap(sensors);
   return status.message();
 }
 
@@ -112,12 +133,12 @@ int run_estimate(const Session& session, const Options& options) {
                                    {"digest", scenarios::digest(estimate)},
                                    {"health", estimate.health}};
   session.print({summary(estimate)}, document);
-  if (estimate.status.ok()) {
-    for (const std::string& line : verdict_lines(estimate)) session.note(full_name(method.info) + ": " + line);
-    return kDone;
-  }
+  // also of one that failed: what is wrong with the sensors may be why
+  for (const std::string& line : verdict_lines(estimate)) session.note(full_name(method.info) + ": " + line);
+  if (estimate.status.ok()) return kDone;
   // the estimate is left for inspection, and its trouble lies in the recording
-  throw BadInput(options.recording.string() + ": " + full_name(method.info) + " failed: " + reason(estimate.status));
+  throw BadInput(options.recording.string() + ": " + full_name(method.info) +
+                 " failed: " + reason(estimate.status, sensors));
 }
 
 }  // namespace

@@ -92,8 +92,13 @@ int show_the_way() {
 void add_table_format(CLI::App& options, Session& session) {
   const std::map<std::string, TableFormat> names = {
       {"text", TableFormat::text}, {"md", TableFormat::markdown}, {"csv", TableFormat::csv}, {"tex", TableFormat::tex}};
-  options.add_option("--format", session.format, "tables as text, md, csv or tex [text]")
-      ->transform(CLI::CheckedTransformer(names).description(""))
+  const auto choose = [&session, names](const std::string& name) {
+    std::vector<std::string> known;
+    for (const auto& each : names) known.push_back(each.first);
+    require_known("format of tables", name, known);
+    session.format = names.at(name);
+  };
+  options.add_option_function<std::string>("--format", choose, "tables as text, md, csv or tex [text]")
       ->type_name("TEXT");
 }
 

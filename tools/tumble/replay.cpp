@@ -49,12 +49,12 @@ void load_recording(const Session& session, const Options& options, const scenar
 }
 
 void load_estimates(const Session& session, const Options& options, Content& content, ReplayInput& input) {
+  const scenarios::Frame frame = frame_of(options.frame, !content.sensors.imus.empty());
   for (const std::filesystem::path& path : options.estimates) {
     scenarios::Kind kind;
     std::string method;
     require_own(path, options.recording, content.sensors);
-    scenarios::Estimate estimate =
-        scenarios::read_estimate(path, kind, method, frame_of(options.frame, !content.sensors.imus.empty()));
+    scenarios::Estimate estimate = scenarios::read_estimate(path, kind, method, frame);
     if (estimate.poses.empty() && estimate.rates.empty()) {
       session.note(path.string() + ": left out, it has neither poses nor rates");
       continue;

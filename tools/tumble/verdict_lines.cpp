@@ -30,7 +30,7 @@ constexpr Verdict kVerdicts[] = {
     {"recording_without_digest", false, "the recording states no digest of its data, so that damage would not show"},
     {"_frozen_since_s", false, "repeats one reading from then on"},
     {"_disagrees_since_s", false, "is off from the others from then on, and left out"},
-    {"_silent_since_s", false, "without readings from then on"},
+    {"_silent_since_s", false, "without readings from then on, for half a second at least"},
 };
 
 bool is_of(const Verdict& verdict, std::string_view name) {

@@ -151,7 +151,8 @@ ImuSample ImuMerge::merge(State& state) const {
   ImuSample merged = mean_of_used(rates, forces, used, h, state);
   merged.device_clip_flags = flags_of(readings, used);
   const bool railed = (flags_of(readings, present) & kClipGyro) != 0;
-  state.free_windows = railed ? 0 : std::min(state.free_windows + 1, kLearnFrom);
+  const bool silent = !std::all_of(finite.begin(), finite.begin() + params_.count, [](bool one) { return one; });
+  state.free_windows = railed || silent ? 0 : std::min(state.free_windows + 1, kLearnFrom);
   merged.time_ns = time_ns;
   const bool all_used = std::count(used.begin(), used.end(), true) == params_.count;
   close_windows(present, raw_rates, raw_forces, all_used, merged, state);
@@ -250,6 +251,11 @@ void ImuMerge::close_windows(const Flags& present, const Vectors& rates, const V
     if (unit.window.readings > 0) {
       unit.last_rate_rad_s = rates[k];
       unit.last_force_m_s2 = forces[k];
+    } else {  // what it would have read, by the others: what it did read before its silence is of another motion
+      const Eigen::Vector3d& rate = merged.angular_velocity_rad_s;
+      unit.last_rate_rad_s = rate;
+      unit.last_force_m_s2 =
+          merged.specific_force_m_s2 + rate.cross(rate.cross(params_.T_CI[k].translation() - p_C_m_));
     }
     unit.window = {};
   }

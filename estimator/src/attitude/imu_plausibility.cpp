@@ -48,6 +48,9 @@ void ImuPlausibility::step(const ImuSample& sample, State& state) const {
       state.average.add(sample, dt_s);
       if (state.average.full(params_.reading_s, dt_s)) take(state);
     }
+  } else {
+    state.gyro.reading = sample.angular_velocity_rad_s;
+    state.accel.reading = sample.specific_force_m_s2;
   }
   state.started = true;
   state.last_time_ns = sample.time_ns;
@@ -138,6 +141,20 @@ bool ImuPlausibility::turned(const State& state) const {
 
 double ImuPlausibility::unexplained_share(const State& state) const {
   return turned(state) ? state.unexplained_rad2.front() / std::max(state.by_force_rad2, state.by_gyro_rad2) : 0.0;
+}
+
+/// A device that never moved has not shown that it does, but for a body that turns: by the force that the gyro leaves
+/// unexplained, or by the gyro while the accelerometer reads what not even free fall gives for so long.
+double ImuPlausibility::frozen_s(const State& state) const {
+  const auto never_moved = [&](const Hold& hold) {
+    return hold.moved_s == 0.0 && hold.held_s >= params_.expert.frozen.repeats_s;
+  };
+  const bool turns_unseen = unexplained_share(state) >= params_.expert.frozen.unexplained_least;
+  const bool gyro = never_moved(state.gyro) && turns_unseen;
+  const bool accel = never_moved(state.accel) && state.accel.reading.isZero(0.0) &&
+                     state.gyro.moved_s >= params_.expert.frozen.repeats_s;
+  return std::max(
+      {state.gyro.frozen_s, state.accel.frozen_s, gyro ? state.gyro.held_s : 0.0, accel ? state.accel.held_s : 0.0});
 }
 
 /// imu_merge.md (I17).

@@ -25,6 +25,7 @@ constexpr const char* kOdometry = "nav_msgs/Odometry";
 constexpr const char* kPose = "geometry_msgs/PoseStamped";
 constexpr const char *kTransforms = "tf2_msgs/TFMessage", *kOldTransforms = "tf/tfMessage";
 constexpr const char* kStaticTopic = "/tf_static";
+constexpr const char* kNoMessage = ": is declared and has no message: left out";
 /// What the stamps of a message may differ by before it is said.
 constexpr double kClocksApart_s = 1e-3;
 
@@ -145,6 +146,7 @@ sim::ImuRecord read_imu(const Bag& bag, const StaticFrames& frames, const std::s
     frame = message.header.frame_id;
   });
   const std::string where = bag.place + ": topic " + topic;
+  if (imu.time_ns.empty() && reading.imu_topics.empty()) return imu;  // declared, and never recorded
   finish_readings(where, reading.accel_unit, imu);
   // messages are in rad/s by their definition, and not every driver keeps to it
   const std::string evened = even_out_stamps(imu);
@@ -268,23 +270,50 @@ void require_one_clock(const sim::Sensors& sensors, const std::filesystem::path&
   }
 }
 
-Imported import_bag(BagReader& reader, const std::filesystem::path& path, const BagReading& reading) {
-  const Bag bag{reader, path.string(), reader.topics()};
-  const StaticFrames frames = read_frames(bag);
-  Imported out;
-  for (const std::string& topic : bag.chosen(reading.imu_topics, is_imu_type, kImu))
-    out.sensors.imus.push_back(read_imu(bag, frames, topic, reading, out.notes));
+/// What is wrong with a topic that nobody named, and how to do without it where there are others.
+[[noreturn]] void fail_of_several(const BadInput& error, const char* option) {
+  throw BadInput(std::string(error.what()) + " (" + option + " takes those alone that it names)");
+}
+
+void add_imus(const Bag& bag, const StaticFrames& frames, const BagReading& reading, Imported& out) {
+  const std::vector<std::string> topics = bag.chosen(reading.imu_topics, is_imu_type, kImu);
+  for (const std::string& topic : topics) {
+    try {
+      sim::ImuRecord imu = read_imu(bag, frames, topic, reading, out.notes);
+      if (imu.time_ns.empty()) {
+        out.notes.push_back(topic + kNoMessage);
+        continue;
+      }
+      out.sensors.imus.push_back(std::move(imu));
+    } catch (const BadInput& error) {
+      if (topics.size() < 2 || !reading.imu_topics.empty()) throw;
+      fail_of_several(error, "--imu-topic");
+    }
+  }
+}
+
+void add_lidars(const Bag& bag, const StaticFrames& frames, const BagReading& reading, Imported& out) {
   for (const std::string& topic : bag.chosen(reading.lidar_topics, is_cloud_type, kCloud)) {
     const CloudHeaders headers = read_headers(bag, topic, reading);
     if (headers.left_out(reading)) {
       out.notes.push_back(topic + ": its points lie in '" + headers.frame + "', in no sensor's frame: left out");
-      continue;
+    } else if (headers.stamps.empty() && reading.lidar_topics.empty()) {
+      out.notes.push_back(topic + kNoMessage);
+    } else {
+      add_lidar(out, read_lidar(bag, frames, topic, headers, reading, out.notes));
     }
-    add_lidar(out, read_lidar(bag, frames, topic, headers, reading, out.notes));
   }
+}
+
+Imported import_bag(BagReader& reader, const std::filesystem::path& path, const BagReading& reading) {
+  const Bag bag{reader, path.string(), reader.topics()};
+  const StaticFrames frames = read_frames(bag);
+  Imported out;
+  add_imus(bag, frames, reading, out);
+  add_lidars(bag, frames, reading, out);
   if (out.sensors.imus.empty() && out.sensors.lidars.empty()) {
-    throw BadInput(path.string() + ": holds no topic of type " + kImu + ", " + kCloud + " or CustomMsg among " +
-                   std::to_string(bag.topics.size()));
+    throw BadInput(path.string() + ": holds no topic of type " + kImu + ", " + kCloud +
+                   " or CustomMsg with messages among " + std::to_string(bag.topics.size()));
   }
   out.info.attribution = "imported from " + path.filename().string();
   require_one_clock(out.sensors, path);

@@ -45,7 +45,8 @@ void require_plausible_force(const std::string& where, const sim::ImuRecord& imu
   if (middle >= kLeastMedian_m_s2 && middle <= kLargestMedian_m_s2) return;
   const char* read_as = unit == AccelUnit::g ? "g" : "m/s^2";
   throw BadInput(where + ": read in " + read_as + " the median specific force is " + std::to_string(middle) +
-                 " m/s^2, must be within 3 and 30: is the file in " + likely_force_unit(middle, unit) + "?");
+                 " m/s^2, must be within 3 and 30: is the file in " + likely_force_unit(middle, unit) + "?" +
+                 (middle < kLeastMedian_m_s2 ? " Or was gravity taken out of it?" : ""));
 }
 
 /// From 0.5 Hz to 50 kHz: what an IMU gives at all.
@@ -147,6 +148,12 @@ std::string require_plausible_rates(const std::string& where, const sim::ImuReco
   GravityTurn turn = gravity_turn(imu, TurnWindows::even);
   // a sphere that rolls turns too far within them
   if (!tells(turn)) turn = gravity_turn(imu, TurnWindows::brisk);
+  const bool dead =
+      std::all_of(imu.gyro_rad_s.begin(), imu.gyro_rad_s.end(), [](const auto& w) { return w.isZero(0.0); });
+  if (dead) {
+    return "caution: the gyro reads 0 on all axes in all " + std::to_string(imu.gyro_rad_s.size()) +
+           " samples: is it dead, or not in what was recorded?";
+  }
   if (!tells(turn)) return "";
   const std::string seen = "gravity turns in the accelerometer " + rounded(turn.ratio) + " times as the gyro says (" +
                            std::to_string(turn.windows) + " windows, correlation " + rounded(turn.correlation) + ")";

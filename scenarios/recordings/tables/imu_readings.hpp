@@ -36,9 +36,10 @@ struct GravityTurn {
 };
 GravityTurn gravity_turn(const sim::ImuRecord& imu, TurnWindows windows = TurnWindows::even);
 
-/// A remark on the units that gravity shows, in even windows or else in brisk ones, or none where the motion does not
-/// tell. Throws BadInput beginning with `where` when the rates are in the other unit by it (a factor of 57.3), or when
-/// more than 1 % of them lie beyond twice the stated range (100 rad/s where none is stated).
+/// A remark on the units that gravity shows, in even windows or else in brisk ones, or on a gyro that reads nothing but
+/// 0, or none where the motion does not tell. Throws BadInput beginning with `where` when the rates are in the other
+/// unit by it (a factor of 57.3), or when more than 1 % of them lie beyond twice the stated range (100 rad/s where none
+/// is stated).
 std::string require_plausible_rates(const std::string& where, const sim::ImuRecord& imu, GyroUnit unit);
 
 /// m/s^2 and rad/s of one unit.

@@ -159,6 +159,22 @@ TEST(ImuMergeHealth, AUnitThatDiedIsAbsent) {
   EXPECT_LT(out.worst_force_m_s2, 0.5);
 }
 
+// what a unit read before its silence is of another motion: nothing is learnt, or moved in time, across it
+TEST(ImuMergeHealth, AUnitThatComesBackIsNotComparedWithWhatItReadBefore) {
+  const Outcome undisturbed = run(250, 5.0, 1.0, nothing);
+  for (const double back_s : {3.1, 3.3, 3.6, 4.0}) {
+    const Outcome out = run(250, 5.0, 1.0, [&](double t, Readings& now) {
+      if (t > 1.6 && t < back_s) now[1].angular_velocity_rad_s.x() = std::numeric_limits<double>::quiet_NaN();
+    });
+    EXPECT_LT(out.worst_rate_rad_s, 0.02) << back_s;
+    EXPECT_LT(out.worst_force_m_s2, 0.5) << back_s;
+    for (std::size_t k = 0; k < kCount; ++k) {
+      EXPECT_LT((out.state.units[k].x - undisturbed.state.units[k].x).lpNorm<Eigen::Infinity>(), 1e-3) << back_s;
+    }
+    EXPECT_LT((out.state.forces.x - undisturbed.state.forces.x).lpNorm<Eigen::Infinity>(), 0.01) << back_s;
+  }
+}
+
 TEST(ImuMergeHealth, AUnitThatDisagreesForLongIsLeftOutForGood) {
   const auto scaled = [](double, Readings& now) {
     now[1].angular_velocity_rad_s *= 1.3;

@@ -314,5 +314,34 @@ TEST(ImuPlausibility, ATriadThatRepeatsItselfIsFrozen) {
   }
 }
 
+// A body that rests, or rolls as it goes, with a gyro or an accelerometer that gives `dead` for ever.
+ImuPlausibility::State with_a_dead(bool gyro, bool turns, double dead) {
+  const ImuPlausibility plausibility({});
+  ImuPlausibility::State state;
+  oracles::Gaussian noise(5);
+  for (int k = 0; k < 800; ++k) {
+    ImuSample sample;
+    sample.time_ns = TimeNs{k} * 10'000'000;
+    const double rate = turns ? 2.0 : 0.0, angle = 0.01 * k * rate;
+    sample.angular_velocity_rad_s = {0.005 * noise(), rate + 0.005 * noise(), 0.0};
+    sample.specific_force_m_s2 = {-9.8 * std::sin(angle), 0.006 * noise(), 9.8 * std::cos(angle) + 0.006 * noise()};
+    (gyro ? sample.angular_velocity_rad_s : sample.specific_force_m_s2).setConstant(dead);
+    plausibility.step(sample, state);
+  }
+  return state;
+}
+
+TEST(ImuPlausibility, ATriadThatNeverMovedIsDeadWhereTheOtherTellsATurn) {
+  const ImuPlausibility plausibility({});
+  for (const double dead : {0.0, 0.01}) {
+    const ImuPlausibility::State gyro = with_a_dead(true, true, dead);
+    EXPECT_STREQ(plausibility.verdict(gyro).field, "seconds for which a triad repeats one reading") << dead;
+    EXPECT_NEAR(plausibility.frozen_s(gyro), 8.0, 0.05) << dead;
+    EXPECT_TRUE(plausibility.verdict(with_a_dead(true, false, dead)).ok()) << "a coarse gyro at rest";
+  }
+  EXPECT_STREQ(plausibility.verdict(with_a_dead(false, true, 0.0)).field,
+               "seconds for which a triad repeats one reading");
+}
+
 }  // namespace
 }  // namespace tumble

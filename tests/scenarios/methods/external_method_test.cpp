@@ -157,6 +157,17 @@ TEST_F(ExternalMethod, NonsenseIsRefusedWithLineValueAndBound) {
   EXPECT_THAT(refused(describe("rate", kRawByAwk + "; sed -i '7s/,[^,]*/,1e7/' {output}")), HasSubstr("1e+06 rad/s"));
 }
 
+TEST_F(ExternalMethod, WhatIsNoCovarianceIsRefused) {
+  const auto with = [&](const std::string& covariance) {
+    return describe("rate", kRawByAwk + "; sed -i -e 's/$/," + covariance +
+                                "/' -e '1s/,[^a-z].*$/,cxx,cxy,cxz,cyy,cyz,czz/' {output}");
+  };
+  EXPECT_THAT(refused(with("1,0,0,-2,0,1")), HasSubstr("rates.csv:2: a variance of -2, must be at least 0"));
+  EXPECT_THAT(refused(with("1,3,0,4,0,1")),
+              HasSubstr("a covariance of 3 beside variances of 1 and 4, must be within 2"));
+  EXPECT_EQ(run(with("1,2,0,4,0,1")).rates[0].covariance_rad2_s2(0, 1), 2.0);
+}
+
 TEST_F(ExternalMethod, DescriptionsAreCheckedBeforeAnythingRuns) {
   EXPECT_THAT(refused(describe("rate", "{csw} {output}")), HasSubstr("did you mean 'csv'"));
   EXPECT_THAT(refused(describe("rate", "true")), HasSubstr("{output}"));

@@ -111,6 +111,23 @@ TEST(SphereImus, ThePrimaryUnitMayDieToo) {
   EXPECT_LT(worst_rate_error(merged), 1e-6);
 }
 
+// a cable that comes loose takes rows, not numbers
+TEST(SphereImus, ThePrimaryUnitMayBeSilent) {
+  constexpr std::size_t kFrom = kSamples / 3, kTo = kFrom + 500;
+  for (const bool returns : {true, false}) {
+    sim::Sensors sensors = three(unit("imu_2", 0, 0.0), unit("imu_3", 1'000'000, 0.0));
+    const auto lose = [&](auto& rows) { rows.erase(rows.begin() + kFrom, returns ? rows.begin() + kTo : rows.end()); };
+    sim::ImuRecord& primary = sensors.imus[0];
+    lose(primary.time_ns), lose(primary.gyro_rad_s), lose(primary.accel_m_s2), lose(primary.clip_flags);
+    MergedImus merged;
+    ASSERT_TRUE(merge_imus(sensors, merged).ok());
+    ASSERT_EQ(merged.samples.size(), static_cast<std::size_t>(kSamples));
+    ASSERT_EQ(merged.out.size(), 1U);
+    EXPECT_EQ(to_string(merged.out[0]), "imu_silent_since_s");
+    EXPECT_LT(worst_rate_error(merged), 1e-4);
+  }
+}
+
 TEST(SphereImus, AFrozenUnitIsLeftOutFromTheBeginningOfItAndNamed) {
   for (std::size_t frozen = 0; frozen < 3; ++frozen) {
     sim::Sensors sensors = three(unit("imu_2", 0, 0.0), unit("imu_3", 0, 0.0));

@@ -304,6 +304,33 @@ TEST_F(HostileBag, DamagedRos2BagsAreOneLine) {
   EXPECT_THAT(complaint(), HasSubstr("no metadata.yaml"));
 }
 
+// what a recorder listened for and nobody sent is no reason to refuse the rest
+TEST_F(HostileBag, TopicsWithoutMessagesAreLeftOutUnlessNamed) {
+  const std::filesystem::path bag = folder_ / "bag";
+  for (const char* topic : {"/imu", "/lidar/points"}) {
+    std::filesystem::remove_all(bag);
+    export_ros2_bag(small_sensors(), {}, bag);
+    SQLite::Database database((bag / "bag_0.db3").string(), SQLite::OPEN_READWRITE);
+    database.exec(std::string("DELETE FROM messages WHERE topic_id = (SELECT id FROM topics WHERE name = '") + topic +
+                  "')");
+    const Imported imported = import_ros2_bag(bag, {});
+    EXPECT_THAT(imported.notes, testing::Contains(topic + std::string(": is declared and has no message: left out")));
+    EXPECT_EQ(imported.sensors.lidars.size(), topic == std::string("/imu") ? 1u : 0u);
+    BagReading named;
+    (topic == std::string("/imu") ? named.imu_topics : named.lidar_topics) = {topic};
+    EXPECT_THAT(fixture::complaint([&] { import_ros2_bag(bag, named); }), HasSubstr(topic));
+  }
+}
+
+TEST_P(Bag, AnImuThatIsNoneIsSaidWithTheWayOut) {
+  for (Eigen::Vector3d& force : recording_.sensors.imus[1].accel_m_s2) force.setZero();  // a gyro alone
+  write();
+  EXPECT_THAT(complaint_of(),
+              testing::AllOf(HasSubstr("topic /imu_reference:"), HasSubstr("(--imu-topic takes those")));
+  reading_.imu_topics = {"/imu"};
+  EXPECT_EQ(complaint_of(), "");
+}
+
 TEST_F(HostileBag, AMessageThatPromisesTooMuchAllocatesNothing) {
   const std::filesystem::path bag = folder_ / "bag";
   for (const bool field_count : {false, true}) {

@@ -62,6 +62,17 @@ TEST_F(ImportSphere, RatesBeyondTheRangeAreAnotherUnit) {
   EXPECT_EQ(complaint_of(rolled(5.0, 1.0), 7.854), "");
 }
 
+TEST_F(ImportSphere, ForcesWithoutGravityAreMet) {
+  std::string text = "sec,nsec,wx,wy,wz,fx,fy,fz\n";
+  for (int k = 0; k < 100; ++k) text += "0," + std::to_string(k * 10'000'000) + ",0,0,0,0.1,0,0.02\n";
+  EXPECT_THAT(complaint_of(text, 7.854), HasSubstr("Or was gravity taken out of it?"));
+}
+
+TEST_F(ImportSphere, AGyroThatReadsNothingIsSaid) {
+  EXPECT_THAT(import(rolled(2.5, 0.0), 7.854).notes, testing::Contains(HasSubstr("reads 0 on all axes in all 1000")));
+  EXPECT_THAT(import(rolled(2.5, 1.0), 7.854).notes, testing::Not(testing::Contains(HasSubstr("caution"))));
+}
+
 TEST_F(ImportSphere, StampsInAnotherUnitAreMet) {
   // ms, and us, where seconds are looked for; us where nanoseconds are
   for (const std::int64_t step_ns : {4'000'000'000, 4'000'000'000'000})

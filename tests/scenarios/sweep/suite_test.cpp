@@ -80,6 +80,12 @@ TEST_F(SuiteTest, ComplaintsNameFileLineAndNearestName) {
   }
 }
 
+TEST_F(SuiteTest, AScenarioIsToldFromASuite) {
+  EXPECT_THAT(complaint("name: icy\ndoc: d\nduration_s: 4\nmotion: {type: push}\n"),
+              ::testing::AllOf(::testing::HasSubstr("test.yaml:4: motion: a scenario has it"),
+                               ::testing::HasSubstr("scenarios/catalogue")));
+}
+
 TEST_F(SuiteTest, DrawsMayBeNamedInClasses) {
   write("scenarios/suites/test.yaml",
         "name: test\ndoc: d\ndraws:\n  mild: {hill: [7, 3], roll: [5]}\n  wild: {hill: [9]}\n"

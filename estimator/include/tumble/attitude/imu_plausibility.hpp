@@ -59,7 +59,8 @@ struct ImuPlausibilityParams {
 ///
 /// A gyro or an accelerometer that repeats one reading to the last bit, for a second and ten times as long as ever
 /// before, is frozen: it has shown that its readings move. One that held its readings as long before (a coarse quantum
-/// at rest, a simulation without noise) is not told from that.
+/// at rest, a simulation without noise) is not told from that. One that never moved is frozen when the other one says
+/// that the body turns: a gyro by the turning of gravity, an accelerometer that reads nothing but 0 by the gyro.
 ///
 /// Not seen: an accelerometer with all three axes flipped, which is the mirrored world (ImuMerge::arm_share() tells it,
 /// with several IMUs), errors of some per cent, axes about which the body does not turn, or a body that is pushed about
@@ -113,7 +114,7 @@ class ImuPlausibility {
   /// How axes are named where gravity turns with the gyro, when they clearly are not as they say (I18).
   std::optional<AxisLabels> other_labels(const State& state) const;
   /// Longest time for which the gyro or the accelerometer was frozen [s]; 0: never.
-  double frozen_s(const State& state) const { return std::max(state.gyro.frozen_s, state.accel.frozen_s); }
+  double frozen_s(const State& state) const;
   /// `out_of_range` naming which of these is out of its bound.
   Status verdict(const State& state) const;
 

@@ -28,7 +28,7 @@ struct ImuMergeUnit {
   Eigen::Matrix<double, kErrors, 1> x = Eigen::Matrix<double, kErrors, 1>::Zero();
   Eigen::Matrix<double, kErrors, kErrors> P = Eigen::Matrix<double, kErrors, kErrors>::Zero();
   ImuAverage window;  ///< of its readings, since the last one closed
-  /// Means over the last window.
+  /// Means over the last window; of one that was silent what the others make of it.
   Eigen::Vector3d last_rate_rad_s = Eigen::Vector3d::Zero(), last_force_m_s2 = Eigen::Vector3d::Zero();
   double suspect_s = 0.0;     ///< for so long it is still left out of the force
   std::int64_t left_out = 0;  ///< windows
@@ -59,7 +59,7 @@ struct ImuMergeState {
   double length_s = 0.0, length_before_s = 0.0;                 ///< of the last windows
   double arm_product = 0.0, arm_square_m2_s3 = 0.0;             ///< of arm_share()
   std::int64_t samples = 0, windows = 0;
-  int free_windows = kLearnFrom;  ///< since a gyro was clipped, at most kLearnFrom
+  int free_windows = kLearnFrom;  ///< since a gyro was clipped or a unit silent, at most kLearnFrom
   TimeNs last_time_ns = 0;
   bool operator==(const ImuMergeState&) const = default;
 };

@@ -63,14 +63,17 @@ struct AxisNamingParams {
 
 /// A triad that repeats its reading.
 struct FrozenTriadParams {
-  double repeats_s = 1.0;       ///< for so long it may be frozen, after as long of moving ones
-  double longest_share = 10.0;  ///< and lasts so many times longer than any did before
+  double repeats_s = 1.0;          ///< for so long it may be frozen, after as long of moving ones
+  double longest_share = 10.0;     ///< and lasts so many times longer than any did before
+  double unexplained_least = 0.5;  ///< of gravity's turning, for a gyro that never moved
 
   template <class Self, class Visitor>
   static void fields(Self& p, Visitor& visit) {
     visit(p.repeats_s, {"frozen_s", "s", 1e-12, 1e4,
                         "a reading that repeats for so long may be frozen, after as long of moving ones"});
     visit(p.longest_share, {"frozen_share", "1", 1.0, 1e6, "and lasts so many times longer than any did before"});
+    visit(p.unexplained_least, {"frozen_unexplained_least", "1", 0.0, 1.0,
+                                "share of gravity's turning that a gyro leaves unexplained which never moved"});
   }
 };
 
