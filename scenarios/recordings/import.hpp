@@ -26,18 +26,22 @@ struct Imported {
 enum class AccelUnit { m_s2, g };
 enum class GyroUnit { rad_s, deg_s };
 
-/// Reads the readings of one IMU from CSV, a line per message of sensor_msgs/Imu. A header's names are believed before
-/// places: those of export_csv (each once and no other), short forms of them (sec nsec wx.. fx.. or ax..), or
-/// ".../header/stamp" (seconds, read to the nanosecond), ".../angular_velocity/x" and ".../linear_acceleration/x", y
-/// and z, as tools that flatten ROS messages write them. A first line of numbers is a sample, and columns stand by
-/// place (from 0): 0 stamp s, 1 stamp ns, 8-10 rate, 12-14 specific force. `device` gives what the file does not state:
-/// name, device, ranges, noise, T_BI; its period and readings are replaced. Times are counted from the first stamp; the
-/// period is the median step; stamps in whole milliseconds of a faster beat are put on it, and said
-/// (rounded_stamps.hpp). Units are held against gravity: its size, and how it turns (a note says so where the motion
-/// tells). Throws BadInput with file and line: unknown, doubled or missing columns, differing numbers of them, not a
-/// number, not finite, a stamp that does not rise, a last line without its end; fewer than two samples; a median
-/// specific force outside 3 to 30 m/s^2, a period outside 20 us to 2 s, more than 1 % of the rates beyond twice the
-/// device's range (100 rad/s where none is stated), or gravity that turns 57 times too fast or too slow for the rates.
+/// Reads the readings of one IMU from a table of text, separated by what the first line has most of: comma, semicolon
+/// or tabulator. A header's names are believed before places: those of export_csv (each once and no other), short forms
+/// of them (sec nsec wx.. fx.. or ax..), ".../header/stamp" (seconds, read to the nanosecond), ".../angular_velocity/x"
+/// and
+/// ".../linear_acceleration/x", y and z, as tools that flatten ROS messages write them, or those of loggers and data
+/// sets ("time,gyro_x,...,accel_x,...", "#timestamp [ns],w_RS_S_x [rad s^-1],...": tables/logger_columns.hpp), whose
+/// units are believed where they are stated; the unit of times that state none follows from their steps, and is said. A
+/// first line of numbers is a sample, and columns stand by place (from 0): 0 stamp s, 1 stamp ns, 8-10 rate, 12-14
+/// specific force. `device` gives what the file does not state: name, device, ranges, noise, T_BI; its period and
+/// readings are replaced. Times are counted from the first stamp; the period is the median step; stamps in whole
+/// milliseconds of a faster beat are put on it, and said (rounded_stamps.hpp). Units are held against gravity: its
+/// size, and how it turns (a note says so where the motion tells). Throws BadInput with file and line: unknown, doubled
+/// or missing columns, a unit other than the one asked for, differing numbers of columns, not a number, not finite, a
+/// stamp that does not rise, a last line without its end; fewer than two samples; a median specific force outside 3 to
+/// 30 m/s^2, a period outside 20 us to 2 s, more than 1 % of the rates beyond twice the device's range (100 rad/s where
+/// none is stated), or gravity that turns 57 times too fast or too slow for the rates.
 Imported import_imu_csv(const std::filesystem::path& path, const sim::ImuRecord& device,
                         AccelUnit unit = AccelUnit::m_s2, GyroUnit gyro_unit = GyroUnit::rad_s);
 

@@ -143,6 +143,13 @@ void write_recordings(const path& folder, const path& scratch) {
            tables("sec,nsec,wx,wy,wz,ax,ay,az\n", "1,%.0f,0.01,0.02,0.03,0.1,0.2,9.8\n", 0) +
                "1,0,0.01,0.02,0.03,0.1,0.2,9.8\n1,10000000,0.01,0.02,0.03,0.1,0.2,9.8\n"
                "1,20000000,0.01,0.02,0.03,0.1,0.2,9.8\n");
+  put_text(in(folder, "imu_csv") / "logger",
+           "#timestamp [ns];w_RS_S_x [rad s^-1];w_RS_S_y [rad s^-1];w_RS_S_z [rad s^-1];\"ax\";ay;az;temp\n"
+           "1403636579758555392;0.01;0.02;0.03;0.1;0.2;9.8;25\n1403636579763555392;0.01;0.02;0.03;0.1;0.2;9.8;25\n"
+           "1403636579768555392;0.01;0.02;0.03;0.1;0.2;9.8;25\n");
+  put_text(in(folder, "imu_csv") / "logger_steps",
+           "time,gyro_x_deg_s,gyro_y_deg_s,gyro_z_deg_s,acc_x (g),acc_y (g),acc_z (g)\n"
+           "0.005,1,2,3,0,0,1\n0.010000000000000002,1,2,3,0,0,1\n0.015,1,2,3,0,0,1\n");
   export_ply(longer.sensors, scratch / "ply");
   export_pcd(longer.sensors, scratch / "pcd");
   std::filesystem::copy_file(scratch / "ply" / "lidar_000000.ply", in(folder, "ply_cloud") / "binary");

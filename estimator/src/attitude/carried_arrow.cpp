@@ -4,6 +4,6 @@
 namespace tumble {
 
 // compiled once, for the files that solve the carried body's equations
-template class ArrowSystem<carried::kState, carried::kBorder>;
+template struct ArrowSystem<carried::kState, carried::kBorder>;
 
 }  // namespace tumble

@@ -16,7 +16,18 @@ namespace {
 std::string_view trimmed(std::string_view text) {
   while (text.starts_with(' ') || text.starts_with('\t')) text.remove_prefix(1);
   while (text.ends_with(' ') || text.ends_with('\t') || text.ends_with('\r')) text.remove_suffix(1);
+  if (text.size() > 1 && text.starts_with('"') && text.ends_with('"')) return trimmed(text.substr(1, text.size() - 2));
   return text;
+}
+
+/// Of the first line.
+char likely_separator(std::string_view text) {
+  const std::string_view line = text.substr(0, text.find('\n'));
+  char most = ',';
+  for (const char separator : {';', '\t'}) {
+    if (std::count(line.begin(), line.end(), separator) > std::count(line.begin(), line.end(), most)) most = separator;
+  }
+  return most;
 }
 
 bool parse(std::string_view text, double& value) {
@@ -38,6 +49,12 @@ CsvText::CsvText(const std::filesystem::path& path, char separator) : name_(path
                    ": the last line has no line end: the file may be cut in the middle of a number");
   }
   if (text_.starts_with("\xEF\xBB\xBF")) at_ = 3;  // a mark of the encoding
+  text_.erase(text_.find_last_not_of(" \t\r\n") + 1);
+  text_ += '\n';
+}
+
+CsvText::CsvText(const std::filesystem::path& path) : CsvText(path, ',') {
+  separator_ = likely_separator(text_);
 }
 
 bool CsvText::next(CsvLine& line) {

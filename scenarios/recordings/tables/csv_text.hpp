@@ -10,15 +10,18 @@
 /// Text files of separated columns, read line by line. Private to scenarios/recordings.
 namespace tumble::scenarios {
 
-/// One line and where it stands: "FILE:12". Fields are views into the file's text, without blanks around them.
+/// One line and where it stands: "FILE:12". Fields are views into the file's text, without blanks or quotes around
+/// them.
 struct CsvLine {
   std::string where;
   std::vector<std::string_view> fields;
 };
 
-/// The lines of a file, from its memory. Line ends may be those of Windows.
+/// The lines of a file, from its memory. Line ends may be those of Windows; empty lines at the end are none.
 class CsvText {
  public:
+  /// Separated by what the first line has most of: a comma, a semicolon or a tabulator.
+  explicit CsvText(const std::filesystem::path& path);
   /// Throws BadInput with the file: not there, empty, or a last line without its end, which may be cut in a number.
   CsvText(const std::filesystem::path& path, char separator);
   /// The next line; false at the end.

@@ -275,7 +275,8 @@ TEST_F(ImportCsv, BadInputHasFileAndLine) {
   EXPECT_THAT(complaint_of(good + line("1.5,0")), HasSubstr("csv:4: column 0 must be a whole number"));
   EXPECT_THAT(complaint_of(good + line("1,1000000000")), HasSubstr("csv:4: column 1 must be a whole number"));
   EXPECT_THAT(complaint_of(good + line("1e30,0")), HasSubstr("csv:4: column 0 must be a whole number"));
-  EXPECT_THAT(complaint_of(good + "\n"), HasSubstr("csv:4: has 1 columns"));
+  EXPECT_EQ(complaint_of(good + "\n \r\n"), "") << "nothing follows";
+  EXPECT_THAT(complaint_of(good + "\n" + line("1,20000000")), HasSubstr("csv:4: has 1 columns"));
   EXPECT_THAT(complaint_of(good + line("1,20000000").substr(0, 60) + "\n"), HasSubstr("csv:4: has"));
   EXPECT_THAT(complaint_of("a,b\n1,2\n"), HasSubstr("csv:1: names no column that is known"));
   EXPECT_THAT(complaint_of("1,2\n"), HasSubstr("csv:1: has 2 columns and no header, needs 15"));

@@ -123,5 +123,5 @@ Eigen::Vector3d turned(const Node& from, const Node& to, double step_s);
 
 }  // namespace carried
 
-extern template class ArrowSystem<carried::kState, carried::kBorder>;  // carried_arrow.cpp
+extern template struct ArrowSystem<carried::kState, carried::kBorder>;  // carried_arrow.cpp
 }  // namespace tumble

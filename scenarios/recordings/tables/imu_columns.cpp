@@ -1,0 +1,250 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "scenarios/recordings/tables/imu_columns.hpp"
+
+#include <algorithm>
+#include <cctype>
+#include <charconv>
+#include <cmath>
+#include <string_view>
+
+#include "scenarios/draw/strict_yaml.hpp"
+#include "scenarios/errors.hpp"
+#include "scenarios/recordings/tables/logger_columns.hpp"
+#include "scenarios/recordings/upper_median.hpp"
+
+namespace tumble::scenarios {
+
+namespace {
+
+constexpr std::int64_t kSecond_ns = 1000000000;
+constexpr std::int64_t kLatest_ns = 9'000'000'000 * kSecond_ns;  // the year 2255
+
+/// Columns that a header-less sensor_msgs/Imu must have.
+constexpr std::size_t kColumnsByPlace = 15;
+
+[[noreturn]] void fail(const CsvLine& line, const std::string& what) {
+  throw BadInput(line.where + ": " + what);
+}
+
+const std::array<std::string, 3> kAxes = {"x", "y", "z"};
+
+/// What `export` writes: each of these once, and nothing else.
+const std::vector<std::string> kExported = {"stamp_s",  "stamp_ns", "frame_id", "qx",
+                                            "qy",       "qz",       "qw",       "orientation_covariance",
+                                            "wx_rad_s", "wy_rad_s", "wz_rad_s", "angular_velocity_covariance",
+                                            "fx_m_s2",  "fy_m_s2",  "fz_m_s2",  "linear_acceleration_covariance"};
+
+/// The one column that `fits`; a second one would be another sensor's.
+template <class Fits>
+std::optional<std::size_t> find_column(const CsvLine& header, const std::string& name, const Fits& fits) {
+  std::optional<std::size_t> found;
+  for (std::size_t i = 0; i < header.fields.size(); ++i) {
+    if (!fits(header.fields[i])) continue;
+    if (found) fail(header, "two columns are called " + name);
+    found = i;
+  }
+  return found;
+}
+
+std::optional<std::size_t> find_ending(const CsvLine& header, const std::string& name) {
+  return find_column(header, name, [&](std::string_view field) { return field.ends_with(name); });
+}
+
+std::optional<std::size_t> find_any(const CsvLine& header, const std::vector<std::string>& names) {
+  return find_column(header, names.front(), [&](std::string_view field) {
+    return std::find(names.begin(), names.end(), field) != names.end();
+  });
+}
+
+/// Collects the columns of a header that must all be there.
+class Columns {
+ public:
+  explicit Columns(const CsvLine& header) : header_(header) {}
+  void take(const std::optional<std::size_t>& place, const std::string& name, std::size_t& column) {
+    if (place)
+      column = *place, ++found_;
+    else
+      missing_ += " " + name;
+  }
+  /// False when none is there; throws when some are.
+  bool complete() const {
+    if (found_ == 0) return false;
+    if (!missing_.empty()) fail(header_, "columns are missing:" + missing_);
+    return true;
+  }
+
+ private:
+  const CsvLine& header_;
+  int found_ = 0;
+  std::string missing_;
+};
+
+/// ".../header/stamp" and so on, as tools that flatten messages write them.
+std::optional<ImuColumns> flattened(const CsvLine& header) {
+  ImuColumns layout;
+  Columns columns(header);
+  columns.take(find_ending(header, "header/stamp"), "header/stamp", layout.stamp);
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    const std::string rate = "angular_velocity/" + kAxes[axis], force = "linear_acceleration/" + kAxes[axis];
+    columns.take(find_ending(header, rate), rate, layout.rate[axis]);
+    columns.take(find_ending(header, force), force, layout.force[axis]);
+  }
+  layout.stamp_form = StampForm::seconds;
+  return columns.complete() ? std::optional(layout) : std::nullopt;
+}
+
+/// "wx_rad_s" or "wx", "fx_m_s2", "fx" or "ax", "stamp_s", "sec", "secs" or "s" with "stamp_ns" and so on.
+std::optional<ImuColumns> named(const CsvLine& header) {
+  ImuColumns layout;
+  Columns columns(header);
+  columns.take(find_any(header, {"stamp_s", "sec", "secs", "s"}), "stamp_s", layout.stamp);
+  columns.take(find_any(header, {"stamp_ns", "nsec", "nsecs", "ns"}), "stamp_ns", layout.stamp_ns);
+  for (std::size_t i = 0; i < 3; ++i) {
+    const std::string rate = "w" + kAxes[i], force = "f" + kAxes[i];
+    columns.take(find_any(header, {rate + "_rad_s", rate}), rate + "_rad_s", layout.rate[i]);
+    columns.take(find_any(header, {force + "_m_s2", force, "a" + kAxes[i]}), force + "_m_s2", layout.force[i]);
+  }
+  return columns.complete() ? std::optional(layout) : std::nullopt;
+}
+
+/// A header with names of our own export has all of them, each once, and no other.
+void require_exported(const CsvLine& header) {
+  for (const std::string_view field : header.fields) {
+    const std::string name(field);
+    if (std::find(kExported.begin(), kExported.end(), name) == kExported.end())
+      fail(header, "unknown column '" + name + "'" + suggestion(name, kExported));
+  }
+  for (const std::string& name : kExported) {
+    const auto count = std::count(header.fields.begin(), header.fields.end(), name);
+    if (count > 1) fail(header, "two columns are called " + name);
+  }
+}
+
+double number(const CsvLine& line, std::size_t column) {
+  return csv_number(line, column, std::to_string(column));
+}
+
+std::int64_t whole_number(const CsvLine& line, std::size_t column, std::int64_t largest) {
+  const double value = number(line, column);
+  if (value != std::floor(value) || value < 0.0 || value > static_cast<double>(largest)) {
+    fail(line, "column " + std::to_string(column) + " must be a whole number from 0 to " + std::to_string(largest));
+  }
+  return static_cast<std::int64_t>(value);
+}
+
+/// A decimal number of seconds, without the rounding of a double.
+std::int64_t decimal_ns(const CsvLine& line, std::size_t column) {
+  const std::string_view text = line.fields[column];
+  const std::size_t point = std::min(text.find('.'), text.size());
+  const std::string_view part = text.substr(std::min(point + 1, text.size()));
+  std::int64_t seconds = 0, fraction_ns = 0;
+  const auto all_digits = [](std::string_view digits) {
+    return std::all_of(digits.begin(), digits.end(), [](unsigned char c) { return std::isdigit(c) != 0; });
+  };
+  if (point == 0 || point > 10 || part.size() > 9 || !all_digits(text.substr(0, point)) || !all_digits(part)) {
+    fail(line, "column " + std::to_string(column) + " must be seconds with at most nine decimals, is '" +
+                   std::string(text) + "'");
+  }
+  std::from_chars(text.data(), text.data() + point, seconds);
+  std::string digits(part);
+  digits.resize(9, '0');
+  std::from_chars(digits.data(), digits.data() + digits.size(), fraction_ns);
+  return seconds * kSecond_ns + fraction_ns;
+}
+
+/// A decimal number of a unit with so many decimals, rounded to nanoseconds without the rounding of a double.
+std::int64_t scaled_ns(const CsvLine& line, std::size_t column, int decimals) {
+  const std::string_view text = line.fields[column];
+  const std::size_t point = std::min(text.find('.'), text.size());
+  const std::string_view part = text.substr(std::min(point + 1, text.size()));
+  const auto all_digits = [](std::string_view digits) {
+    return std::all_of(digits.begin(), digits.end(), [](unsigned char c) { return std::isdigit(c) != 0; });
+  };
+  std::string digits(text.substr(0, point));
+  digits += part.substr(0, static_cast<std::size_t>(decimals));
+  digits.resize(point + static_cast<std::size_t>(decimals), '0');
+  std::int64_t whole_ns = 0;
+  const auto [end, error] = std::from_chars(digits.data(), digits.data() + digits.size(), whole_ns);
+  const bool rises =
+      part.size() > static_cast<std::size_t>(decimals) && part[static_cast<std::size_t>(decimals)] >= '5';
+  if (point == 0 || !all_digits(text.substr(0, point)) || !all_digits(part) || error != std::errc() ||
+      end != digits.data() + digits.size() || whole_ns > kLatest_ns) {
+    fail(line, "column " + std::to_string(column) +
+                   " must be a time, digits with a point or without, up to the year 2255, is '" + std::string(text) +
+                   "'");
+  }
+  return whole_ns + (rises ? 1 : 0);
+}
+
+/// Whole seconds in a column and nanoseconds in another.
+bool has_split_stamp(const CsvLine& header) {
+  return find_any(header, {"sec", "secs", "s"}) || find_any(header, {"nsec", "nsecs", "ns"});
+}
+
+/// A column that `export` writes and nobody else.
+bool is_own(std::string_view field) {
+  return (field == "stamp_s" || field.ends_with("_rad_s") || field.ends_with("_m_s2")) &&
+         std::find(kExported.begin(), kExported.end(), field) != kExported.end();
+}
+
+}  // namespace
+
+ImuColumns imu_columns(const CsvLine& first) {
+  if (is_number(first.fields.front())) {
+    ImuColumns columns;
+    columns.has_header = false;
+    if (first.fields.size() < kColumnsByPlace) {
+      fail(first, "has " + std::to_string(first.fields.size()) + " columns and no header, needs " +
+                      std::to_string(kColumnsByPlace));
+    }
+    return columns;
+  }
+  if (std::optional<ImuColumns> columns = flattened(first)) return *columns;
+  const bool own = std::any_of(first.fields.begin(), first.fields.end(), is_own);
+  if (own) require_exported(first);
+  if (std::optional<ImuColumns> columns = own || has_split_stamp(first) ? named(first) : logger_columns(first)) {
+    if (own) columns->gyro_unit = GyroUnit::rad_s, columns->accel_unit = AccelUnit::m_s2;
+    return *columns;
+  }
+  fail(first,
+       "names no column that is known: stamp_s, stamp_ns, wx_rad_s, ..., fx_m_s2, ... (as 'export' writes them), "
+       ".../header/stamp, .../angular_velocity/x, ..., names of loggers (time, gyro_x, ..., accel_x, ...) or none at "
+       "all");
+}
+
+std::int64_t stamp_ns(const CsvLine& line, const ImuColumns& columns) {
+  switch (columns.stamp_form) {
+    case StampForm::seconds:
+      return decimal_ns(line, columns.stamp);
+    case StampForm::decimal:
+      return scaled_ns(line, columns.stamp, columns.stamp_decimals.value_or(9));
+    case StampForm::split:
+      break;
+  }
+  return whole_number(line, columns.stamp, kLatest_ns / kSecond_ns) * kSecond_ns +
+         whole_number(line, columns.stamp_ns, kSecond_ns - 1);
+}
+
+int decimals_by_step(CsvText text, std::size_t stamp, const std::string& file) {
+  constexpr std::size_t kLooked = 1000;
+  constexpr double kLeast_s = 0.9e-3, kMost_s = 0.1;
+  std::vector<double> steps;
+  CsvLine line;
+  for (double last = 0.0; steps.size() <= kLooked && text.next(line);) {
+    const double now = stamp < line.fields.size() ? number(line, stamp) : last;
+    steps.push_back(now - last);
+    last = now;
+  }
+  if (steps.size() < 2) return 9;  // too few samples, which is said where they are counted
+  steps.erase(steps.begin());      // the first stamp is no step
+  const double step = upper_median(steps);
+  for (const int decimals : {9, 6, 3, 0}) {
+    const double step_s = step * std::pow(10.0, decimals - 9);
+    if (step_s >= kLeast_s && step_s < kMost_s) return decimals;
+  }
+  throw BadInput(file + ": the times step by " + std::to_string(step) +
+                 ", in no unit of s, ms, us and ns 10 to 1000 times a second: name the column with its unit, as "
+                 "time_s or 'time [ns]'");
+}
+
+}  // namespace tumble::scenarios

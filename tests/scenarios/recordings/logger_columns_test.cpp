@@ -1,0 +1,150 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Tables of IMUs as loggers and data sets write them: names, units and times of many kinds, the same readings.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cstdint>
+#include <sstream>
+
+#include "scenarios/recordings/fixture_recording.hpp"
+#include "scenarios/recordings/import.hpp"
+
+namespace tumble::scenarios {
+namespace {
+
+using testing::AllOf;
+using testing::Contains;
+using testing::ElementsAre;
+using testing::HasSubstr;
+using testing::Not;
+
+class LoggerTable : public fixture::Folder {
+ protected:
+  Imported import(const std::string& text, AccelUnit unit = AccelUnit::m_s2, GyroUnit gyro_unit = GyroUnit::rad_s) {
+    fixture::put(folder_ / "log.csv", text);
+    return import_imu_csv(folder_ / "log.csv", {}, unit, gyro_unit);
+  }
+  std::string complaint_of(const std::string& text, AccelUnit unit = AccelUnit::m_s2) {
+    return fixture::complaint([&] { import(text, unit); });
+  }
+};
+
+/// Three samples 5 ms apart; `row` as it follows the time.
+std::string table(const std::string& header, const std::vector<std::string>& times, const std::string& row) {
+  std::string text = header + "\n";
+  for (const std::string& time : times) text += time + row + "\n";
+  return text;
+}
+
+void expect_the_readings(const Imported& imported) {
+  const sim::ImuRecord& imu = imported.sensors.imus.at(0);
+  ASSERT_THAT(imu.time_ns, ElementsAre(0, 5'000'000, 10'000'000));
+  EXPECT_EQ(imu.period_ns, 5'000'000);
+  EXPECT_TRUE(imu.gyro_rad_s[1].isApprox(Eigen::Vector3d(0.1, 0.2, 0.3), 1e-12));
+  EXPECT_TRUE(imu.accel_m_s2[1].isApprox(Eigen::Vector3d(-0.5, 0.0, 9.8), 1e-12));
+}
+
+const std::vector<std::string> kSeconds = {"12.5", "12.505", "12.51"};
+const std::string kRow = ",0.1,0.2,0.3,-0.5,0,9.8";
+
+TEST_F(LoggerTable, NamesOfManyKindsAreKnown) {
+  for (const char* header :
+       {"t,gx,gy,gz,ax,ay,az", "time,gyro_x,gyro_y,gyro_z,acc_x,acc_y,acc_z",
+        "Timestamp,GyroX,GyroY,GyroZ,AccelX,AccelY,AccelZ", "ts,wx,wy,wz,ax,ay,az",
+        "\"time\",\"gyr.x\",\"gyr.y\",\"gyr.z\",\"acc.x\",\"acc.y\",\"acc.z\"",
+        "time_s,angular_velocity_x,angular_velocity_y,angular_velocity_z,linear_acceleration_x,"
+        "linear_acceleration_y,linear_acceleration_z",
+        "stamp,imu gyro x,imu gyro y,imu gyro z,imu accel x,imu accel y,imu accel z",
+        "time [s],gyro_x_rad_s,gyro_y_rad_s,gyro_z_rad_s,accel_x_m_s2,accel_y_m_s2,accel_z_m_s2"}) {
+    SCOPED_TRACE(header);
+    expect_the_readings(import(table(header, kSeconds, kRow)));
+  }
+}
+
+// the layout of EuRoC's and TUM VI's imu0/data.csv
+TEST_F(LoggerTable, ColumnsOfEurocAreKnown) {
+  const std::string header =
+      "#timestamp [ns],w_RS_S_x [rad s^-1],w_RS_S_y [rad s^-1],w_RS_S_z [rad s^-1],a_RS_S_x [m s^-2],"
+      "a_RS_S_y [m s^-2],a_RS_S_z [m s^-2]";
+  const Imported imported =
+      import(table(header, {"1403636579758555392", "1403636579763555392", "1403636579768555392"}, kRow));
+  expect_the_readings(imported);
+  EXPECT_EQ(imported.info.origin_ns, 1403636579758555392);
+}
+
+TEST_F(LoggerTable, SemicolonsTabulatorsAndOtherColumnsAreRead) {
+  const auto separated = [](char by) {
+    std::string text =
+        table("mag_x,time_ms,gz,gy,gx,ax,ay,az,temp", {"7,100", "7,105", "7,110"}, ",0.3,0.2,0.1,-0.5,0,9.8,25");
+    std::replace(text.begin(), text.end(), ',', by);
+    return text;
+  };
+  for (const char by : {',', ';', '\t'}) {
+    const Imported imported = import(separated(by));
+    expect_the_readings(imported);
+    EXPECT_THAT(imported.notes, Contains("columns left out: mag_x, temp"));
+    EXPECT_THAT(imported.notes, Not(Contains(HasSubstr("by their steps"))));
+  }
+}
+
+TEST_F(LoggerTable, TheUnitOfTimesIsTakenFromTheirSteps) {
+  const auto notes_of = [&](const std::vector<std::string>& times) {
+    const Imported imported = import(table("time,gx,gy,gz,ax,ay,az", times, kRow));
+    expect_the_readings(imported);
+    return imported.notes;
+  };
+  EXPECT_THAT(notes_of(kSeconds), Contains("times are taken for s by their steps"));
+  EXPECT_THAT(notes_of({"1700000000000", "1700000000005", "1700000000010"}), Contains(HasSubstr("for ms by")));
+  EXPECT_THAT(notes_of({"0", "5000", "10000"}), Contains(HasSubstr("for us by")));
+  EXPECT_THAT(notes_of({"1700000000000000000", "1700000000005000000", "1700000000010000000"}),
+              Contains(HasSubstr("for ns by")));
+  // as Python prints sums of steps
+  EXPECT_THAT(notes_of({"0.005", "0.010000000000000002", "0.014999999999999999"}), Contains(HasSubstr("for s by")));
+  // half a second, or half a millisecond
+  EXPECT_THAT(complaint_of(table("time,gx,gy,gz,ax,ay,az", {"0", "0.5", "1"}, kRow)),
+              AllOf(HasSubstr("log.csv: the times step by 0.5"), HasSubstr("name the column with its unit")));
+  // control: with its name the same is read
+  EXPECT_EQ(complaint_of(table("time_s,gx,gy,gz,ax,ay,az", {"0", "0.5", "1"}, kRow)), "");
+}
+
+TEST_F(LoggerTable, StatedUnitsAreBelieved) {
+  const Imported imported = import(
+      table("t,gx (deg/s),gy (deg/s),gz (deg/s),ax [g],ay [g],az [g]", kSeconds, ",57.29577951308232,0,0,0,0,1"));
+  EXPECT_NEAR(imported.sensors.imus[0].gyro_rad_s[0].x(), 1.0, 1e-12);
+  EXPECT_NEAR(imported.sensors.imus[0].accel_m_s2[0].z(), 9.80665, 1e-12);
+  EXPECT_THAT(imported.notes, AllOf(Contains(HasSubstr("in deg/s")), Contains(HasSubstr("in g"))));
+  EXPECT_EQ(complaint_of(table(
+                "t,gx (\xC2\xB0/s),gy (\xC2\xB0/s),gz (\xC2\xB0/s),ax (m/s\xC2\xB2),ay (m/s\xC2\xB2),az (m/s\xC2\xB2)",
+                kSeconds, kRow)),
+            "");
+  EXPECT_THAT(complaint_of(table("t,gx,gy,gz,ax [m/s^2],ay [m/s^2],az [m/s^2]", kSeconds, kRow), AccelUnit::g),
+              HasSubstr("log.csv:1: its names say"));
+  EXPECT_THAT(complaint_of(table("t,gx,gy,gz,ax [m/s^2],ay [m/s^2],az [g]", kSeconds, kRow)),
+              HasSubstr("axes of the accel are in several units"));
+  EXPECT_THAT(complaint_of(table("t,gx,gy,gz,ax [N],ay [N],az [N]", kSeconds, kRow)),
+              HasSubstr("log.csv:1: column 'ax [N]' is in a unit that is not known"));
+}
+
+TEST_F(LoggerTable, WhatIsMissingOrThereTwiceIsSaid) {
+  EXPECT_THAT(complaint_of(table("t,gx,gy,gz,ax,ay,temp", kSeconds, kRow)),
+              HasSubstr("log.csv:1: columns are missing: accel_z"));
+  EXPECT_THAT(complaint_of(table("n,gx,gy,gz,ax,ay,az", kSeconds, kRow)), HasSubstr("columns are missing: time"));
+  EXPECT_THAT(complaint_of(table("t,gx,gy,gz,ax,ay,az,acc_x", kSeconds, kRow + ",1")),
+              HasSubstr("two columns are the accel's x: 'ax' and 'acc_x'"));
+  EXPECT_THAT(complaint_of(table("t,time,gx,gy,gz,ax,ay,az", {"1,1", "2,2"}, kRow)),
+              HasSubstr("two columns are a time: 't' and 'time'"));
+  EXPECT_THAT(complaint_of(table("t,a,b", kSeconds, ",1,2")), HasSubstr("names no column that is known"));
+}
+
+TEST_F(LoggerTable, TimesThatAreNoneHaveTheirPlace) {
+  for (const char* time : {"", "-1", "1e3", "x", ".5", "99999999999999999999", "1.2.3"}) {
+    EXPECT_THAT(complaint_of(table("time_s,gx,gy,gz,ax,ay,az", {"0", time}, kRow)),
+                AllOf(HasSubstr("log.csv:3: column 0"), HasSubstr("must be a time")))
+        << time;
+  }
+  EXPECT_THAT(complaint_of(table("time_s,gx,gy,gz,ax,ay,az", {"0", "0.1", "0.05"}, kRow)),
+              HasSubstr("log.csv:4: stamp does not rise"));
+}
+
+}  // namespace
+}  // namespace tumble::scenarios
