@@ -50,6 +50,7 @@ TEST(Exchange, WhatIsExportedAsCsvComesBack) {
   const Ended imported = run_program({"import", (folder / "csv" / "imu.csv").string(), "--device", "phidget1044",
                                       "--robot", "sphere", "--lever-arm", "0.01", "0", "-0.02", "-o", back, "--json"});
   ASSERT_EQ(imported.status, 0) << imported.err;
+  EXPECT_THAT(imported.err, testing::Not(testing::HasSubstr("--lever-arm")));
   const json said = json_of(imported);
   EXPECT_EQ(said["period_ns"], 4000000);
   EXPECT_GT(said["samples"].get<int>(), 1000);

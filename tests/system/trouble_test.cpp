@@ -105,7 +105,9 @@ TEST(Trouble, AGapIsSaidWithItsPlace) {
   }
   csv.close();
   const std::string recording = (folder / "gap.h5").string();
-  ASSERT_EQ(run_program({"import", (folder / "gap.csv").string(), "-o", recording}).status, 0);
+  const Ended imported = run_program({"import", (folder / "gap.csv").string(), "-o", recording});
+  ASSERT_EQ(imported.status, 0);
+  EXPECT_THAT(imported.err, HasSubstr("no --lever-arm"));
   const Ended ended = run_program({"estimate", recording, "--method", "rate/raw", "-o", (folder / "e").string()});
   EXPECT_EQ(ended.status, 2);
   EXPECT_THAT(ended.err, HasSubstr("imu has no readings between 1.990 and 3.500 s"));

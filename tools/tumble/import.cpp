@@ -87,6 +87,14 @@ Table table_of(const Imported& imported) {
   return table;
 }
 
+/// What nobody stated of an IMU whose file cannot state it.
+void say_what_is_assumed(const ImportOptions& options, const std::string& format, std::vector<std::string>& notes) {
+  if (options.lever_arm_m.empty() && (format == "csv" || !options.imu.empty())) {
+    notes.push_back(
+        "no --lever-arm: the IMU is taken to be at the robot's centre of mass; rates beyond a rail rest on it");
+  }
+}
+
 int import_from(const Session& session, const ImportOptions& options) {
   const std::string format = format_of(options);
   require_fitting(options, format);
@@ -102,6 +110,7 @@ int import_from(const Session& session, const ImportOptions& options) {
     if (options.reference.empty())
       imported.notes.push_back("the reference is " + file.filename().string() + ", which lies beside the sweeps");
   }
+  say_what_is_assumed(options, format, imported.notes);
   imported.sensors.robot = options.robot;
   imported.sensors.sphere_radius_m = options.radius_m;
   imported.info.tumble_version = program_version();
