@@ -318,7 +318,8 @@ bool RateStream::step(State& state) const {
 // rate_stream.md (R93)
 RigConstants::Matrix RateStream::widened(const State& state) const {
   if (params_.model.calibration) return state.rig_covariance;
-  const double samples = static_cast<double>(state.learnt_from) / params_.expert.doubt.samples;
+  const double samples =
+      static_cast<double>(state.learnt_from) * model_.said_once_share() / params_.expert.doubt.samples;
   const double largest = std::sqrt(1.0 + params_.expert.doubt.covariance / (1.0 + samples));
   RigConstants::Vector factor;
   for (int i = 0; i < RigConstants::kSize; ++i) {
@@ -334,7 +335,8 @@ RigConstants::Matrix RateStream::widened(const State& state) const {
 Eigen::Matrix3d RateStream::doubted(const Knot& knot, const State& state) const {
   Eigen::Matrix3d out = knot.covariance_rad2_s2;
   if (params_.model.calibration || knot.estimate.flight_weight >= 0.5) return out;
-  const double samples = static_cast<double>(state.learnt_from) / params_.expert.doubt.samples;
+  const double samples =
+      static_cast<double>(state.learnt_from) * model_.said_once_share() / params_.expert.doubt.samples;
   const double share = params_.expert.doubt.contact / (1.0 + samples);
   for (int j = 0; j < 3; ++j) {
     if ((knot.observation.unseen() & knot.observation.clipping.gyro & 1u << j) == 0) continue;

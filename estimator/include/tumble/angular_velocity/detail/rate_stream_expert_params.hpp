@@ -8,7 +8,8 @@
 /// Groups of RateStream::Params::Expert.
 namespace tumble {
 
-/// How much less a rig without calibration counts while few samples of flight, n, have been learnt from.
+/// How much less a rig without calibration counts while few samples of flight, n, have been learnt from; one that is
+/// shorter than `model_error_s` counts for its part of it.
 struct RigDoubtParams {
   /// Its covariance, but for the gyro's bias and never beyond that beforehand, counts 1 + covariance / (1 + n /
   /// samples) times.
@@ -22,7 +23,7 @@ struct RigDoubtParams {
   static void fields(Self& p, Visitor& visit) {
     visit(p.covariance, {"rig_doubt", "1", 0.0, 1e3,
                          "covariance of a rig without calibration counts 1 + this / (1 + n / rig_doubt_samples) "
-                         "times, n samples of flight learnt from"});
+                         "times, n samples of flight learnt from, of model_error_s each"});
     visit(p.samples, {"rig_doubt_samples", "1", 1.0, 1e6, "see rig_doubt"});
     visit(p.contact, {"contact_doubt", "1", 0.0, 10.0,
                       "of a rig without calibration: deviation of a rate in contact, as a share of what lies "
