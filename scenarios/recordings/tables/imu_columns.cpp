@@ -132,48 +132,44 @@ std::int64_t whole_number(const CsvLine& line, std::size_t column, std::int64_t 
   return static_cast<std::int64_t>(value);
 }
 
-/// A decimal number of seconds, without the rounding of a double.
-std::int64_t decimal_ns(const CsvLine& line, std::size_t column) {
-  const std::string_view text = line.fields[column];
-  const std::size_t point = std::min(text.find('.'), text.size());
-  const std::string_view part = text.substr(std::min(point + 1, text.size()));
-  std::int64_t seconds = 0, fraction_ns = 0;
-  const auto all_digits = [](std::string_view digits) {
-    return std::all_of(digits.begin(), digits.end(), [](unsigned char c) { return std::isdigit(c) != 0; });
-  };
-  if (point == 0 || point > 10 || part.size() > 9 || !all_digits(text.substr(0, point)) || !all_digits(part)) {
-    fail(line, "column " + std::to_string(column) + " must be seconds with at most nine decimals, is '" +
-                   std::string(text) + "'");
-  }
-  std::from_chars(text.data(), text.data() + point, seconds);
-  std::string digits(part);
-  digits.resize(9, '0');
-  std::from_chars(digits.data(), digits.data() + digits.size(), fraction_ns);
-  return seconds * kSecond_ns + fraction_ns;
+bool all_digits(std::string_view text) {
+  return std::all_of(text.begin(), text.end(), [](unsigned char c) { return std::isdigit(c) != 0; });
 }
 
-/// A decimal number of a unit with so many decimals, rounded to nanoseconds without the rounding of a double.
-std::int64_t scaled_ns(const CsvLine& line, std::size_t column, int decimals) {
-  const std::string_view text = line.fields[column];
-  const std::size_t point = std::min(text.find('.'), text.size());
-  const std::string_view part = text.substr(std::min(point + 1, text.size()));
-  const auto all_digits = [](std::string_view digits) {
-    return std::all_of(digits.begin(), digits.end(), [](unsigned char c) { return std::isdigit(c) != 0; });
-  };
-  std::string digits(text.substr(0, point));
-  digits += part.substr(0, static_cast<std::size_t>(decimals));
-  digits.resize(point + static_cast<std::size_t>(decimals), '0');
+/// A number and what follows its point.
+struct Decimal {
+  std::string_view whole, part;
+
+  explicit Decimal(std::string_view text)
+      : whole(text.substr(0, text.find('.'))), part(text.substr(std::min(whole.size() + 1, text.size()))) {}
+  bool sound() const { return !whole.empty() && all_digits(whole) && all_digits(part); }
+};
+
+/// Of a unit with so many decimals, rounded to nanoseconds without the rounding of a double; none where it is no time.
+std::optional<std::int64_t> scaled_ns(const Decimal& number, std::size_t decimals) {
+  std::string digits = std::string(number.whole) + std::string(number.part.substr(0, decimals));
+  digits.resize(number.whole.size() + decimals, '0');
   std::int64_t whole_ns = 0;
   const auto [end, error] = std::from_chars(digits.data(), digits.data() + digits.size(), whole_ns);
-  const bool rises =
-      part.size() > static_cast<std::size_t>(decimals) && part[static_cast<std::size_t>(decimals)] >= '5';
-  if (point == 0 || !all_digits(text.substr(0, point)) || !all_digits(part) || error != std::errc() ||
-      end != digits.data() + digits.size() || whole_ns > kLatest_ns) {
-    fail(line, "column " + std::to_string(column) +
-                   " must be a time, digits with a point or without, up to the year 2255, is '" + std::string(text) +
-                   "'");
-  }
-  return whole_ns + (rises ? 1 : 0);
+  if (!number.sound() || error != std::errc() || whole_ns > kLatest_ns) return std::nullopt;
+  return whole_ns + (number.part.size() > decimals && number.part[decimals] >= '5' ? 1 : 0);
+}
+
+std::int64_t seconds_ns(const CsvLine& line, std::size_t column) {
+  const std::string_view text = line.fields[column];
+  const Decimal number(text);
+  const auto ns = number.whole.size() <= 10 && number.part.size() <= 9 ? scaled_ns(number, 9) : std::nullopt;
+  if (ns) return *ns;
+  fail(line, "column " + std::to_string(column) + " must be seconds with at most nine decimals, is '" +
+                 std::string(text) + "'");
+}
+
+std::int64_t decimal_ns(const CsvLine& line, std::size_t column, int decimals) {
+  const std::string_view text = line.fields[column];
+  if (const auto ns = scaled_ns(Decimal(text), static_cast<std::size_t>(decimals))) return *ns;
+  fail(line, "column " + std::to_string(column) +
+                 " must be a time, digits with a point or without, up to the year 2255, is '" + std::string(text) +
+                 "'");
 }
 
 /// Whole seconds in a column and nanoseconds in another.
@@ -215,9 +211,9 @@ ImuColumns imu_columns(const CsvLine& first) {
 std::int64_t stamp_ns(const CsvLine& line, const ImuColumns& columns) {
   switch (columns.stamp_form) {
     case StampForm::seconds:
-      return decimal_ns(line, columns.stamp);
+      return seconds_ns(line, columns.stamp);
     case StampForm::decimal:
-      return scaled_ns(line, columns.stamp, columns.stamp_decimals.value_or(9));
+      return decimal_ns(line, columns.stamp, columns.stamp_decimals.value_or(9));
     case StampForm::split:
       break;
   }
