@@ -69,8 +69,10 @@ Estimate run_rig(const sim::Sensors& sensors, const sim::Values& parameters) {
     estimate.attitudes.push_back({samples[k].time_ns, state.q_WI, TumbleAttitude::attitude_covariance_rad2(state)});
     turned[k].time_ns = samples[k].time_ns;
     turned[k].w_WI_I_rad_s = samples[k].angular_velocity_rad_s - state.bias_rad_s;
+    turned[k].covariance_rad2_s2 = recovered.covariances_rad2_s2[k];
     turned[k].source = recovered.sources[k];
   }
+  (void)check_turning_between_rests(sensors, read, turned, estimate);
   (void)check_turning_about_pivots(sensors, read, turned, estimate);
   return estimate;
 }

@@ -35,6 +35,20 @@ Status run_thrown(const sim::Sensors& sensors, const sim::Values& parameters, co
   return status;
 }
 
+/// What the gyro says of the turning between two rests, as the smoother was given it: what that made of it leads
+/// gravity from one to the next by itself, whatever the gyro reads.
+void check_readings(const sim::Sensors& sensors, const std::vector<ImuSample>& samples,
+                    const std::vector<ImuSample>& recovered, const RecoveredRates& told, Estimate& estimate) {
+  std::vector<RateState> read(told.sources.size());
+  for (std::size_t k = 0; k < read.size(); ++k) {
+    read[k].time_ns = recovered[k].time_ns;
+    read[k].w_WI_I_rad_s = recovered[k].angular_velocity_rad_s;
+    read[k].covariance_rad2_s2 = told.covariances_rad2_s2[k];
+    read[k].source = told.sources[k];
+  }
+  (void)check_turning_between_rests(sensors, samples, read, estimate);
+}
+
 Estimate run(const sim::Sensors& sensors, const sim::Values& parameters, const OracleInput&) {
   Estimate estimate;
   std::vector<ImuSample> samples;
@@ -52,7 +66,9 @@ Estimate run(const sim::Sensors& sensors, const sim::Values& parameters, const O
   } else {
     estimate.status = run_carried(sensors, parameters, rates, estimate.attitudes, estimate.health);
   }
-  if (estimate.status.ok()) (void)check_turning_about_pivots(sensors, samples, rates, estimate);
+  if (!estimate.status.ok()) return estimate;
+  check_readings(sensors, samples, recovered, told, estimate);
+  (void)check_turning_about_pivots(sensors, samples, rates, estimate);
   return estimate;
 }
 

@@ -71,20 +71,6 @@ Status check_rest_force(const sim::Sensors& sensors, std::span<const ImuSample> 
   return told(gravity.size_verdict(state), estimate);
 }
 
-Status check_turning_between_rests(const sim::Sensors& sensors, std::span<const ImuSample> samples,
-                                   Estimate& estimate) {
-  const RestGravity gravity = rest_gravity(sensors);
-  RestGravity::State state;
-  for (std::size_t k = 0; k < std::min(samples.size(), estimate.rates.size()); ++k) {
-    gravity.step(samples[k], estimate.rates[k], state);
-  }
-  estimate.health["rest_gravity_missed_rad"] = state.miss_rad;
-  estimate.health["rest_gravity_missed_sigma_rad"] = state.miss_sigma_rad;
-  estimate.health["rest_velocity_share"] = state.velocity_share;
-  estimate.health["rest_velocity_allowed_share"] = state.velocity_allowed_share;
-  return told(gravity.verdict(state), estimate);
-}
-
 }  // namespace
 
 Status check_imu(const sim::Sensors& sensors, std::span<const ImuSample> samples, Estimate& estimate) {
@@ -137,6 +123,18 @@ Status check_flights(const sim::Sensors& sensors, std::span<const ImuSample> sam
   return status;
 }
 
+Status check_turning_between_rests(const sim::Sensors& sensors, std::span<const ImuSample> samples,
+                                   std::span<const RateState> rates, Estimate& estimate) {
+  const RestGravity gravity = rest_gravity(sensors);
+  RestGravity::State state;
+  for (std::size_t k = 0; k < std::min(samples.size(), rates.size()); ++k) gravity.step(samples[k], rates[k], state);
+  estimate.health["rest_gravity_missed_rad"] = state.miss_rad;
+  estimate.health["rest_gravity_missed_sigma_rad"] = state.miss_sigma_rad;
+  estimate.health["rest_velocity_share"] = state.velocity_share;
+  estimate.health["rest_velocity_allowed_share"] = state.velocity_allowed_share;
+  return told(gravity.verdict(state), estimate);
+}
+
 Status check_turning_about_pivots(const sim::Sensors& sensors, std::span<const ImuSample> samples,
                                   std::span<const RateState> rates, Estimate& estimate) {
   PivotCheck::Params params;
@@ -156,7 +154,7 @@ Status check_turning_about_pivots(const sim::Sensors& sensors, std::span<const I
 void check_rates(const sim::Sensors& sensors, std::span<const ImuSample> samples, Estimate& estimate) {
   const Status of_flights = check_flights(sensors, samples, estimate);
   const Status of_readings = check_imu(sensors, samples, estimate);
-  const Status of_rates = check_turning_between_rests(sensors, samples, estimate);
+  const Status of_rates = check_turning_between_rests(sensors, samples, estimate.rates, estimate);
   const Status of_pivots = check_turning_about_pivots(sensors, samples, estimate.rates, estimate);
   if (of_flights.ok() && of_readings.ok() && of_rates.ok() && of_pivots.ok()) return;
   for (RateState& rate : estimate.rates) rate.covariance_rad2_s2 += square_of_rate(rate);

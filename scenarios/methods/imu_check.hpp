@@ -20,11 +20,17 @@ Status check_imu(const sim::Sensors& sensors, std::span<const ImuSample> samples
 /// The same of several IMUs as one, whose differences tell a flipped sign besides (`imu_arm_share`).
 Status check_imus(const sim::Sensors& sensors, const MergedImus& imus, Estimate& estimate);
 
-/// The same of a rig's primary IMU whose rates the estimate holds, one for each sample, and what gravity at its rests
-/// says of them (RestGravity: `rest_gravity_missed_rad` with its deviation, `rest_velocity_share` with its bound), and
-/// what its turning about a point does (check_turning_about_pivots). Where one of them speaks against the readings, the
-/// covariance of every rate grows by the square of the rate (`imu_rates_doubted`). O(N).
+/// The same of a rig's primary IMU whose rates the estimate holds, one for each sample, with what gravity at its rests
+/// says of them (check_turning_between_rests) and what its turning about a point does (check_turning_about_pivots).
+/// Where one of them speaks against the readings, the covariance of every rate grows by the square of the rate
+/// (`imu_rates_doubted`). O(N).
 void check_rates(const sim::Sensors& sensors, std::span<const ImuSample> samples, Estimate& estimate);
+
+/// Whether `rates`, one for each sample, those of an estimate of rates or what an attitude was turned by, lead gravity
+/// from one rest to the next (RestGravity): `rest_gravity_missed_rad` with its deviation, `rest_velocity_share` with its
+/// bound, and `imu_implausible`. O(N).
+Status check_turning_between_rests(const sim::Sensors& sensors, std::span<const ImuSample> samples,
+                                   std::span<const RateState> rates, Estimate& estimate);
 
 /// Whether a body that is held turns as `rates` say, one for each sample, those of an estimate of rates or what an
 /// attitude was turned by (PivotCheck): `pivot_evidence` for another reading of the gyro and from how many stretches,

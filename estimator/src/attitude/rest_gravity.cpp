@@ -15,9 +15,17 @@ namespace {
 constexpr double kRested_s = 1.0;  // in all, for its size to be asked
 constexpr unsigned kAccelFlags = kClipAccelX | kClipAccelY | kClipAccelZ;
 
+/// Of a body without any force that could be gravity, in whatever unit.
+RestDetector::Params without_force(RestDetector::Params rests) {
+  rests.force_max_m_s2 = rests.force_min_m_s2;
+  rests.force_min_m_s2 = 0.0;
+  return rests;
+}
+
 }  // namespace
 
-RestGravity::RestGravity(const Params& params) : params_(params), detector_(params.rests) {
+RestGravity::RestGravity(const Params& params)
+    : params_(params), detector_(params.rests), weightless_(without_force(params.rests)) {
   require_fields(params);
 }
 
@@ -30,10 +38,11 @@ void RestGravity::step(const ImuSample& sample, const RateState& rate, State& st
   state.started = true;
   state.last_time_ns = sample.time_ns;
   if (!follows.ok()) {
-    state.rest = {};
+    state.rest = state.weightless = {};
     state.from_m_s2.setZero();
     state.rests = false;
   }
+  if (weightless_.observe(sample, state.weightless)) state.weightless_s += dt_s;
   const bool rested = state.rests;
   state.rests = detector_.observe(sample, state.rest);
   if (!state.rests) {
@@ -110,7 +119,8 @@ double RestGravity::allowed_rad(double sigma_rad) const {
 }
 
 double RestGravity::size_share(const State& state) const {
-  return state.rest_s < kRested_s ? 1.0 : state.force_sum_m / state.rest_s / params_.gravity_m_s2;
+  if (state.rest_s >= kRested_s) return state.force_sum_m / state.rest_s / params_.gravity_m_s2;
+  return state.weightless_s >= kRested_s ? 0.0 : 1.0;
 }
 
 Status RestGravity::size_verdict(const State& state) const {

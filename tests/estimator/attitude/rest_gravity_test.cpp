@@ -104,6 +104,24 @@ TEST(RestGravity, AnAccelerometerOfAnotherUnitShowsInTheSize) {
   EXPECT_TRUE(gravity.verdict(after({}, [](ImuSample& s) { s.specific_force_m_s2 *= 1.05; })).ok());
 }
 
+// "Linear acceleration": what it reads at rest is nothing. A fall reads nothing too, after a rest that has its force.
+TEST(RestGravity, AnAccelerometerWithoutGravityReadsNothingAtRest) {
+  const RestGravity gravity({});
+  const Harm taken_out = [](ImuSample& s) {
+    if (s.angular_velocity_rad_s.isZero(0.0)) s.specific_force_m_s2 *= 0.01;
+  };
+  const RestGravity::State none = after({}, taken_out);
+  EXPECT_EQ(none.rest_s, 0.0);
+  EXPECT_GT(none.weightless_s, 2.0);
+  EXPECT_STREQ(gravity.verdict(none).field, "specific force at rest as a share of gravity");
+  EXPECT_EQ(gravity.verdict(none).value, 0.0);
+  const RestGravity::State falls = after({}, [&](ImuSample& s) {
+    if (s.time_ns > 5'000'000'000) taken_out(s);
+  });
+  EXPECT_GT(falls.weightless_s, 1.0);
+  EXPECT_TRUE(gravity.verdict(falls).ok()) << gravity.verdict(falls).message();
+}
+
 TEST(RestGravity, WhatTheRatesStateIsAllowed) {
   const RestGravity gravity({});
   // 5 % of 7.8 rad: 0.3 to 0.4 rad

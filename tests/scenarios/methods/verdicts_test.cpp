@@ -121,6 +121,25 @@ TEST(Verdicts, StampsOfAnotherUnitThanThePeriodAreRefused) {
   }
 }
 
+// What leads from one rest to the next must lead gravity there, also where an attitude is asked for.
+TEST(Verdicts, AttitudesTellWrongReadingsOfATumble) {
+  const DataRoot data{test::source_dir()};
+  const SimulatedDraw draw = simulate_draw(data, load_scenario(data, "hill"), 91001, 1, Lidars::left_out);
+  const auto tells = [&](const char* method, const std::string& wrong) {
+    SimulatedDraw given = draw;
+    testing::wrong_inputs().at(wrong)(given.recording.sensors);
+    Outcome outcome;
+    const Estimate estimate = run_method(*find_methods(method).at(0), given, outcome);
+    return outcome.status != OutcomeStatus::ok || estimate.health.contains("imu_implausible");
+  };
+  EXPECT_FALSE(tells("attitude/tumble", "none"));
+  for (const char* wrong :
+       {"gyro_zero", "gyro_flipped", "gyro_halved", "gyro_x_y_swapped", "accel_without_gravity", "accel_x_y_swapped"})
+    EXPECT_TRUE(tells("attitude/tumble", wrong)) << wrong;
+  EXPECT_FALSE(tells("attitude/tumble_batch", "none"));
+  EXPECT_TRUE(tells("attitude/tumble_batch", "gyro_zero")) << "it makes the turning up itself";
+}
+
 struct SaidOfRates {
   bool implausible = false, z_frozen = false, other_sense = false;
   double turned_sigma_rad_s = 0.0;  ///< mean where it turns

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "tests/scenarios/methods/wrong_inputs.hpp"
 
+#include <algorithm>
 #include <utility>
 
 #include "sim/random/stream.hpp"
@@ -31,6 +32,18 @@ void freeze(std::vector<Eigen::Vector3d>& readings) {
 void freeze_axis(std::vector<Eigen::Vector3d>& readings, int axis) {
   const std::size_t from = readings.size() / 5;
   for (std::size_t k = from; k < readings.size(); ++k) readings[k][axis] = readings[from][axis];
+}
+
+/// As devices that give "linear acceleration" do: what a second's mean says of gravity is taken away.
+void take_gravity_out(std::vector<Eigen::Vector3d>& forces, const std::vector<std::int64_t>& time_ns) {
+  constexpr double kMean_s = 1.0;
+  Eigen::Vector3d gravity = forces.empty() ? Eigen::Vector3d::Zero() : forces.front();
+  for (std::size_t k = 1; k < forces.size(); ++k) {
+    const double share = 1e-9 * static_cast<double>(time_ns[k] - time_ns[k - 1]) / kMean_s;
+    gravity += std::min(1.0, share) * (forces[k] - gravity);
+    forces[k] -= gravity;
+  }
+  if (forces.size() > 1) forces.front() = forces[1];
 }
 
 void stretch_ranges(sim::Sensors& sensors, float by) {
@@ -83,6 +96,11 @@ const std::map<std::string, std::function<void(sim::Sensors&)>>& wrong_inputs() 
       {"gyro_doubled", [](sim::Sensors& s) { each_reading(s, [](Vector& w, Vector&) { w *= 2.0; }); }},
       {"accel_halved", [](sim::Sensors& s) { each_reading(s, [](Vector&, Vector& f) { f *= 0.5; }); }},
       {"gyro_scale_5_percent", [](sim::Sensors& s) { each_reading(s, [](Vector& w, Vector&) { w *= 1.05; }); }},
+      {"gyro_zero", [](sim::Sensors& s) { each_reading(s, [](Vector& w, Vector&) { w.setZero(); }); }},
+      {"accel_without_gravity",
+       [](sim::Sensors& s) {
+         for (sim::ImuRecord& imu : s.imus) take_gravity_out(imu.accel_m_s2, imu.time_ns);
+       }},
       {"all_accels_frozen",
        [](sim::Sensors& s) {
          for (sim::ImuRecord& imu : s.imus) freeze(imu.accel_m_s2);

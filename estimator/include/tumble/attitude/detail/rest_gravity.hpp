@@ -23,7 +23,8 @@ namespace tumble {
 ///
 /// The equations are imu_merge.md (I19), (I20), (I22), (I23). Not seen: a body that comes to rest as it lay (a
 /// pendulum), turns about the vertical, an accelerometer with all three axes flipped, a run with less than two rests.
-/// Mistaken for wrong rates: one rest on the ground and the other in a vehicle that goes on for good.
+/// Mistaken for a force without gravity: a fall of a second without a turn, where no rest is. Mistaken for wrong rates:
+/// one rest on the ground and the other in a vehicle that goes on for good.
 class RestGravity {
  public:
   struct Params {
@@ -60,7 +61,7 @@ class RestGravity {
     }
   };
   struct State {
-    RestDetector::State rest;
+    RestDetector::State rest, weightless;
     Eigen::Vector3d from_m_s2 = Eigen::Vector3d::Zero();  ///< force at the last rest in the sensor's axes; 0: none
     Eigen::Quaterniond turned = Eigen::Quaterniond::Identity();  ///< since then
     double way_rad = 0.0, variance_rad2 = 0.0;                   ///< likewise
@@ -68,6 +69,7 @@ class RestGravity {
     double way_s = 0.0, hidden_m_s = 0.0;                        ///< likewise, and what the accelerometer's rail hid
     double stretch_s = 0.0, stretch_rad2_s = 0.0;                ///< of samples in a row that the gyro did not measure
     double rest_s = 0.0, force_sum_m = 0.0;                      ///< of all rests, and of force by time
+    double weightless_s = 0.0;                                   ///< of what would be rest but that no force holds it
     double miss_rad = 0.0, miss_sigma_rad = 0.0;                 ///< of the worst of the ways between two rests
     double velocity_share = 0.0, velocity_allowed_share = 0.0;   ///< likewise, over what gravity gives in its time
     std::size_t ways = 0;                                        ///< that were compared
@@ -82,7 +84,8 @@ class RestGravity {
   /// over. O(1), no allocation.
   void step(const ImuSample& sample, const RateState& rate, State& state) const;
 
-  /// Mean size of the force at rest as a share of gravity; 1 where nothing rested for a second.
+  /// Mean size of the force at rest as a share of gravity; 0 where all that rested for a second is without force, and 1
+  /// where nothing rested.
   double size_share(const State& state) const;
   /// `out_of_range` where that is not 1.
   Status size_verdict(const State& state) const;
@@ -98,7 +101,7 @@ class RestGravity {
   double allowed_rad(double sigma_rad) const;
 
   Params params_;
-  RestDetector detector_;
+  RestDetector detector_, weightless_;
 };
 
 }  // namespace tumble
