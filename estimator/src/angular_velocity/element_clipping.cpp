@@ -12,6 +12,8 @@ namespace {
 
 // A slope is told when its deviation is below the first; it is nil below the second.
 constexpr double kTold = 2e-3, kNil = 3e-3;
+// Rails of the two signs that are further apart than this share are no device's own, whose digits end alike.
+constexpr double kLopsidedShare = 1e-4;
 // Readings closer than this share are equal, as RailDetector has it.
 constexpr double kEqualShare = 2e-5;
 // What is left of a tilt where rails are upright; the least deviation of a slope (misalignment left by the device).
@@ -41,6 +43,12 @@ bool meets(const RailPlane& rail, Triad triad, const ImuSample& now, const ImuSa
   return depth < kEdgeOfStep * (before - depth);
 }
 
+// Whether the rails of the two signs differ: those of an element whose offset the device takes off behind it.
+bool lopsided(const RailPlane& rail) {
+  return rail.seen(-1) && rail.seen(1) &&
+         std::abs(rail.offset_rad_s) > kLopsidedShare * rail.distance_rad_s + 4.0 * std::sqrt(rail.covariance(3, 3));
+}
+
 // With the stated range of the walls where the search has none of its own, and without any.
 std::array<RailPlaneFinder, 2> stated_and_not(RailPlaneFinder::Params params, const std::optional<double>& stated) {
   RailPlaneFinder::Params unstated = params;
@@ -67,6 +75,7 @@ bool are_upright(std::span<const Eigen::Vector3d> readings, const RailPlanes& pl
   for (std::size_t j = 0; j < 3; ++j) {
     const auto& rail = planes.element[j];
     const double plateau = rails.channels[first_channel(triad) + j].rail;
+    if (rail && lopsided(*rail)) return false;
     if (rail && plateau > 0.0) {
       // most of the samples at the rail read the same: no tilted plane does that
       const auto equal = std::count_if(readings.begin(), readings.end(), [&](const Eigen::Vector3d& y) {

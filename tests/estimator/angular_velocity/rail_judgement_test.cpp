@@ -12,6 +12,7 @@
 
 #include "estimator/angular_velocity/drawn_elements.hpp"
 #include "estimator/angular_velocity/tumble_recording.hpp"
+#include "oracles/gaussian.hpp"
 #include "scenarios/baselines/angular_velocity/clipped_baseline.hpp"
 #include "tumble/angular_velocity/auxiliary_imu.hpp"
 #include "tumble/angular_velocity/clipping_finder.hpp"
@@ -99,6 +100,42 @@ TEST(RailJudgement, AnAccelerometerThatDoesNotClipHasNoRail) {
     const ClippingFinder::Found found = ClippingFinder({}).find(tumble.recording.samples);
     EXPECT_FALSE(found.rails.accel_planes.any()) << seed;
     for (const Clipping& clipping : found.clippings) EXPECT_EQ(clipping.accel, 0) << seed;
+  }
+}
+
+/// A wand that is swung to and fro about x, beyond its rail: an element without a tilt, whose offset the device takes
+/// off behind it, so that the rails of the two signs differ.
+std::vector<ImuSample> swung_wand(double offset_rad_s, std::vector<bool>& lost) {
+  constexpr double kRail_rad_s = 7.44;
+  oracles::Gaussian noise(5);
+  std::vector<ImuSample> out(2000);
+  for (std::size_t k = 0; k < out.size(); ++k) {
+    const double t_s = 0.01 * static_cast<double>(k), size = 8.0 + 3.0 * std::sin(0.7 * t_s);
+    out[k].time_ns = static_cast<TimeNs>(k + 1) * 10'000'000;
+    Vector3d& reading = out[k].angular_velocity_rad_s;
+    reading = {size * std::sin(4.0 * t_s) + 0.002 * noise(), 0.2 * std::sin(3.1 * t_s), 0.2 * std::cos(2.3 * t_s)};
+    for (int j = 1; j < 3; ++j) reading[j] += 0.002 * noise();
+    const double sensed = reading.x() + offset_rad_s;
+    lost.push_back(std::abs(sensed) > kRail_rad_s + 0.05);
+    reading.x() = std::clamp(sensed, -kRail_rad_s, kRail_rad_s) - offset_rad_s + 2e-5 * noise();
+    out[k].specific_force_m_s2 = Vector3d(0.3 * std::sin(t_s), 0.2, 9.8 + 0.1 * noise());
+  }
+  return out;
+}
+
+TEST(RailJudgement, RailsOfTwoSignsThatDifferAreNoDevicesOwn) {
+  for (const double offset_rad_s : {0.0, 0.05, -0.05, 0.005}) {
+    std::vector<bool> lost;
+    const std::vector<ImuSample> samples = swung_wand(offset_rad_s, lost);
+    const ClippingFinder::Found found = ClippingFinder({}).find(samples);
+    EXPECT_EQ(found.rails.upright, offset_rad_s == 0.0) << offset_rad_s;
+    int of_all = 0, missed = 0;
+    for (std::size_t k = 0; k < samples.size(); ++k) {
+      of_all += lost[k];
+      missed += lost[k] && (found.clippings[k].gyro & 1u) == 0;
+    }
+    ASSERT_GT(of_all, 200) << offset_rad_s;
+    EXPECT_EQ(missed, 0) << offset_rad_s << " of " << of_all;
   }
 }
 
