@@ -20,7 +20,8 @@ namespace {
 constexpr std::ptrdiff_t kProbe = 10;
 constexpr double kByte = 255.0;
 constexpr double kFar_m = 1e6;
-constexpr double kBeyond = 2.0;  // ranges of the data sheet
+constexpr double kBeyond = 2.0;        // ranges of the data sheet
+constexpr double kOverlapMost = 1.05;  // of the time from one sweep to the next, that one lasts
 /// The longest offset that a sweep may hold where its period is not known yet.
 constexpr std::int64_t kOffsetMax_ns = 1000000000;
 
@@ -244,11 +245,17 @@ BuiltSweeps SweepBuilder::finish(const std::string& where, std::vector<std::stri
   record_.name = reading_.device.name;
   record_.device = reading_.device.device;
   record_.T_BL = reading_.device.T_BL;
-  record_.sweep_period_ns =
-      reading_.device.sweep_period_ns > 0 ? reading_.device.sweep_period_ns : median_step_ns(record_.sweep_start_ns);
+  const std::int64_t stated_ns = reading_.device.sweep_period_ns, step_ns = median_step_ns(record_.sweep_start_ns);
+  record_.sweep_period_ns = stated_ns > 0 ? stated_ns : step_ns;
   if (record_.sweep_period_ns <= 0) throw BadInput(where + ": of a single sweep the period must be given");
   if (rule_ && !rule_->field.empty()) notes.push_back(said(*rule_));
-  if (reading_.device.sweep_period_ns <= 0 && longest_ns_ > record_.sweep_period_ns) {
+  const bool overlaps = step_ns > 0 && static_cast<double>(stated_ns) > kOverlapMost * static_cast<double>(step_ns);
+  if (stated_ns > 0 && (overlaps || stated_ns < longest_ns_)) {
+    notes.push_back("a sweep is stated to last " + in_ns(stated_ns) +
+                    ", which is taken, but sweeps follow each other by " + in_ns(step_ns) +
+                    " and their points span up to " + in_ns(longest_ns_));
+  }
+  if (stated_ns <= 0 && longest_ns_ > record_.sweep_period_ns) {
     notes.push_back("sweeps follow each other by " + in_ns(record_.sweep_period_ns) + " and last up to " +
                     in_ns(longest_ns_) + ", which is taken for their period");
     record_.sweep_period_ns = longest_ns_;

@@ -5,6 +5,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <string>
+#include <utility>
 
 #include "scenarios/recordings/fixture_recording.hpp"
 #include "scenarios/recordings/import.hpp"
@@ -57,6 +59,21 @@ TEST_P(Norlab, TheFolderIsTakenAsItIs) {
   if (GetParam().real) {
     EXPECT_EQ(lidar.sweep_first[1], 41400u) << "POINTS of the first file";
     EXPECT_EQ(lidar.position_L_m[0], Eigen::Vector3f(4.39017f, -0.830303f, -0.814437f)) << "its first line";
+  }
+}
+
+TEST_P(Norlab, AStatedLengthOfASweepThatTheFilesContradictIsSaid) {
+  for (const auto& [stated_ns, said] : {std::pair{500'000'000, true}, {80'000'000, true}, {102'000'000, false}}) {
+    SweepSource source;
+    source.folder = test::written(GetParam());
+    source.format = "vtk";
+    source.reading.device.sweep_period_ns = stated_ns;
+    const Imported out = import_sweeps(source);
+    EXPECT_EQ(out.sensors.lidars.at(0).sweep_period_ns, stated_ns);
+    const bool found = std::any_of(out.notes.begin(), out.notes.end(), [](const std::string& note) {
+      return note.find("is stated to last") != std::string::npos && note.find("span up to") != std::string::npos;
+    });
+    EXPECT_EQ(found, said) << stated_ns;
   }
 }
 
