@@ -3,6 +3,7 @@
 
 #include <Eigen/Eigenvalues>
 #include <Eigen/LU>
+#include <algorithm>
 #include <cmath>
 #include <utility>
 
@@ -55,6 +56,28 @@ RateSource source(const RateState& rate, double recovered_sigma) {
   return variance < recovered_sigma * recovered_sigma ? RateSource::recovered_contact : RateSource::bounded_only;
 }
 
+/// A body that nobody holds turns one way and on, so that an error of the gyro's scale gathers: over what has turned
+/// since the last rest, or will until the next, whichever is less. carried.md (C42).
+void widen_by_turning(const CarriedSmoother::Params& params, const carried::Collected& collected,
+                      const std::vector<RateState>& rates, std::vector<AttitudeState>& attitudes) {
+  const double share = params.expert.readings.recovered_scale_share;
+  const auto turned_on = [&](std::size_t k, Eigen::Vector3d& turned) {
+    if (collected.nodes[collected.samples.node_of[k]].rest) return turned.setZero(), void();
+    turned += seconds(rates[k].time_ns - rates[k - 1].time_ns) * rates[k].w_WI_I_rad_s;
+  };
+  std::vector<double> until_rad2(attitudes.size(), 0.0);
+  Eigen::Vector3d turned = Eigen::Vector3d::Zero();
+  for (std::size_t k = attitudes.size(); k-- > 1;) {
+    turned_on(k, turned);
+    until_rad2[k - 1] = turned.squaredNorm();
+  }
+  turned.setZero();
+  for (std::size_t k = 1; k < attitudes.size(); ++k) {
+    turned_on(k, turned);
+    attitudes[k].covariance_rad2.diagonal().array() += share * share * std::min(turned.squaredNorm(), until_rad2[k]);
+  }
+}
+
 }  // namespace
 
 CarriedSmoother::CarriedSmoother(const Params& params) : params_(params) {
@@ -98,6 +121,7 @@ Status CarriedSmoother::estimate(std::span<const ImuSample> samples, const Clipp
     const Eigen::Matrix3d R = node.q_WI.toRotationMatrix();
     attitudes[k].covariance_rad2 = R * covariance.topLeftCorner<3, 3>() * R.transpose();
   }
+  if (!clipped.recovered_rad2_s2.empty()) widen_by_turning(params_, collected, rates, attitudes);
   return {};
 }
 

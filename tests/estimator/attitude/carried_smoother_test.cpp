@@ -113,6 +113,42 @@ TEST(CarriedSmoother, ARecoveredRateIsBelievedAsFarAsItIsTold) {
   EXPECT_GT(error(untold), 3.0 * error(told));  // negative control
 }
 
+// carried.md (C42): of a turn of 9 rad between two rests nothing is open at its ends, and in its middle what half of it
+// gathers; the attitudes stay where they are. Of a body in a hand, without recovered rates, nothing is added.
+TEST(CarriedSmoother, BesideRecoveredRatesAScaleGathersOverTheTurning) {
+  std::vector<ImuSample> samples(700);
+  const Eigen::Vector3d rate_rad_s(3.0, 0.0, 0.0);
+  for (std::size_t k = 0; k < samples.size(); ++k) {
+    const double turned_s = std::clamp(0.01 * static_cast<double>(k) - 2.0, 0.0, 3.0);
+    samples[k].time_ns = static_cast<TimeNs>(k + 1) * 10'000'000;
+    if (turned_s > 0.0 && turned_s < 3.0) samples[k].angular_velocity_rad_s = rate_rad_s;
+    samples[k].specific_force_m_s2 = so3::exp(turned_s * rate_rad_s).conjugate() * Eigen::Vector3d(0.0, 0.0, 9.80665);
+  }
+  const auto run = [&](double share, bool recovered) {
+    CarriedSmoother::Params params;
+    params.expert.readings.recovered_scale_share = share;
+    ClippedElements clipped;
+    const std::vector<Eigen::Matrix3d> none(samples.size(), Eigen::Matrix3d::Zero());
+    if (recovered) clipped.recovered_rad2_s2 = none;
+    Result out;
+    const Status status = CarriedSmoother(params).estimate(samples, clipped, out.rates, out.attitudes, out.report);
+    EXPECT_TRUE(status.ok()) << status.message();
+    return out.attitudes;
+  };
+  const auto without = run(0.0, true), with = run(0.01, true), held = run(0.01, false);
+  const auto added = [&](const auto& attitudes, std::size_t k) {
+    return Eigen::Vector3d((attitudes[k].covariance_rad2 - without[k].covariance_rad2).diagonal());
+  };
+  for (std::size_t k = 0; k < samples.size(); ++k) {
+    const double half_rad =
+        3.0 * std::max(0.0, std::min(0.01 * static_cast<double>(k) - 2.0, 5.0 - 0.01 * static_cast<double>(k)));
+    // the rests are told to a tenth of a second
+    EXPECT_NEAR(std::sqrt(added(with, k).maxCoeff()), 0.01 * half_rad, 0.01 * 0.4) << k;
+    EXPECT_EQ(with[k].q_WA.coeffs(), without[k].q_WA.coeffs()) << k;
+    EXPECT_EQ(added(held, k), Eigen::Vector3d::Zero()) << k;
+  }
+}
+
 TEST(CarriedSmoother, RefusesRecoveredRatesThatAreNone) {
   const CarriedRecording recording = testing::record({}, 100.0, 1.0, 0.0);
   std::vector<Eigen::Matrix3d> covariances(recording.samples.size() - 1, Eigen::Matrix3d::Zero());

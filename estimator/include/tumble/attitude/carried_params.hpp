@@ -31,12 +31,13 @@ struct CarriedHandParams {
 
 /// What readings are off by beside their noise, clipped and recovered ones among them.
 struct CarriedReadingParams {
-  double tilt_share = 0.02;            ///< error of a free element per excess of a clipped one
-  double rail_sigma_rad_s = 0.01;      ///< how sharp a rail is
-  double accel_error_share = 0.02;     ///< more, per m/s^2 away from gravity
-  double turn_error_sqrts = 1e-3;      ///< random walk of the attitude per rad/s turned
-  double recovered_sigma_rad_s = 1.0;  ///< a clipped rate known better is recovered
-  double recovered_tau_s = 0.005;      ///< memory of the error of a rate that was recovered
+  double tilt_share = 0.02;             ///< error of a free element per excess of a clipped one
+  double rail_sigma_rad_s = 0.01;       ///< how sharp a rail is
+  double accel_error_share = 0.02;      ///< more, per m/s^2 away from gravity
+  double turn_error_sqrts = 1e-3;       ///< random walk of the attitude per rad/s turned
+  double recovered_sigma_rad_s = 1.0;   ///< a clipped rate known better is recovered
+  double recovered_tau_s = 0.005;       ///< memory of the error of a rate that was recovered
+  double recovered_scale_share = 6e-3;  ///< beside recovered rates: of the turning, by which gyros misread all of it
 
   template <class Self, class Visitor>
   static void fields(Self& p, Visitor& visit) {
@@ -51,6 +52,8 @@ struct CarriedReadingParams {
           {"recovered_sigma_rad_s", "rad/s", 0.0, 1e4,
            "a clipped rate known better than this is recovered, not only bounded", Rank::first});
     visit(p.recovered_tau_s, {"recovered_tau_s", "s", 1e-4, 1e4, "memory of the error of a rate that was recovered"});
+    visit(p.recovered_scale_share, {"recovered_scale_share", "1", 0.0, 1.0,
+                                    "beside recovered rates: of the turning, by which gyros misread all of it"});
   }
 };
 
