@@ -186,6 +186,22 @@ TEST_F(ExternalMethod, AVersionTellsProgramAndDescription) {
   EXPECT_NE(first, second);
 }
 
+// else a sweep or a bench goes on with rows of the program as it was
+TEST_F(ExternalMethod, AProgramThatWasMadeAnewIsAnotherVersion) {
+  const auto version = [&] { return external_method(folder_ / "theirs.yaml").info.version; };
+  for (const char* command : {"sh {folder}/mine.sh {output}", "{folder}/mine.sh>{output}"}) {
+    write("mine.sh", "echo one\n");
+    describe("rate", command);
+    const std::string first = version();
+    write("beside.sh", "echo\n");
+    EXPECT_EQ(version(), first) << "of no word of it";
+    write("mine.sh", "echo two\n");
+    EXPECT_NE(version(), first) << command;
+    write("mine.sh", "echo one\n");
+    EXPECT_EQ(version(), first) << "when and where it was made is no matter";
+  }
+}
+
 TEST_F(ExternalMethod, NamesAreTheirOwn) {
   write("ours.yaml", "name: raw\nkind: rate\ncommand: [true, '{output}']\n");
   EXPECT_THROW(find_methods((folder_ / "ours.yaml").string()), BadInput);
