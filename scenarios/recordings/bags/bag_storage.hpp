@@ -22,7 +22,8 @@ struct BagTopic {
 class BagWriter {
  public:
   virtual ~BagWriter() = default;
-  /// Messages must come in order of time, those of a topic all of one type. Throws BadInput.
+  /// Messages come in order of time, but for the first of a topic, which may come before its time; those of a topic are
+  /// all of one type. Throws BadInput.
   virtual void write(const std::string& topic, std::int64_t stamp_ns, const ros::Message& message) = 0;
   /// Nothing is left of a bag that was not finished. Throws BadInput.
   virtual void finish() = 0;

@@ -76,6 +76,22 @@ std::vector<Event> events_of(const sim::Sensors& sensors, std::size_t imus, std:
   return events;
 }
 
+/// A bag has its topics in the order of their first messages, and a reader takes the first IMU for the primary one.
+/// Where another one's first reading was earlier, the first readings of all are taken out, to be written before the
+/// rest, in the order of the sensors; else none.
+std::vector<Event> taken_to_begin(std::size_t imus, std::vector<Event>& events) {
+  std::vector<Event> first;
+  for (std::size_t s = 0; s < imus; ++s) {
+    const auto of_it = [&](const Event& event) { return event.kind == Event::imu && event.of == s; };
+    const auto found = std::find_if(events.begin(), events.end(), of_it);
+    if (found != events.end()) first.push_back(*found);
+  }
+  const auto earlier = [](const Event& a, const Event& b) { return a.time_ns < b.time_ns; };
+  if (std::is_sorted(first.begin(), first.end(), earlier)) return {};
+  std::erase_if(events, [](const Event& event) { return event.kind == Event::imu && event.index == 0; });
+  return first;
+}
+
 /// Under which names a sensor stands in a bag.
 struct Place {
   std::string topic, frame;
@@ -116,8 +132,9 @@ class Export {
   }
 
   void all() {
-    const std::vector<Event> events = events_of(sensors_, imus_.size(), lidars_.size(), writing_);
+    std::vector<Event> events = events_of(sensors_, imus_.size(), lidars_.size(), writing_);
     if (!events.empty()) write_mountings(stamp_of(events.front().time_ns));
+    for (const Event& event : taken_to_begin(imus_.size(), events)) write(event, stamp_of(event.time_ns));
     for (const Event& event : events) {
       if (event.kind == Event::cloud) {
         write_cloud(event);

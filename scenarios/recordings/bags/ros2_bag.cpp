@@ -7,6 +7,7 @@
 #include <cstring>
 #include <map>
 #include <optional>
+#include <set>
 #include <sstream>
 
 #include "scenarios/errors.hpp"
@@ -42,11 +43,13 @@ class Ros2BagWriter : public BagWriter {
           "CREATE TABLE metadata(id INTEGER PRIMARY KEY, metadata_version INTEGER NOT NULL, metadata TEXT NOT NULL);"
           "CREATE TABLE topics(id INTEGER PRIMARY KEY, name TEXT NOT NULL, type TEXT NOT NULL, serialization_format "
           "TEXT "
-          "NOT NULL, offered_qos_profiles TEXT NOT NULL);"
+          "NOT NULL, offered_qos_profiles TEXT NOT NULL, type_description_hash TEXT NOT NULL);"
+          "CREATE TABLE message_definitions(id INTEGER PRIMARY KEY, topic_type TEXT NOT NULL, encoding TEXT NOT NULL, "
+          "encoded_message_definition TEXT NOT NULL, type_description_hash TEXT NOT NULL);"
           "CREATE TABLE messages(id INTEGER PRIMARY KEY, topic_id INTEGER NOT NULL, timestamp INTEGER NOT NULL, data "
           "BLOB NOT NULL);"
           "CREATE INDEX timestamp_idx ON messages (timestamp ASC);"
-          "INSERT INTO schema VALUES (3, 'humble')");
+          "INSERT INTO schema VALUES (4, 'iron')");
       database_->exec("BEGIN");
     });
   }
@@ -85,7 +88,8 @@ class Ros2BagWriter : public BagWriter {
     const std::size_t known = summary_.topics.size();
     const std::size_t place = summary_.count(topic, stamp_ns);
     if (place == known) {
-      SQLite::Statement statement(*database_, "INSERT INTO topics VALUES (?, ?, ?, 'cdr', ?)");
+      if (defined_.insert(topic.type).second) define(topic.type);
+      SQLite::Statement statement(*database_, "INSERT INTO topics VALUES (?, ?, ?, 'cdr', ?, '')");
       statement.bind(1, static_cast<std::int64_t>(place) + 1);
       statement.bind(2, topic.name);
       statement.bind(3, ros2_type(topic.type));
@@ -93,6 +97,17 @@ class Ros2BagWriter : public BagWriter {
       statement.exec();
     }
     return static_cast<std::int64_t>(place) + 1;
+  }
+
+  /// Readers without ROS know from it what a message holds. Its hash may be empty, which is not held against it.
+  void define(const std::string& type) {
+    SQLite::Statement statement(
+        *database_,
+        "INSERT INTO message_definitions (topic_type, encoding, encoded_message_definition, type_description_hash) "
+        "VALUES (?, 'ros2msg', ?, '')");
+    statement.bind(1, ros2_type(type));
+    statement.bind(2, ros2_definition(type));
+    statement.exec();
   }
 
   void insert(const BagTopic& topic, std::int64_t stamp_ns, const ros::Bytes& bytes) {
@@ -115,6 +130,7 @@ class Ros2BagWriter : public BagWriter {
   std::unique_ptr<SQLite::Database> database_;
   std::unique_ptr<SQLite::Statement> insert_;
   Ros2Summary summary_;
+  std::set<std::string> defined_;  ///< types
 };
 
 /// The files of a bag, in order, and how they are stored: "sqlite3" or "mcap".
