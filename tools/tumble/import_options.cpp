@@ -168,7 +168,8 @@ void declare(VerbOptions& verb, ImportOptions& options) {
            "or content]");
   verb.add("--device", options.device,
            "the IMU's data sheet, for ranges and noise: see 'tumble list sensors' [unknown]");
-  verb.add("--accel-unit", options.accel_unit, "of a CSV or bag: m/s^2 or g [m/s^2]");
+  verb.add("--accel-unit", options.accel_unit,
+           "of a CSV or bag: m/s^2 or g [m/s^2; of a bag g where the readings are at rest]");
   verb.add("--gyro-unit", options.gyro_unit, "of a CSV or bag: rad/s or deg/s [rad/s]");
   verb.add("--lever-arm", options.lever_arm_m, "X Y Z: from the robot's centre of mass to the IMU, m [0 0 0]").words(3);
   verb.add("--robot", options.robot, "rig, sphere or pendulum, for methods that ask [unknown]");
@@ -326,7 +327,7 @@ scenarios::BagReading bag_reading(const Session& session, const ImportOptions& o
   reading.reference_topic = options.reference_topic;
   reading.reference_of_body = options.reference_frame != "lidar";
   reading.imu = imu_sheet(session, options);
-  reading.accel_unit = accel_unit(options);
+  if (!options.accel_unit.empty()) reading.accel_unit = accel_unit(options);
   reading.gyro_unit = gyro_unit(options);
   if (!options.stamps.empty()) {
     require_known("stamps", options.stamps, std::vector<std::string>{"header", "record"});
