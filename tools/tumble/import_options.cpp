@@ -193,7 +193,7 @@ std::string format_of(const ImportOptions& options) {
   const std::string ending = options.path.extension().string();
   if (ending == ".csv") return format_of_csv(options.path);
   if (ending == ".bag") return "rosbag1";
-  if (ending == ".db3") return "rosbag2";
+  if (ending == ".db3" || ending == ".zstd") return "rosbag2";
   if (ending == ".mcap") return "mcap";
   if (ending == ".hdf5" || ending == ".h5") return "broad";
   if (ending == ".tum" || ending == ".txt" || ending == ".kitti") return scenarios::pose_format(options.path);

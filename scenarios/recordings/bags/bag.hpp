@@ -94,7 +94,8 @@ struct BagReading {
   SweepReading sweeps;
 };
 
-/// Reads a ROS 1 bag (not encrypted), a ROS 2 bag: its folder (SQLite or MCAP), or its SQLite file, or an MCAP file
+/// Reads a ROS 1 bag (not encrypted), a ROS 2 bag: its folder (SQLite or MCAP, plain or
+/// packed by Zstandard, file by file or message by message), or its SQLite file, or an MCAP file
 /// with messages of ROS 2 (cdr) or ROS 1 in chunks that are plain or packed by LZ4 or Zstandard; indexed or not. Times
 /// are those of `stamps`; how headers and records differ is said in the notes. Units are held against gravity as of a
 /// CSV; specific force that is in g by its size at rest, as Livox' drivers give it, is read so and said. With

@@ -4,6 +4,7 @@
 #include <yaml-cpp/yaml.h>
 
 #include <algorithm>
+#include <cctype>
 #include <cstring>
 #include <map>
 #include <optional>
@@ -12,6 +13,7 @@
 
 #include "scenarios/errors.hpp"
 #include "scenarios/recordings/bags/bag_storage.hpp"
+#include "scenarios/recordings/bags/packed_bag.hpp"
 #include "scenarios/recordings/bags/ros2_definitions.hpp"
 #include "scenarios/recordings/bags/ros2_metadata.hpp"
 #include "scenarios/recordings/replace_file.hpp"
@@ -133,14 +135,35 @@ class Ros2BagWriter : public BagWriter {
   std::set<std::string> defined_;  ///< types
 };
 
-/// The files of a bag, in order, and how they are stored: "sqlite3" or "mcap".
+/// The files of a bag, in order, and how they are stored: "sqlite3" or "mcap", and what of it is packed: "", "file" or
+/// "message".
 struct Storage {
   std::string kind = "sqlite3";
   std::vector<path> files;
+  std::string packed = {};
 };
 
+/// What of a bag is packed, by its metadata.
+std::string packed_by(const YAML::Node& root, const path& metadata) {
+  const auto text = [&](const char* key) {
+    std::string out = root[key] ? root[key].as<std::string>("") : "";
+    std::transform(out.begin(), out.end(), out.begin(), [](unsigned char c) { return std::tolower(c); });
+    return out;
+  };
+  const std::string format = text("compression_format"), mode = text("compression_mode");
+  if (format.empty() || mode == "none") return "";
+  if (format != "zstd" || (mode != "file" && mode != "message"))
+    fail(metadata, "the bag is compressed by '" + format + "' in mode '" + mode +
+                       "', must be zstd in mode file or message ('ros2 bag convert' makes a plain one)");
+  return mode;
+}
+
 Storage storage_of(const path& bag) {
-  if (!std::filesystem::is_directory(bag)) return {bag.extension() == ".mcap" ? "mcap" : "sqlite3", {bag}};
+  if (!std::filesystem::is_directory(bag)) {
+    const bool packed = bag.extension() == ".zstd";
+    const path name = packed ? bag.stem() : bag;
+    return {name.extension() == ".mcap" ? "mcap" : "sqlite3", {bag}, packed ? "file" : ""};
+  }
   const path metadata = bag / "metadata.yaml";
   if (!std::filesystem::is_regular_file(metadata)) fail(bag, "holds no metadata.yaml: no ROS 2 bag");
   Storage out;
@@ -149,8 +172,7 @@ Storage storage_of(const path& bag) {
     out.kind = root["storage_identifier"].as<std::string>();
     if (out.kind != "sqlite3" && out.kind != "mcap")
       fail(metadata, "the storage is '" + out.kind + "', must be sqlite3 or mcap");
-    if (root["compression_format"] && !root["compression_format"].as<std::string>("").empty())
-      fail(metadata, "the bag is compressed ('ros2 bag convert' makes a plain one)");
+    out.packed = packed_by(root, metadata);
     for (const YAML::Node& each : root["relative_file_paths"]) {
       const path name = path(each.as<std::string>()).filename();  // nothing leads out of the folder
       out.files.push_back(bag / name);
@@ -228,9 +250,14 @@ std::unique_ptr<BagWriter> make_ros2_writer(const path& folder) {
 }
 
 std::unique_ptr<BagReader> open_ros2_bag(const path& bag) {
-  Storage storage = storage_of(bag);
-  if (storage.kind == "mcap") return open_mcap(storage.files);
-  return std::make_unique<Ros2BagReader>(std::move(storage.files));
+  const Storage storage = storage_of(bag);
+  const auto open = [&](const std::vector<path>& files) -> std::unique_ptr<BagReader> {
+    if (storage.kind == "mcap") return open_mcap(files);
+    return std::make_unique<Ros2BagReader>(files);
+  };
+  if (storage.packed == "file") return open_packed_files(storage.files, open);
+  if (storage.packed == "message") return with_packed_messages(open(storage.files), bag.string());
+  return open(storage.files);
 }
 
 }  // namespace tumble::scenarios
