@@ -185,7 +185,8 @@ std::vector<std::string> placeholders_in(const std::string& word) {
   for (std::sregex_iterator it(word.begin(), word.end(), placeholder()), end; it != end; ++it) {
     const std::string name = (*it)[1];
     if (std::find(known.begin(), known.end(), name) == known.end())
-      throw BadInput("unknown placeholder '{" + name + "}'" + suggestion(name, known));
+      throw BadInput("unknown placeholder '{" + name + "}'" + suggestion(name, known) + " (there are " +
+                     fmt::format("{}", fmt::join(known, " ")) + ")");
     out.push_back(name);
   }
   return out;

@@ -170,6 +170,7 @@ TEST_F(ExternalMethod, WhatIsNoCovarianceIsRefused) {
 
 TEST_F(ExternalMethod, DescriptionsAreCheckedBeforeAnythingRuns) {
   EXPECT_THAT(refused(describe("rate", "{csw} {output}")), HasSubstr("did you mean 'csv'"));
+  EXPECT_THAT(refused(describe("rate", "{bag} {output}")), HasSubstr("rosbag1 rosbag2 mcap"));
   EXPECT_THAT(refused(describe("rate", "true")), HasSubstr("{output}"));
   EXPECT_THAT(refused(describe("rates", "{output}")), HasSubstr("did you mean 'rate'"));
   EXPECT_THAT(refused(describe("rate", "{output}", "time_limit_s: 0\n")), HasSubstr("time_limit_s"));
