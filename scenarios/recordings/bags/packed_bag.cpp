@@ -21,7 +21,11 @@ namespace {
 
 using std::filesystem::path;
 
-constexpr std::uint64_t kGiB = 1u << 30, kRatioMax = 200, kLeftFree = 64u << 20;
+/// What comes out of so many bytes that were packed at most; of messages of sensors it is some tens of times.
+constexpr std::uint64_t most_of(std::uint64_t packed_bytes) {
+  constexpr std::uint64_t kAlways = 64u << 20, kRatioMax = 200;
+  return kAlways + kRatioMax * packed_bytes;
+}
 
 class TemporaryFolder {
  public:
@@ -47,9 +51,10 @@ class TemporaryFolder {
 
 /// What may come out of a file that is to be unpacked into a folder.
 std::uint64_t most_bytes(const path& file, const path& folder) {
+  constexpr std::uint64_t kLeftFree = 64u << 20;
   const std::uint64_t free = std::filesystem::space(folder).available;
   const std::uint64_t room = free > kLeftFree ? free - kLeftFree : 0;
-  return std::min(room, kGiB + kRatioMax * std::filesystem::file_size(file));
+  return std::min(room, most_of(std::filesystem::file_size(file)));
 }
 
 void unpack(const path& file, const path& to) {
@@ -121,8 +126,8 @@ class UnpackedMessages : public BagReader {
   ros::Bytes unpacked(const ros::Bytes& bytes, const std::string& topic, std::size_t number) const {
     const std::string where = place_ + ": message " + std::to_string(number) + " of " + topic + ": ";
     const unsigned long long size = ZSTD_getFrameContentSize(bytes.data(), bytes.size());
-    if (size == ZSTD_CONTENTSIZE_ERROR || size == ZSTD_CONTENTSIZE_UNKNOWN || size > kGiB)
-      throw BadInput(where + "is no Zstandard frame that states a size of 1 GiB at most");
+    if (size == ZSTD_CONTENTSIZE_ERROR || size == ZSTD_CONTENTSIZE_UNKNOWN || size > most_of(bytes.size()))
+      throw BadInput(where + "is no Zstandard frame that states a size of 64 MiB and 200 times its own at most");
     try {
       const std::string plain = unpacked_zstd({reinterpret_cast<const char*>(bytes.data()), bytes.size()}, size);
       return {plain.begin(), plain.end()};
