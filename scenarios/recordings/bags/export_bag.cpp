@@ -76,19 +76,14 @@ std::vector<Event> events_of(const sim::Sensors& sensors, std::size_t imus, std:
   return events;
 }
 
-/// A bag has its topics in the order of their first messages, and a reader takes the first IMU for the primary one.
-/// Where another one's first reading was earlier, the first readings of all are taken out, to be written before the
-/// rest, in the order of the sensors; else none.
-std::vector<Event> taken_to_begin(std::size_t imus, std::vector<Event>& events) {
+/// The first reading of each IMU, in the order of the sensors.
+std::vector<Event> first_readings(std::size_t imus, const std::vector<Event>& events) {
   std::vector<Event> first;
   for (std::size_t s = 0; s < imus; ++s) {
     const auto of_it = [&](const Event& event) { return event.kind == Event::imu && event.of == s; };
     const auto found = std::find_if(events.begin(), events.end(), of_it);
     if (found != events.end()) first.push_back(*found);
   }
-  const auto earlier = [](const Event& a, const Event& b) { return a.time_ns < b.time_ns; };
-  if (std::is_sorted(first.begin(), first.end(), earlier)) return {};
-  std::erase_if(events, [](const Event& event) { return event.kind == Event::imu && event.index == 0; });
   return first;
 }
 
@@ -134,7 +129,7 @@ class Export {
   void all() {
     std::vector<Event> events = events_of(sensors_, imus_.size(), lidars_.size(), writing_);
     if (!events.empty()) write_mountings(stamp_of(events.front().time_ns));
-    for (const Event& event : taken_to_begin(imus_.size(), events)) write(event, stamp_of(event.time_ns));
+    begin_with_imus(events);
     for (const Event& event : events) {
       if (event.kind == Event::cloud) {
         write_cloud(event);
@@ -150,6 +145,18 @@ class Export {
   std::int64_t stamp_of(std::int64_t time_ns) const {
     if (origin_ns_ + time_ns < 0) throw BadInput("a reading lies before 1970: a bag has no such stamps");
     return origin_ns_ + time_ns;
+  }
+
+  /// A reader takes the first IMU of a bag for the primary one, and another one's first reading may be earlier.
+  void begin_with_imus(std::vector<Event>& events) {
+    const std::vector<Event> first = first_readings(imus_.size(), events);
+    const auto earlier = [](const Event& a, const Event& b) { return a.time_ns < b.time_ns; };
+    if (std::is_sorted(first.begin(), first.end(), earlier)) return;
+    std::vector<BagTopic> topics;
+    for (const Event& event : first) topics.push_back({imus_[event.of].topic, ros::type_of(ros::Imu{})});
+    if (bag_.begin_with(topics)) return;
+    std::erase_if(events, [](const Event& event) { return event.kind == Event::imu && event.index == 0; });
+    for (const Event& event : first) write(event, stamp_of(event.time_ns));
   }
 
   void write_mountings(std::int64_t stamp) {

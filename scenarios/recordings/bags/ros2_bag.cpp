@@ -61,6 +61,12 @@ class Ros2BagWriter : public BagWriter {
     std::error_code ignored;
     std::filesystem::remove(part_, ignored);
   }
+  bool begin_with(const std::vector<BagTopic>& topics) override {
+    guarded([&] {
+      for (const BagTopic& topic : topics) number_of(topic);
+    });
+    return true;
+  }
   void write(const std::string& topic, std::int64_t stamp_ns, const ros::Message& message) override {
     insert({topic, ros::type_of(message)}, stamp_ns, ros::to_cdr(message));
   }
@@ -85,10 +91,10 @@ class Ros2BagWriter : public BagWriter {
     }
   }
 
-  /// The number of the message's topic, which is entered when it is new.
-  std::int64_t topic_of(const BagTopic& topic, std::int64_t stamp_ns) {
+  /// The number of a topic, which is entered when it is new.
+  std::int64_t number_of(const BagTopic& topic) {
     const std::size_t known = summary_.topics.size();
-    const std::size_t place = summary_.count(topic, stamp_ns);
+    const std::size_t place = summary_.place_of(topic);
     if (place == known) {
       if (defined_.insert(topic.type).second) define(topic.type);
       SQLite::Statement statement(*database_, "INSERT INTO topics VALUES (?, ?, ?, 'cdr', ?, '')");
@@ -114,7 +120,8 @@ class Ros2BagWriter : public BagWriter {
 
   void insert(const BagTopic& topic, std::int64_t stamp_ns, const ros::Bytes& bytes) {
     guarded([&] {
-      const std::int64_t number = topic_of(topic, stamp_ns);
+      const std::int64_t number = number_of(topic);
+      summary_.count(topic, stamp_ns);
       if (!insert_) {
         insert_ = std::make_unique<SQLite::Statement>(
             *database_, "INSERT INTO messages (topic_id, timestamp, data) VALUES (?, ?, ?)");
