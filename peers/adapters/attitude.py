@@ -1,7 +1,8 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Filters of attitude from gyro and accelerometer: vqf (Laidig, Seel 2023), ahrs (Madgwick, Mahony), imufusion (x-io).
+"""Filters of attitude from gyro and accelerometer: vqf (Laidig, Seel 2023), ahrs (Madgwick, Mahony, extended Kalman filter), imufusion (x-io).
 
-Settings: each package's defaults at the IMU's rate; the filters of ahrs begin at the attitude that gravity gives, the others as they do
+Settings: each package's defaults at the IMU's rate (of the Kalman filter the frame too: its "NED" has the specific force at rest along
+z, which is up here; its "ENU" has it against z); the filters of ahrs begin at the attitude that gravity gives, the others as they do
 by themselves (imufusion with a high gain over its first 3 s). Attitudes are of the IMU, W with z up."""
 import numpy as np
 
@@ -37,6 +38,10 @@ def mahony(sensors: Recording, seconds: float) -> np.ndarray:
     return ahrs(sensors, seconds, "Mahony")
 
 
+def ekf(sensors: Recording, seconds: float) -> np.ndarray:
+    return ahrs(sensors, seconds, "EKF")
+
+
 def imufusion(sensors: Recording, seconds: float) -> np.ndarray:
     import imufusion as package
     filter_ = package.Ahrs()
@@ -49,7 +54,7 @@ def imufusion(sensors: Recording, seconds: float) -> np.ndarray:
 
 
 def run(sensors: Recording, name: str) -> Track:
-    q_wxyz = {"vqf": vqf, "madgwick": madgwick, "mahony": mahony, "imufusion": imufusion}[name](sensors, sensors.period_ns * 1e-9)
+    q_wxyz = {"vqf": vqf, "madgwick": madgwick, "mahony": mahony, "ekf": ekf, "imufusion": imufusion}[name](sensors, sensors.period_ns * 1e-9)
     T_WI = []
     for R in rotations(np.asarray(q_wxyz, float)):
         T = np.eye(4)

@@ -198,6 +198,11 @@ std::map<std::string, YamlNode> YamlNode::fields(std::span<const std::string> re
                                                  std::span<const std::string> optional) const {
   std::vector<std::string> known(required.begin(), required.end());
   known.insert(known.end(), optional.begin(), optional.end());
+  if (!node_.IsMap() && !required.empty()) {
+    std::string keys;
+    for (const std::string& name : required) keys += (keys.empty() ? "" : ", ") + name;
+    fail("must be a map with the keys " + keys + ", is " + kind_of(node_));
+  }
   std::map<std::string, YamlNode> out;
   for (auto& [name, value] : entries()) {
     if (std::find(known.begin(), known.end(), name) == known.end()) {

@@ -6,7 +6,10 @@
 
 #include <algorithm>
 #include <array>
+#include <fstream>
+#include <memory>
 #include <regex>
+#include <set>
 #include <utility>
 
 #include "scenarios/draw/strict_yaml.hpp"
@@ -70,6 +73,41 @@ double limit(const YamlNode& node, double most) {
 
 std::string digest_of(const std::string& text) {
   return fmt::format("{:016x}", XXH3_64bits(text.data(), text.size()));
+}
+
+/// The files that the words of a command name by {folder}, as "{folder}/mine" or inside of a line for a shell, in the
+/// order of their names.
+std::set<std::filesystem::path> own_files(const std::vector<std::string>& command,
+                                          const std::filesystem::path& folder) {
+  static const std::regex pattern(R"(\{folder\}/([^\s{}"';|&<>()]{1,512}))");
+  std::set<std::filesystem::path> out;
+  for (const std::string& word : command) {
+    for (std::sregex_iterator it(word.begin(), word.end(), pattern), end; it != end; ++it) {
+      std::error_code no_file;
+      const std::filesystem::path file = folder / (*it)[1].str();
+      if (std::filesystem::is_regular_file(file, no_file)) out.insert(file);
+    }
+  }
+  return out;
+}
+
+std::uint64_t digest_of_file(const std::filesystem::path& file) {
+  constexpr std::size_t kPiece = 1 << 20;
+  const std::unique_ptr<XXH3_state_t, XXH_errorcode (*)(XXH3_state_t*)> state(XXH3_createState(), XXH3_freeState);
+  XXH3_64bits_reset(state.get());
+  std::ifstream in(file, std::ios::binary);
+  std::string piece(kPiece, '\0');
+  while (in.read(piece.data(), static_cast<std::streamsize>(piece.size())) || in.gcount() > 0)
+    XXH3_64bits_update(state.get(), piece.data(), static_cast<std::size_t>(in.gcount()));
+  return XXH3_64bits_digest(state.get());
+}
+
+/// Of the description and of its command's own files: a program that was compiled anew is another version.
+std::string digest_of_command(const std::string& text, const ExternalDescription& description) {
+  std::string all = text;
+  for (const std::filesystem::path& file : own_files(description.command, description.file.parent_path()))
+    all += fmt::format("\n{} {:016x}", file.filename().string(), digest_of_file(file));
+  return digest_of(all);
 }
 
 /// What a function of Python cannot have: it gives its answer back and leaves no file.
@@ -147,7 +185,8 @@ std::vector<std::string> placeholders_in(const std::string& word) {
   for (std::sregex_iterator it(word.begin(), word.end(), placeholder()), end; it != end; ++it) {
     const std::string name = (*it)[1];
     if (std::find(known.begin(), known.end(), name) == known.end())
-      throw BadInput("unknown placeholder '{" + name + "}'" + suggestion(name, known));
+      throw BadInput("unknown placeholder '{" + name + "}'" + suggestion(name, known) + " (there are " +
+                     fmt::format("{}", fmt::join(known, " ")) + ")");
     out.push_back(name);
   }
   return out;
@@ -181,10 +220,12 @@ ExternalDescription read_external(const std::filesystem::path& file) {
   out.digest = digest_of(text);
   out.name = fields.at("name").identifier();
   out.kind = named(fields.at("kind"), Kind::slam);
-  if (given("command"))
+  if (given("command")) {
     read_command(fields, out);
-  else
+    out.digest = digest_of_command(text, out);
+  } else {
     read_python(fields, out);
+  }
   if (given("doc")) out.doc = fields.at("doc").text();
   out.source = given("source") ? fields.at("source").text() : file.filename().string();
   if (given("frame")) out.frame = named(fields.at("frame"), Frame::centre);

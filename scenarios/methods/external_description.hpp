@@ -29,7 +29,7 @@ struct ExternalDescription {
   Output output = Output::tum;
   double time_limit_s = 600.0;
   double memory_limit_mib = 8192.0;
-  std::string digest;  ///< of the file's text
+  std::string digest;  ///< of the file's text, and of the files beside it that a command names by {folder}
 };
 
 /// What a command may name in braces, and what then stands there: "recording", "csv", "output".

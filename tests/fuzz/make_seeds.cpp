@@ -2,6 +2,7 @@
 // fuzz_make_seeds FOLDER: writes the smallest good file of each kind into FOLDER/READER/, where the readers' own
 // writers know how; tests/fuzz/README.md says where the others come from.
 #include <hdf5.h>
+#include <zstd.h>
 
 #include <cmath>
 #include <cstdio>
@@ -55,6 +56,12 @@ path in(const path& folder, const std::string& reader) {
 
 void put_text(const path& file, const std::string& text) {
   std::ofstream(file, std::ios::binary | std::ios::trunc) << text;
+}
+
+std::string packed_by_zstd(const std::string& plain) {
+  std::string out(ZSTD_compressBound(plain.size()), '\0');
+  out.resize(ZSTD_compress(out.data(), out.size(), plain.data(), plain.size(), 19));
+  return out;
 }
 
 std::string row(const char* format, double t) {
@@ -134,7 +141,10 @@ void write_recordings(const path& folder, const path& scratch) {
   export_mcap(longer.sensors, livox, in(folder, "mcap") / "livox");
   export_ros2_bag(longer.sensors, {}, scratch / "bag");
   for (const auto& entry : std::filesystem::directory_iterator(scratch / "bag")) {
-    if (entry.path().extension() == ".db3") std::filesystem::copy_file(entry.path(), in(folder, "ros2_bag") / "small");
+    if (entry.path().extension() == ".db3") {
+      std::filesystem::copy_file(entry.path(), in(folder, "ros2_bag") / "small");
+      put_text(in(folder, "ros2_bag_packed") / "small", packed_by_zstd(fixture::bytes_of(entry.path())));
+    }
   }
   write_mcaps(in(folder, "mcap"), longer);
   export_csv(longer.sensors, nullptr, scratch / "csv");

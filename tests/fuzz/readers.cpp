@@ -203,6 +203,7 @@ constexpr std::array kReaders = {
     Reader{"broad", "a.hdf5", broad},
     Reader{"ros1_bag", "a.bag", ros1_bag},
     Reader{"ros2_bag", "a.db3", ros2_bag},
+    Reader{"ros2_bag_packed", "a.db3.zstd", ros2_bag},
     Reader{"mcap", "a.mcap", mcap},
     Reader{"ply_cloud", "lidar_000000.ply", ply_cloud},
     Reader{"pcd_cloud", "lidar_000000.pcd", pcd_cloud},

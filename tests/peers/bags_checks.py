@@ -174,6 +174,15 @@ class Definitions(unittest.TestCase):
             for name, (_, fields) in get_types_from_msg(schema.data.decode(), schema.name).items():
                 self.assertEqual(fields, store.fielddefs[name][1], name)
 
+    def test_ros2_bags_bring_their_own(self):
+        for form in ("rosbag2", "rosbag2_mcap"):
+            with self.subTest(form), AnyReader([FOLDER / BAGS[form]]) as reader:
+                first = {}
+                for connection, _, raw in reader.messages():
+                    first.setdefault(connection.topic, reader.deserialize(raw, connection.msgtype))
+                self.assertEqual(first["/imu"].header.frame_id, "imu")
+                self.assertGreater(first["/lidar/points"].width, 0)
+
     def test_offered_qos(self):
         for form in ("mcap", "rosbag2", "rosbag2_mcap"):
             with AnyReader([FOLDER / BAGS[form]], default_typestore=get_typestore(Stores.ROS2_HUMBLE)) as reader:

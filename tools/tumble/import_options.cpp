@@ -168,7 +168,8 @@ void declare(VerbOptions& verb, ImportOptions& options) {
            "or content]");
   verb.add("--device", options.device,
            "the IMU's data sheet, for ranges and noise: see 'tumble list sensors' [unknown]");
-  verb.add("--accel-unit", options.accel_unit, "of a CSV or bag: m/s^2 or g [m/s^2]");
+  verb.add("--accel-unit", options.accel_unit,
+           "of a CSV or bag: m/s^2 or g [m/s^2; of a bag g where the readings are at rest]");
   verb.add("--gyro-unit", options.gyro_unit, "of a CSV or bag: rad/s or deg/s [rad/s]");
   verb.add("--lever-arm", options.lever_arm_m, "X Y Z: from the robot's centre of mass to the IMU, m [0 0 0]").words(3);
   verb.add("--robot", options.robot, "rig, sphere or pendulum, for methods that ask [unknown]");
@@ -192,7 +193,7 @@ std::string format_of(const ImportOptions& options) {
   const std::string ending = options.path.extension().string();
   if (ending == ".csv") return format_of_csv(options.path);
   if (ending == ".bag") return "rosbag1";
-  if (ending == ".db3") return "rosbag2";
+  if (ending == ".db3" || ending == ".zstd") return "rosbag2";
   if (ending == ".mcap") return "mcap";
   if (ending == ".hdf5" || ending == ".h5") return "broad";
   if (ending == ".tum" || ending == ".txt" || ending == ".kitti") return scenarios::pose_format(options.path);
@@ -326,7 +327,7 @@ scenarios::BagReading bag_reading(const Session& session, const ImportOptions& o
   reading.reference_topic = options.reference_topic;
   reading.reference_of_body = options.reference_frame != "lidar";
   reading.imu = imu_sheet(session, options);
-  reading.accel_unit = accel_unit(options);
+  if (!options.accel_unit.empty()) reading.accel_unit = accel_unit(options);
   reading.gyro_unit = gyro_unit(options);
   if (!options.stamps.empty()) {
     require_known("stamps", options.stamps, std::vector<std::string>{"header", "record"});

@@ -56,10 +56,11 @@ struct BagWriting {
 std::int64_t bag_origin_ns(const BagWriting& writing);
 
 /// Writes a recording as a ROS 1 bag (version 2.0, by librosbag), as a ROS 2 bag: a folder with metadata.yaml (version
-/// 5) and a SQLite file of CDR messages, or as an MCAP file of profile ros2 (mcap.dev/spec: chunks of 1 MiB packed by
-/// LZ4, indexed, every checksum there is). In all of them:
+/// 5) and a SQLite file of CDR messages with their definitions (schema 4, as since Iron), or as an MCAP file of profile
+/// ros2 (mcap.dev/spec: chunks of 1 MiB packed by LZ4, indexed, every checksum there is). In all of them:
 ///
-/// - "/NAME" (sensor_msgs/Imu; without attitude; white noise of the data sheet as covariance), NAME the sensor's;
+/// - "/NAME" (sensor_msgs/Imu; without attitude; white noise of the data sheet as covariance), NAME the sensor's; of
+///   several the primary one is the first topic of its type;
 /// - "/NAME/points" (sensor_msgs/PointCloud2, stamped at the sweep's start, with the fields that drivers of Velodyne
 ///   give: x y z intensity ring time, the time float32 seconds after the stamp, to 4 ns within 0.1 s; and offset_ns,
 ///   the same in whole nanoseconds; neither where points have no times; or what `sweeps` says);
@@ -82,26 +83,28 @@ enum class StampSource { header, record };
 
 /// What is taken from a bag.
 struct BagReading {
-  std::vector<std::string> imu_topics;     ///< the first is the primary one; empty: all of type Imu, as they stand
-  std::vector<std::string> lidar_topics;   ///< empty: all of type PointCloud2 or CustomMsg
-  std::string reference_topic;             ///< Odometry or PoseStamped; "": none
-  bool reference_of_body = true;           ///< else of the first lidar
-  sim::ImuRecord imu;                      ///< what the messages do not state: device, ranges, noise, T_BI
-  AccelUnit accel_unit = AccelUnit::m_s2;  ///< of messages whose driver does not keep to sensor_msgs/Imu
+  std::vector<std::string> imu_topics;    ///< the first is the primary one; empty: all of type Imu, as they stand
+  std::vector<std::string> lidar_topics;  ///< empty: all of type PointCloud2 or CustomMsg
+  std::string reference_topic;            ///< Odometry or PoseStamped; "": none
+  bool reference_of_body = true;          ///< else of the first lidar
+  sim::ImuRecord imu;                     ///< what the messages do not state: device, ranges, noise, T_BI
+  std::optional<AccelUnit> accel_unit;    ///< none: sensor_msgs/Imu's m/s^2, or g where the readings are
   GyroUnit gyro_unit = GyroUnit::rad_s;
   StampSource stamps = StampSource::header;
   SweepReading sweeps;
 };
 
-/// Reads a ROS 1 bag (not encrypted), a ROS 2 bag: its folder (SQLite or MCAP), or its SQLite file, or an MCAP file
+/// Reads a ROS 1 bag (not encrypted), a ROS 2 bag: its folder (SQLite or MCAP, plain or
+/// packed by Zstandard, file by file or message by message), or its SQLite file, or an MCAP file
 /// with messages of ROS 2 (cdr) or ROS 1 in chunks that are plain or packed by LZ4 or Zstandard; indexed or not. Times
 /// are those of `stamps`; how headers and records differ is said in the notes. Units are held against gravity as of a
-/// CSV. With `sweeps.scratch` in memory are a sweep at a time, what the IMUs said (57 bytes a sample) and some bytes a
-/// message; without it all. Sensors bear the name of their topic. Points as import_sweeps takes them;
-/// without a choice of topics a cloud in "world", "map" or "odom" is left out, since no sensor's points lie there.
-/// Where /tf_static places a sensor in "body" or "base_link" and nothing else was given, that is its pose. Throws
-/// BadInput with file and place: damaged, truncated, a topic that is not there or of another type, a message whose
-/// stamp does not rise, frames that hang on each other in a ring.
+/// CSV; specific force that is in g by its size at rest, as Livox' drivers give it, is read so and said. With
+/// `sweeps.scratch` in memory are a sweep at a time, what the IMUs said (57 bytes a sample) and some bytes a message;
+/// without it all. Sensors bear the name of their topic. Points as import_sweeps takes them; without a choice of topics
+/// a cloud in "world", "map" or "odom" is left out, since no sensor's points lie there. Where /tf_static places a
+/// sensor in "body" or "base_link" and nothing else was given, that is its pose. Throws BadInput with file and place:
+/// damaged, truncated, a topic that is not there or of another type, a message whose stamp does not rise, frames that
+/// hang on each other in a ring.
 Imported import_ros1_bag(const std::filesystem::path& file, const BagReading& reading);
 Imported import_ros2_bag(const std::filesystem::path& path, const BagReading& reading);
 Imported import_mcap(const std::filesystem::path& file, const BagReading& reading);

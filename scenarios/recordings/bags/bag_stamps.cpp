@@ -69,16 +69,19 @@ std::int64_t BagStamps::take(std::int64_t header_ns, std::int64_t record_ns, con
   return by_header ? header_ns : record_ns;
 }
 
+bool BagStamps::other_clock() const {
+  return least_lag_ns_ < -kAhead_ns || most_lag_ns_ >= kSecond_ns;
+}
+
 std::string BagStamps::remark() const {
   if (!header_ns_ || (least_lag_ns_ > -kSaid_ns && most_lag_ns_ < kSaid_ns)) return "";
-  const bool other_clock = least_lag_ns_ < -kAhead_ns || most_lag_ns_ >= kSecond_ns;
   const bool changes = between(least_lag_ns_, most_lag_ns_) > kSteady_ns;
   const std::string taken = source_ == StampSource::header ? "headers" : "records";
-  return std::string(other_clock || changes ? "caution: " : "") + "the bag recorded its messages " +
+  return std::string(other_clock() || changes ? "caution: " : "") + "the bag recorded its messages " +
          seconds(least_lag_ns_) + " to " + seconds(most_lag_ns_) + " after the stamps of their headers" +
-         (other_clock ? ": another clock?"
-          : changes   ? ": do the clocks drift?"
-                      : "") +
+         (other_clock() ? ": another clock?"
+          : changes     ? ": do the clocks drift?"
+                        : "") +
          "; taken are the " + taken + "'";
 }
 

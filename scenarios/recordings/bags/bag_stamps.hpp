@@ -27,6 +27,8 @@ class BagStamps {
   /// How far the records lag behind the headers, or nothing where that is less than a millisecond throughout. A caution
   /// where a second or more lies between them, where headers are ahead of their records, and where the lag changes.
   std::string remark() const;
+  /// Headers are ahead of their records, or a second or more behind.
+  bool other_clock() const;
 
  private:
   StampSource source_;

@@ -22,6 +22,9 @@ struct BagTopic {
 class BagWriter {
  public:
   virtual ~BagWriter() = default;
+  /// Has the bag name these topics before others, in this order. False: bags of this kind name them in the order of
+  /// their first messages, which may then come before their time.
+  virtual bool begin_with(const std::vector<BagTopic>& topics) = 0;
   /// Messages must come in order of time, those of a topic all of one type. Throws BadInput.
   virtual void write(const std::string& topic, std::int64_t stamp_ns, const ros::Message& message) = 0;
   /// Nothing is left of a bag that was not finished. Throws BadInput.

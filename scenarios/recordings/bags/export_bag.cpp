@@ -76,6 +76,17 @@ std::vector<Event> events_of(const sim::Sensors& sensors, std::size_t imus, std:
   return events;
 }
 
+/// The first reading of each IMU, in the order of the sensors.
+std::vector<Event> first_readings(std::size_t imus, const std::vector<Event>& events) {
+  std::vector<Event> first;
+  for (std::size_t s = 0; s < imus; ++s) {
+    const auto of_it = [&](const Event& event) { return event.kind == Event::imu && event.of == s; };
+    const auto found = std::find_if(events.begin(), events.end(), of_it);
+    if (found != events.end()) first.push_back(*found);
+  }
+  return first;
+}
+
 /// Under which names a sensor stands in a bag.
 struct Place {
   std::string topic, frame;
@@ -116,8 +127,9 @@ class Export {
   }
 
   void all() {
-    const std::vector<Event> events = events_of(sensors_, imus_.size(), lidars_.size(), writing_);
+    std::vector<Event> events = events_of(sensors_, imus_.size(), lidars_.size(), writing_);
     if (!events.empty()) write_mountings(stamp_of(events.front().time_ns));
+    begin_with_imus(events);
     for (const Event& event : events) {
       if (event.kind == Event::cloud) {
         write_cloud(event);
@@ -133,6 +145,18 @@ class Export {
   std::int64_t stamp_of(std::int64_t time_ns) const {
     if (origin_ns_ + time_ns < 0) throw BadInput("a reading lies before 1970: a bag has no such stamps");
     return origin_ns_ + time_ns;
+  }
+
+  /// A reader takes the first IMU of a bag for the primary one, and another one's first reading may be earlier.
+  void begin_with_imus(std::vector<Event>& events) {
+    const std::vector<Event> first = first_readings(imus_.size(), events);
+    const auto earlier = [](const Event& a, const Event& b) { return a.time_ns < b.time_ns; };
+    if (std::is_sorted(first.begin(), first.end(), earlier)) return;
+    std::vector<BagTopic> topics;
+    for (const Event& event : first) topics.push_back({imus_[event.of].topic, ros::type_of(ros::Imu{})});
+    if (bag_.begin_with(topics)) return;
+    std::erase_if(events, [](const Event& event) { return event.kind == Event::imu && event.index == 0; });
+    for (const Event& event : first) write(event, stamp_of(event.time_ns));
   }
 
   void write_mountings(std::int64_t stamp) {

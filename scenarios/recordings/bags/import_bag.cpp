@@ -13,6 +13,7 @@
 #include "scenarios/recordings/clouds/sweep_stamps.hpp"
 #include "scenarios/recordings/recording_clock.hpp"
 #include "scenarios/recordings/tables/imu_readings.hpp"
+#include "scenarios/recordings/upper_median.hpp"
 #include "sim/parameters.hpp"
 
 namespace tumble::scenarios {
@@ -28,6 +29,8 @@ constexpr const char* kStaticTopic = "/tf_static";
 constexpr const char* kNoMessage = ": is declared and has no message: left out";
 /// What the stamps of a message may differ by before it is said.
 constexpr double kClocksApart_s = 1e-3;
+/// Points that come so much later than their record are said: less is what clocks of hosts differ by.
+constexpr double kAhead_s = 0.01;
 
 bool is_imu_type(const std::string& type) {
   return type == kImu;
@@ -108,13 +111,19 @@ StaticFrames read_frames(const Bag& bag) {
   return frames;
 }
 
-/// Where the bag says that a sensor is, unless somebody else has said it: then both are shown where they differ.
+/// Where the bag says that a sensor is, unless somebody else has said it: then both are shown where they differ. Where
+/// nobody has, that is said, with the option that says it.
 void place_sensor(const Bag& bag, const StaticFrames& frames, const std::string& topic, const std::string& frame,
-                  Eigen::Isometry3d& T_BA, std::vector<std::string>& notes) {
+                  const char* option, Eigen::Isometry3d& T_BA, std::vector<std::string>& notes) {
   const std::string body = frames.body();
-  if (body.empty()) return;
-  const auto stated = frames.pose(body, frame, bag.place + ": topic " + kStaticTopic);
-  if (!stated) return;
+  const auto stated = body.empty() ? std::nullopt : frames.pose(body, frame, bag.place + ": topic " + kStaticTopic);
+  if (!stated) {
+    if (T_BA.isApprox(Eigen::Isometry3d::Identity())) {
+      notes.push_back(topic + ": neither " + kStaticTopic + " nor " + option +
+                      " says where it is on the body: taken to lie in its centre of mass, along its axes");
+    }
+    return;
+  }
   const auto text = [](const Eigen::Isometry3d& T) {
     std::ostringstream out;
     const Eigen::Quaterniond q(T.linear());
@@ -133,28 +142,40 @@ void place_sensor(const Bag& bag, const StaticFrames& frames, const std::string&
   }
 }
 
+/// The unit of the specific force, which is put in m/s^2 where nobody stated one and the readings are in g.
+AccelUnit take_in_g(const std::string& topic, const BagReading& reading, sim::ImuRecord& imu,
+                    std::vector<std::string>& notes) {
+  if (reading.accel_unit || !is_in_g(imu)) return reading.accel_unit.value_or(AccelUnit::m_s2);
+  for (Eigen::Vector3d& force : imu.accel_m_s2) force *= scale_of(AccelUnit::g);
+  notes.push_back(topic + ": caution: by its definition it is in m/s^2, by its size at rest, 1, in g: taken in g" +
+                  " ('--accel-unit m/s^2' holds it to its definition)");
+  return AccelUnit::g;
+}
+
 sim::ImuRecord read_imu(const Bag& bag, const StaticFrames& frames, const std::string& topic, const BagReading& reading,
                         std::vector<std::string>& notes) {
   sim::ImuRecord imu = without_readings(reading.imu);
   imu.name = sensor_name(topic);
   std::string frame;
   BagStamps stamps(reading.stamps);
+  const double force_scale = scale_of(reading.accel_unit.value_or(AccelUnit::m_s2));
   bag.read<ros::Imu>(topic, [&](const ros::Imu& message, const Origin& origin) {
     add_reading(origin.where, stamps.take(stamp_of(message.header), origin.record_ns, origin.where),
                 scale_of(reading.gyro_unit) * Eigen::Vector3d::Map(message.angular_velocity.data()),
-                scale_of(reading.accel_unit) * Eigen::Vector3d::Map(message.linear_acceleration.data()), imu);
+                force_scale * Eigen::Vector3d::Map(message.linear_acceleration.data()), imu);
     frame = message.header.frame_id;
   });
   const std::string where = bag.place + ": topic " + topic;
   if (imu.time_ns.empty() && reading.imu_topics.empty()) return imu;  // declared, and never recorded
-  finish_readings(where, reading.accel_unit, imu);
+  const AccelUnit accel_unit = take_in_g(topic, reading, imu, notes);
+  finish_readings(where, accel_unit, imu);
   // messages are in rad/s by their definition, and not every driver keeps to it
   const std::string evened = even_out_stamps(imu);
   const std::string units = require_plausible_rates(where, imu, reading.gyro_unit);
   for (const std::string& remark : {evened, units, stamps.remark()}) {
     if (!remark.empty()) notes.push_back(topic + ": " + remark);
   }
-  place_sensor(bag, frames, topic, frame, imu.T_BI, notes);
+  place_sensor(bag, frames, topic, frame, "--lever-arm", imu.T_BI, notes);
   return imu;
 }
 
@@ -163,6 +184,7 @@ struct CloudHeaders {
   std::vector<std::int64_t> stamps;  ///< of the starts of the sweeps
   std::int64_t period_ns = 0;        ///< given, or the median step of the stamps
   std::string remark;
+  bool follow_records = true;  ///< the records lie after the stamps, of one clock by all that is seen
   std::string frame;
   /// Nobody named the topic, and its points lie in no sensor's frame: a map, or points that somebody has moved there.
   bool left_out(const BagReading& reading) const {
@@ -189,12 +211,28 @@ CloudHeaders read_headers(const Bag& bag, const std::string& topic, const BagRea
   const std::int64_t given_ns = reading.sweeps.device.sweep_period_ns;
   out.period_ns = given_ns > 0 ? given_ns : median_step_ns(out.stamps);
   out.remark = stamps.remark();
+  out.follow_records = !stamps.other_clock();
   if (reading.stamps == StampSource::record) {
     for (std::int64_t& stamp : out.stamps) stamp -= out.period_ns;
     out.remark += (out.remark.empty() ? "" : "; ") + std::string("a sweep is taken to start ") +
                   std::to_string(1e-9 * static_cast<double>(out.period_ns)) + " s before it was recorded";
   }
   return out;
+}
+
+/// Nobody records what was not measured yet: points that lie after their own record were counted from another instant
+/// than the stamp.
+void note_points_to_come(const std::string& topic, const BuiltSweeps& built, const std::vector<std::int64_t>& records,
+                         std::vector<std::string>& notes) {
+  std::vector<double> ahead_s;
+  for (std::size_t k = 0; k < std::min(records.size(), built.last_point_ns.size()); ++k)
+    ahead_s.push_back(1e-9 * static_cast<double>(built.last_point_ns[k] - records[k]));
+  if (ahead_s.empty()) return;
+  const double middle_s = upper_median(std::move(ahead_s));
+  if (middle_s < kAhead_s) return;
+  notes.push_back(topic + ": caution: the last points of a sweep, by their times from its stamp, lie " +
+                  std::to_string(middle_s) + " s after the bag took them: does the stamp tell the sweep's end? It is " +
+                  "read as the start ('--stamps record' lets a sweep start a period before it was recorded)");
 }
 
 BuiltSweeps read_lidar(const Bag& bag, const StaticFrames& frames, const std::string& topic,
@@ -204,21 +242,25 @@ BuiltSweeps read_lidar(const Bag& bag, const StaticFrames& frames, const std::st
   SweepBuilder builder(std::move(sweeps), headers.period_ns);
   double clocks_apart_s = 0.0;
   std::size_t number = 0;
+  std::vector<std::int64_t> records;
   read_clouds(bag, topic, [&]<class Message>(const Message& message, const Origin& origin) {
     if constexpr (std::is_same_v<Message, ros::LivoxCustomMsg>) {
       const double apart_ns = static_cast<double>(message.timebase) - static_cast<double>(stamp_of(message.header));
       clocks_apart_s = std::max(clocks_apart_s, 1e-9 * std::abs(apart_ns));
     }
     if (number == headers.stamps.size()) throw BadInput(origin.where + ": lies in another frame than the last one");
+    records.push_back(origin.record_ns);
     builder.add(headers.stamps[number++], cloud_of(message, origin.where), origin.where);
   });
   BuiltSweeps built = builder.finish(bag.place + ": topic " + topic, notes);
   if (!headers.remark.empty()) notes.push_back(topic + ": " + headers.remark);
+  if (reading.stamps == StampSource::header && headers.follow_records)
+    note_points_to_come(topic, built, records, notes);
   if (clocks_apart_s > kClocksApart_s) {
     notes.push_back(topic + ": caution: the messages' timebase and the stamps of their headers are up to " +
                     std::to_string(clocks_apart_s) + " s apart; the times of points count from the headers'");
   }
-  place_sensor(bag, frames, topic, headers.frame, built.lidar.T_BL, notes);
+  place_sensor(bag, frames, topic, headers.frame, "--T-body-lidar", built.lidar.T_BL, notes);
   return built;
 }
 
@@ -246,7 +288,7 @@ std::vector<ReferencePose> reference_poses(const Bag& bag, const std::string& to
 }
 
 /// Sensors that never saw the same moment have no common clock, or nothing in common.
-void require_one_clock(const sim::Sensors& sensors, const std::filesystem::path& path) {
+void require_one_clock(const sim::Sensors& sensors, bool by_headers, const std::filesystem::path& path) {
   struct Span {
     std::string name;
     std::int64_t first_ns, last_ns;
@@ -262,10 +304,10 @@ void require_one_clock(const sim::Sensors& sensors, const std::filesystem::path&
   for (const Span& early : spans) {
     for (const Span& late : spans) {
       if (late.first_ns <= early.last_ns) continue;
-      throw BadInput(path.string() + ": the clocks of '" + early.name + "' and '" + late.name +
-                     "' do not meet: one ends " +
-                     std::to_string((static_cast<double>(late.first_ns) - static_cast<double>(early.last_ns)) * 1e-9) +
-                     " s before the other begins");
+      throw BadInput(
+          path.string() + ": the clocks of '" + early.name + "' and '" + late.name + "' do not meet: one ends " +
+          std::to_string((static_cast<double>(late.first_ns) - static_cast<double>(early.last_ns)) * 1e-9) +
+          " s before the other begins" + (by_headers ? " ('--stamps record' takes when the bag took them)" : ""));
     }
   }
 }
@@ -316,7 +358,7 @@ Imported import_bag(BagReader& reader, const std::filesystem::path& path, const 
                    " or CustomMsg with messages among " + std::to_string(bag.topics.size()));
   }
   out.info.attribution = "imported from " + path.filename().string();
-  require_one_clock(out.sensors, path);
+  require_one_clock(out.sensors, reading.stamps == StampSource::header, path);
   start_clock(out);
   if (!reading.reference_topic.empty()) {
     attach_poses(out, reference_poses(bag, reading.reference_topic, reading.stamps), reading.reference_of_body,

@@ -53,6 +53,11 @@ class McapWriter : public BagWriter {
  public:
   explicit McapWriter(const std::filesystem::path& file) : out_(file) { out_.put(to_bytes(Header{"ros2", "tumble"})); }
 
+  bool begin_with(const std::vector<BagTopic>& topics) override {
+    for (const BagTopic& topic : topics) channel_of(topic.name, topic.type);
+    return true;
+  }
+
   void write(const std::string& topic, std::int64_t stamp_ns, const ros::Message& message) override {
     const std::uint16_t channel = channel_of(topic, ros::type_of(message));
     const auto time_ns = static_cast<std::uint64_t>(stamp_ns);

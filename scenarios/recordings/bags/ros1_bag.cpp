@@ -141,6 +141,7 @@ class Ros1BagWriter : public BagWriter {
     guarded_write([&] { bag_->open(output_.unfinished().string(), rosbag::bagmode::Write); });
   }
   ~Ros1BagWriter() override { give_up(); }
+  bool begin_with(const std::vector<BagTopic>&) override { return false; }
   void write(const std::string& topic, std::int64_t stamp_ns, const ros::Message& message) override {
     ::ros::Time time;
     time.fromNSec(static_cast<std::uint64_t>(stamp_ns));

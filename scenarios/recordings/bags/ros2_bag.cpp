@@ -4,13 +4,16 @@
 #include <yaml-cpp/yaml.h>
 
 #include <algorithm>
+#include <cctype>
 #include <cstring>
 #include <map>
 #include <optional>
+#include <set>
 #include <sstream>
 
 #include "scenarios/errors.hpp"
 #include "scenarios/recordings/bags/bag_storage.hpp"
+#include "scenarios/recordings/bags/packed_bag.hpp"
 #include "scenarios/recordings/bags/ros2_definitions.hpp"
 #include "scenarios/recordings/bags/ros2_metadata.hpp"
 #include "scenarios/recordings/replace_file.hpp"
@@ -42,11 +45,13 @@ class Ros2BagWriter : public BagWriter {
           "CREATE TABLE metadata(id INTEGER PRIMARY KEY, metadata_version INTEGER NOT NULL, metadata TEXT NOT NULL);"
           "CREATE TABLE topics(id INTEGER PRIMARY KEY, name TEXT NOT NULL, type TEXT NOT NULL, serialization_format "
           "TEXT "
-          "NOT NULL, offered_qos_profiles TEXT NOT NULL);"
+          "NOT NULL, offered_qos_profiles TEXT NOT NULL, type_description_hash TEXT NOT NULL);"
+          "CREATE TABLE message_definitions(id INTEGER PRIMARY KEY, topic_type TEXT NOT NULL, encoding TEXT NOT NULL, "
+          "encoded_message_definition TEXT NOT NULL, type_description_hash TEXT NOT NULL);"
           "CREATE TABLE messages(id INTEGER PRIMARY KEY, topic_id INTEGER NOT NULL, timestamp INTEGER NOT NULL, data "
           "BLOB NOT NULL);"
           "CREATE INDEX timestamp_idx ON messages (timestamp ASC);"
-          "INSERT INTO schema VALUES (3, 'humble')");
+          "INSERT INTO schema VALUES (4, 'iron')");
       database_->exec("BEGIN");
     });
   }
@@ -55,6 +60,12 @@ class Ros2BagWriter : public BagWriter {
     database_.reset();
     std::error_code ignored;
     std::filesystem::remove(part_, ignored);
+  }
+  bool begin_with(const std::vector<BagTopic>& topics) override {
+    guarded([&] {
+      for (const BagTopic& topic : topics) number_of(topic);
+    });
+    return true;
   }
   void write(const std::string& topic, std::int64_t stamp_ns, const ros::Message& message) override {
     insert({topic, ros::type_of(message)}, stamp_ns, ros::to_cdr(message));
@@ -80,12 +91,13 @@ class Ros2BagWriter : public BagWriter {
     }
   }
 
-  /// The number of the message's topic, which is entered when it is new.
-  std::int64_t topic_of(const BagTopic& topic, std::int64_t stamp_ns) {
+  /// The number of a topic, which is entered when it is new.
+  std::int64_t number_of(const BagTopic& topic) {
     const std::size_t known = summary_.topics.size();
-    const std::size_t place = summary_.count(topic, stamp_ns);
+    const std::size_t place = summary_.place_of(topic);
     if (place == known) {
-      SQLite::Statement statement(*database_, "INSERT INTO topics VALUES (?, ?, ?, 'cdr', ?)");
+      if (defined_.insert(topic.type).second) define(topic.type);
+      SQLite::Statement statement(*database_, "INSERT INTO topics VALUES (?, ?, ?, 'cdr', ?, '')");
       statement.bind(1, static_cast<std::int64_t>(place) + 1);
       statement.bind(2, topic.name);
       statement.bind(3, ros2_type(topic.type));
@@ -95,9 +107,21 @@ class Ros2BagWriter : public BagWriter {
     return static_cast<std::int64_t>(place) + 1;
   }
 
+  /// Readers without ROS know from it what a message holds. Its hash may be empty, which is not held against it.
+  void define(const std::string& type) {
+    SQLite::Statement statement(
+        *database_,
+        "INSERT INTO message_definitions (topic_type, encoding, encoded_message_definition, type_description_hash) "
+        "VALUES (?, 'ros2msg', ?, '')");
+    statement.bind(1, ros2_type(type));
+    statement.bind(2, ros2_definition(type));
+    statement.exec();
+  }
+
   void insert(const BagTopic& topic, std::int64_t stamp_ns, const ros::Bytes& bytes) {
     guarded([&] {
-      const std::int64_t number = topic_of(topic, stamp_ns);
+      const std::int64_t number = number_of(topic);
+      summary_.count(topic, stamp_ns);
       if (!insert_) {
         insert_ = std::make_unique<SQLite::Statement>(
             *database_, "INSERT INTO messages (topic_id, timestamp, data) VALUES (?, ?, ?)");
@@ -115,16 +139,38 @@ class Ros2BagWriter : public BagWriter {
   std::unique_ptr<SQLite::Database> database_;
   std::unique_ptr<SQLite::Statement> insert_;
   Ros2Summary summary_;
+  std::set<std::string> defined_;  ///< types
 };
 
-/// The files of a bag, in order, and how they are stored: "sqlite3" or "mcap".
+/// The files of a bag, in order, and how they are stored: "sqlite3" or "mcap", and what of it is packed: "", "file" or
+/// "message".
 struct Storage {
   std::string kind = "sqlite3";
   std::vector<path> files;
+  std::string packed = {};
 };
 
+/// What of a bag is packed, by its metadata.
+std::string packed_by(const YAML::Node& root, const path& metadata) {
+  const auto text = [&](const char* key) {
+    std::string out = root[key] ? root[key].as<std::string>("") : "";
+    std::transform(out.begin(), out.end(), out.begin(), [](unsigned char c) { return std::tolower(c); });
+    return out;
+  };
+  const std::string format = text("compression_format"), mode = text("compression_mode");
+  if (format.empty() || mode == "none") return "";
+  if (format != "zstd" || (mode != "file" && mode != "message"))
+    fail(metadata, "the bag is compressed by '" + format + "' in mode '" + mode +
+                       "', must be zstd in mode file or message ('ros2 bag convert' makes a plain one)");
+  return mode;
+}
+
 Storage storage_of(const path& bag) {
-  if (!std::filesystem::is_directory(bag)) return {bag.extension() == ".mcap" ? "mcap" : "sqlite3", {bag}};
+  if (!std::filesystem::is_directory(bag)) {
+    const bool packed = bag.extension() == ".zstd";
+    const path name = packed ? bag.stem() : bag;
+    return {name.extension() == ".mcap" ? "mcap" : "sqlite3", {bag}, packed ? "file" : ""};
+  }
   const path metadata = bag / "metadata.yaml";
   if (!std::filesystem::is_regular_file(metadata)) fail(bag, "holds no metadata.yaml: no ROS 2 bag");
   Storage out;
@@ -133,8 +179,7 @@ Storage storage_of(const path& bag) {
     out.kind = root["storage_identifier"].as<std::string>();
     if (out.kind != "sqlite3" && out.kind != "mcap")
       fail(metadata, "the storage is '" + out.kind + "', must be sqlite3 or mcap");
-    if (root["compression_format"] && !root["compression_format"].as<std::string>("").empty())
-      fail(metadata, "the bag is compressed ('ros2 bag convert' makes a plain one)");
+    out.packed = packed_by(root, metadata);
     for (const YAML::Node& each : root["relative_file_paths"]) {
       const path name = path(each.as<std::string>()).filename();  // nothing leads out of the folder
       out.files.push_back(bag / name);
@@ -212,9 +257,14 @@ std::unique_ptr<BagWriter> make_ros2_writer(const path& folder) {
 }
 
 std::unique_ptr<BagReader> open_ros2_bag(const path& bag) {
-  Storage storage = storage_of(bag);
-  if (storage.kind == "mcap") return open_mcap(storage.files);
-  return std::make_unique<Ros2BagReader>(std::move(storage.files));
+  const Storage storage = storage_of(bag);
+  const auto open = [&](const std::vector<path>& files) -> std::unique_ptr<BagReader> {
+    if (storage.kind == "mcap") return open_mcap(files);
+    return std::make_unique<Ros2BagReader>(files);
+  };
+  if (storage.packed == "file") return open_packed_files(storage.files, open);
+  if (storage.packed == "message") return with_packed_messages(open(storage.files), bag.string());
+  return open(storage.files);
 }
 
 }  // namespace tumble::scenarios

@@ -20,6 +20,10 @@ class Ros2McapWriter : public BagWriter {
     summary_ = {"mcap", (name.empty() ? "recording" : name) + "_0.mcap"};
     file_ = make_mcap_writer(folder / summary_.file);
   }
+  bool begin_with(const std::vector<BagTopic>& topics) override {
+    for (const BagTopic& topic : topics) summary_.place_of(topic);
+    return file_->begin_with(topics);
+  }
   void write(const std::string& topic, std::int64_t stamp_ns, const ros::Message& message) override {
     summary_.count({topic, ros::type_of(message)}, stamp_ns);
     file_->write(topic, stamp_ns, message);
@@ -38,14 +42,19 @@ class Ros2McapWriter : public BagWriter {
 
 }  // namespace
 
-std::size_t Ros2Summary::count(const BagTopic& topic, std::int64_t stamp_ns) {
-  first_ns = topics.empty() ? stamp_ns : std::min(first_ns, stamp_ns);
-  last_ns = topics.empty() ? stamp_ns : std::max(last_ns, stamp_ns);
+std::size_t Ros2Summary::place_of(const BagTopic& topic) {
   const auto same = [&](const Topic& each) { return each.topic.name == topic.name; };
   auto found = std::find_if(topics.begin(), topics.end(), same);
   if (found == topics.end()) found = topics.insert(topics.end(), {topic, 0});
-  ++found->messages;
   return static_cast<std::size_t>(found - topics.begin());
+}
+
+void Ros2Summary::count(const BagTopic& topic, std::int64_t stamp_ns) {
+  const auto silent = [](const Topic& each) { return each.messages == 0; };
+  const bool first = std::all_of(topics.begin(), topics.end(), silent);
+  first_ns = first ? stamp_ns : std::min(first_ns, stamp_ns);
+  last_ns = first ? stamp_ns : std::max(last_ns, stamp_ns);
+  ++topics[place_of(topic)].messages;
 }
 
 std::string ros2_metadata(const Ros2Summary& bag) {

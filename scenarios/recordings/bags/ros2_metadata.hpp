@@ -20,8 +20,10 @@ struct Ros2Summary {
   std::vector<Topic> topics = {};
   std::int64_t first_ns = 0, last_ns = 0;  ///< of the messages' stamps
 
-  /// Takes note of a message; returns the place of its topic, which is the last one when it is new.
-  std::size_t count(const BagTopic& topic, std::int64_t stamp_ns);
+  /// Of a topic, the last one when it is new.
+  std::size_t place_of(const BagTopic& topic);
+  /// Takes note of a message.
+  void count(const BagTopic& topic, std::int64_t stamp_ns);
 };
 
 /// The text of metadata.yaml, version 5.

@@ -8,6 +8,7 @@
 #include <cmath>
 #include <limits>
 #include <set>
+#include <span>
 
 #include "scenarios/errors.hpp"
 #include "scenarios/recordings/clouds/sweep_stamps.hpp"
@@ -125,6 +126,8 @@ void SweepBuilder::take(Waiting& sweep) {
                    in_ns(starts.back()));
   }
   starts.push_back(start_ns);
+  const auto offsets = std::span(record_.offset_ns).last(kept.size());
+  last_point_ns_.push_back(start_ns + (kept.empty() ? 0 : *std::max_element(offsets.begin(), offsets.end())));
   record_.sweep_first.push_back(points());
   take_points(sweep, kept);
   take_rings(sweep, kept);
@@ -262,7 +265,7 @@ BuiltSweeps SweepBuilder::finish(const std::string& where, std::vector<std::stri
   }
   note_what_was_left(notes);
   scale_intensity(notes);
-  return {std::move(record_), std::move(store_)};
+  return {std::move(record_), std::move(store_), std::move(last_point_ns_)};
 }
 
 }  // namespace tumble::scenarios

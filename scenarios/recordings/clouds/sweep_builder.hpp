@@ -47,6 +47,7 @@ PointTimeRule find_point_times(const std::vector<Cloud>& first, std::int64_t per
 struct BuiltSweeps {
   sim::LidarRecord lidar;
   std::optional<PointStore> points;
+  std::vector<std::int64_t> last_point_ns = {};  ///< of each sweep, in the clock of the stamps; its start without times
 };
 
 /// Makes the record of a lidar from clouds in the order of time. In memory are the first ten clouds, then one at a time
@@ -97,6 +98,7 @@ class SweepBuilder {
   std::optional<PointStore> store_;
   float brightest_ = 0.0f;
   std::int64_t longest_ns_ = 0;  ///< offset of a point
+  std::vector<std::int64_t> last_point_ns_;
   std::size_t misses_ = 0, dark_ = 0, skipped_ = 0, beyond_ = 0;
   std::size_t viewpoints_ = 0;                  ///< sweeps that state one
   std::string first_viewpoint_;                 ///< with its file

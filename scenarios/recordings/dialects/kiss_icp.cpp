@@ -26,9 +26,8 @@ data:
 }  // namespace
 
 Dialect kiss_icp_dialect() {
-  // ROS 1: the one bag that its version 1.3.0 reads of PyPI's packages alone. Its fields of points are not found with
-  // those of mcap-ros2-support 0.5.7 and 0.6.0, and a ROS 2 bag it reads where the bag brings definitions, which
-  // SQLite's has not.
+  // ROS 1, which its version 1.3.0 reads with PyPI's packages alone, as it does ROS 2 bags that bring definitions. Of
+  // MCAP its fields of points are not found with those of mcap-ros2-support 0.5.7 and 0.6.0.
   Dialect out{"kiss-icp", "rosbag1", "recording.bag"};
   out.needs_imu = out.needs_times = false;
   out.names = names;

@@ -44,10 +44,16 @@ void require_plausible_force(const std::string& where, const sim::ImuRecord& imu
   const double middle = upper_median(std::move(norms));
   if (middle >= kLeastMedian_m_s2 && middle <= kLargestMedian_m_s2) return;
   const char* read_as = unit == AccelUnit::g ? "g" : "m/s^2";
+  const std::string likely = likely_force_unit(middle, unit);
+  const bool known = likely == "g" || likely == "m/s^2";
   throw BadInput(where + ": read in " + read_as + " the median specific force is " + std::to_string(middle) +
-                 " m/s^2, must be within 3 and 30: is the file in " + likely_force_unit(middle, unit) + "?" +
+                 " m/s^2, must be within 3 and 30: is the file in " + likely + "?" +
+                 (known ? " ('--accel-unit " + likely + "' takes it so)" : "") +
                  (middle < kLeastMedian_m_s2 ? " Or was gravity taken out of it?" : ""));
 }
+
+constexpr const char *kTakenInDegrees = " ('--gyro-unit deg/s' takes them so)",
+                     *kTakenInRadians = " ('--gyro-unit rad/s' takes them so)";
 
 /// From 0.5 Hz to 50 kHz: what an IMU gives at all.
 constexpr double kLeastPeriod_s = 2e-5, kLargestPeriod_s = 2.0;
@@ -84,7 +90,8 @@ void require_rates_in_range(const std::string& where, const sim::ImuRecord& imu,
   throw BadInput(where + ": read in " + (as_rad ? "rad/s " : "deg/s ") + rounded(100.0 * share) +
                  " % of the rates lie beyond " + rounded(bound) + " rad/s, " +
                  (stated ? "twice the range that the device's sheet states" : "more than any robot turns") +
-                 "; must be at most 1 %: are the rates in " + (degrees ? "deg/s" : "raw counts of the sensor") + "?");
+                 "; must be at most 1 %: are the rates in " + (degrees ? "deg/s" : "raw counts of the sensor") + "?" +
+                 (degrees ? kTakenInDegrees : ""));
 }
 
 constexpr double kTurnWindow_s = 0.2, kNearGravity = 0.1;
@@ -159,9 +166,11 @@ std::string require_plausible_rates(const std::string& where, const sim::ImuReco
                            std::to_string(turn.windows) + " windows, correlation " + rounded(turn.correlation) + ")";
   const bool as_deg = unit == GyroUnit::deg_s;
   if (!as_deg && near_factor(turn.ratio, 1.0 / kDegreesPerRadian))
-    throw BadInput(where + ": read in rad/s, " + seen + ", must be within 0.5 and 2: are the rates in deg/s?");
+    throw BadInput(where + ": read in rad/s, " + seen + ", must be within 0.5 and 2: are the rates in deg/s?" +
+                   kTakenInDegrees);
   if (as_deg && near_factor(turn.ratio, kDegreesPerRadian))
-    throw BadInput(where + ": read in deg/s, " + seen + ", must be within 0.5 and 2: are the rates in rad/s?");
+    throw BadInput(where + ": read in deg/s, " + seen + ", must be within 0.5 and 2: are the rates in rad/s?" +
+                   kTakenInRadians);
   if (near_factor(turn.ratio, 1.0)) return seen + ": units and axes agree";
   return "caution: " + seen + ", and should once: another unit, sign or order of the axes?";
 }
@@ -192,6 +201,16 @@ void finish_readings(const std::string& where, AccelUnit unit, sim::ImuRecord& i
   require_plausible_force(where, imu, unit);
   imu.period_ns = median_step_ns(imu.time_ns);
   require_plausible_period(where, imu);
+}
+
+bool is_in_g(const sim::ImuRecord& imu) {
+  constexpr double kMedianOff = 0.1, kAtRestOff = 0.02, kAtRestShare = 0.2;
+  std::vector<double> norms;
+  for (const Eigen::Vector3d& force : imu.accel_m_s2) norms.push_back(force.norm());
+  const auto at_rest =
+      std::count_if(norms.begin(), norms.end(), [](double norm) { return std::abs(norm - 1.0) < kAtRestOff; });
+  const bool rests = static_cast<double>(at_rest) >= kAtRestShare * static_cast<double>(norms.size());
+  return !norms.empty() && rests && std::abs(upper_median(std::move(norms)) - 1.0) < kMedianOff;
 }
 
 std::string even_out_stamps(sim::ImuRecord& imu) {

@@ -19,6 +19,11 @@ void add_reading(const std::string& where, std::int64_t stamp_ns, const Eigen::V
 /// specific force outside 3 to 30 m/s^2 or a period outside 20 us to 2 s, which says that the unit is another one.
 void finish_readings(const std::string& where, AccelUnit unit, sim::ImuRecord& imu);
 
+/// Whether readings that were taken for m/s^2 are in g by their own size, as the drivers of some lidars give them: the
+/// median within a tenth of 1, and a fifth of them within 2 % of it, at rest. What gravity was taken out of has no size
+/// that it keeps to.
+bool is_in_g(const sim::ImuRecord& imu);
+
 /// Puts stamps in whole milliseconds of a faster IMU on its beat (rounded_stamps.hpp), whose mean step becomes the
 /// period, and says so; else nothing.
 std::string even_out_stamps(sim::ImuRecord& imu);

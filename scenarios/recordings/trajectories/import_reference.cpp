@@ -12,7 +12,9 @@ namespace {
 std::vector<std::int64_t> own_times(const ReferenceSource& source) {
   if (!source.times.empty()) return read_stamps(source.times);
   if (source.steady_ns <= 0) {
-    throw BadInput(source.file.string() + ": KITTI's format has no times: a file of stamps or a period is needed");
+    throw BadInput(source.file.string() +
+                   ": KITTI's format has no times: a file of stamps (--times) or "
+                   "a period (--sweep-period) is needed");
   }
   const std::size_t poses = count_kitti_poses(source.file);
   std::vector<std::int64_t> times;

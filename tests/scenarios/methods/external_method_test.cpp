@@ -170,6 +170,7 @@ TEST_F(ExternalMethod, WhatIsNoCovarianceIsRefused) {
 
 TEST_F(ExternalMethod, DescriptionsAreCheckedBeforeAnythingRuns) {
   EXPECT_THAT(refused(describe("rate", "{csw} {output}")), HasSubstr("did you mean 'csv'"));
+  EXPECT_THAT(refused(describe("rate", "{bag} {output}")), HasSubstr("rosbag1 rosbag2 mcap"));
   EXPECT_THAT(refused(describe("rate", "true")), HasSubstr("{output}"));
   EXPECT_THAT(refused(describe("rates", "{output}")), HasSubstr("did you mean 'rate'"));
   EXPECT_THAT(refused(describe("rate", "{output}", "time_limit_s: 0\n")), HasSubstr("time_limit_s"));
@@ -184,6 +185,22 @@ TEST_F(ExternalMethod, AVersionTellsProgramAndDescription) {
   const std::string second = external_method(describe("rate", "{output} ", "version: [echo, v7, b]\n")).info.version;
   EXPECT_THAT(first, HasSubstr("v7"));
   EXPECT_NE(first, second);
+}
+
+// else a sweep or a bench goes on with rows of the program as it was
+TEST_F(ExternalMethod, AProgramThatWasMadeAnewIsAnotherVersion) {
+  const auto version = [&] { return external_method(folder_ / "theirs.yaml").info.version; };
+  for (const char* command : {"sh {folder}/mine.sh {output}", "{folder}/mine.sh>{output}"}) {
+    write("mine.sh", "echo one\n");
+    describe("rate", command);
+    const std::string first = version();
+    write("beside.sh", "echo\n");
+    EXPECT_EQ(version(), first) << "of no word of it";
+    write("mine.sh", "echo two\n");
+    EXPECT_NE(version(), first) << command;
+    write("mine.sh", "echo one\n");
+    EXPECT_EQ(version(), first) << "when and where it was made is no matter";
+  }
 }
 
 TEST_F(ExternalMethod, NamesAreTheirOwn) {

@@ -35,6 +35,7 @@ class Stamps : public fixture::Folder, public testing::WithParamInterface<Kind> 
     sim::Recording recording = fixture::recording();
     sim::ImuRecord& readings = recording.sensors.imus[0];
     readings.accel_m_s2.assign(readings.accel_m_s2.size(), Eigen::Vector3d(0.0, 0.0, 9.8));
+    for (std::uint32_t& offset : recording.sensors.lidars[0].offset_ns) offset *= offsets_;
     for (int k = 1; k <= 60; ++k) {
       const std::int64_t record_ns = kOrigin_ns + 5 * kMs_ns * k;
       bag->write("/imu", record_ns,
@@ -57,8 +58,10 @@ class Stamps : public fixture::Folder, public testing::WithParamInterface<Kind> 
   static std::int64_t sweep_before(std::int64_t record_ns) { return record_ns - 100 * kMs_ns; }
   static std::int64_t zero(std::int64_t) { return 0; }
   static std::int64_t constant(std::int64_t) { return kOrigin_ns; }
+  static std::int64_t long_ago(std::int64_t record_ns) { return record_ns - 3600'000 * kMs_ns; }
   static std::int64_t back(std::int64_t record_ns) { return 2 * kOrigin_ns - record_ns; }
   static std::int64_t since_boot(std::int64_t record_ns) { return record_ns - kOrigin_ns + 1'000'000'000; }
+  std::uint32_t offsets_ = 1;  ///< how much longer sweeps are than the fixture's
 
  private:
   int count_ = 0;
@@ -85,6 +88,26 @@ TEST_P(Stamps, AnotherClockIsACaution) {
   EXPECT_THAT(written(drifting, sweep_before).notes,
               Contains(AllOf(HasSubstr("/imu: caution: the bag recorded"), HasSubstr("do the clocks drift?"))));
   EXPECT_THAT(written(same, same).notes, Not(Contains(HasSubstr("caution"))));
+}
+
+// a driver may stamp a sweep when it is over, and count the times of its points from its start
+TEST_P(Stamps, PointsBeyondTheirRecordAreACaution) {
+  const auto said = AllOf(HasSubstr("/points: caution: the last points of a sweep"), HasSubstr("('--stamps record'"));
+  offsets_ = 600;  // over most of a sweep
+  EXPECT_THAT(written(same, same).notes, Contains(said));
+  EXPECT_THAT(written(same, sweep_before).notes, Not(Contains(said)));
+  EXPECT_THAT(written(same, same, StampSource::record).notes, Not(Contains(said)));
+}
+
+TEST_P(Stamps, ClocksThatDoNotMeetAreRefusedWithTheWayOut) {
+  EXPECT_THAT(complaint_of(same, long_ago),
+              AllOf(HasSubstr("the clocks of 'points' and 'imu' do not meet"), HasSubstr("('--stamps record' takes")));
+}
+
+TEST_P(Stamps, APlaceThatNobodyStatesIsSaid) {
+  const std::vector<std::string> notes = written(same, sweep_before).notes;
+  EXPECT_THAT(notes, Contains(HasSubstr("/imu: neither /tf_static nor --lever-arm says where it is")));
+  EXPECT_THAT(notes, Contains(HasSubstr("/points: neither /tf_static nor --T-body-lidar says where it is")));
 }
 
 TEST_P(Stamps, BrokenHeadersAreRefusedWithTheWayOut) {

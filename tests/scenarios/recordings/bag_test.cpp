@@ -10,6 +10,7 @@
 
 #include "scenarios/recordings/bags/bag_storage.hpp"
 #include "scenarios/recordings/bags/ros1_chunks.hpp"
+#include "scenarios/recordings/bags/ros2_definitions.hpp"
 #include "scenarios/recordings/export.hpp"
 #include "scenarios/recordings/fixture_recording.hpp"
 #include "scenarios/recordings/recording_file.hpp"
@@ -120,6 +121,32 @@ TEST_P(Bag, AnotherUnitIsSaid) {
   for (Eigen::Vector3d& force : recording_.sensors.imus[0].accel_m_s2) force /= 9.80665;
   write();
   EXPECT_THAT(complaint_of(), HasSubstr("topic /imu: read in m/s^2 the median specific force is"));
+}
+
+// some drivers do not keep to sensor_msgs/Imu
+TEST_P(Bag, ForceInGIsReadSoAndSaid) {
+  recording_.sensors.imus.resize(1);
+  for (Eigen::Vector3d& force : recording_.sensors.imus[0].accel_m_s2) force = Eigen::Vector3d(0.6, 0.0, -0.8);
+  write();
+  const Imported imported = read();
+  EXPECT_TRUE(imported.sensors.imus.at(0).accel_m_s2.front().isApprox(9.80665 * Eigen::Vector3d(0.6, 0.0, -0.8)));
+  EXPECT_THAT(imported.notes, testing::Contains(testing::AllOf(HasSubstr("/imu: caution: by its definition"),
+                                                               HasSubstr("('--accel-unit m/s^2'"))));
+  reading_.accel_unit = AccelUnit::m_s2;
+  EXPECT_THAT(complaint_of(), HasSubstr("is the file in g? ('--accel-unit g' takes it so)"));
+}
+
+// whoever takes the first IMU of a bag must get the primary one, also where another one's first reading was earlier
+TEST_P(Bag, ThePrimaryImuIsTheFirstTopicOfItsType) {
+  for (std::int64_t& time : recording_.sensors.imus[0].time_ns) time += 700000;
+  write();
+  const Imported imported = read();
+  ASSERT_EQ(imported.sensors.imus.size(), 2u);
+  for (std::size_t k = 0; k < 2; ++k) {
+    EXPECT_EQ(imported.sensors.imus[k].name, recording_.sensors.imus[k].name);
+    EXPECT_EQ(imported.sensors.imus[k].gyro_rad_s, recording_.sensors.imus[k].gyro_rad_s);
+    EXPECT_EQ(imported.sensors.imus[k].time_ns, recording_.sensors.imus[k].time_ns);
+  }
 }
 
 INSTANTIATE_TEST_SUITE_P(Kinds, Bag,
@@ -302,6 +329,22 @@ TEST_F(HostileBag, DamagedRos2BagsAreOneLine) {
   EXPECT_THAT(complaint(), HasSubstr("the storage is 'mcbp', must be sqlite3 or mcap"));
   std::filesystem::remove(bag / "metadata.yaml");
   EXPECT_THAT(complaint(), HasSubstr("no metadata.yaml"));
+}
+
+// without them a reader that knows no ROS cannot tell what a message holds
+TEST_F(HostileBag, ARos2BagBringsTheDefinitionsOfItsMessages) {
+  export_ros2_bag(small_sensors(), {}, folder_ / "bag");
+  SQLite::Database database((folder_ / "bag/bag_0.db3").string(), SQLite::OPEN_READONLY);
+  EXPECT_EQ(database.execAndGet("SELECT schema_version FROM schema").getInt(), 4);
+  SQLite::Statement query(database,
+                          "SELECT type, encoding, encoded_message_definition FROM topics LEFT JOIN message_definitions "
+                          "ON type = topic_type");
+  int topics = 0;
+  for (; query.executeStep(); ++topics) {
+    EXPECT_EQ(query.getColumn(1).getString(), "ros2msg");
+    EXPECT_EQ(query.getColumn(2).getString(), ros2_definition(ros1_type(query.getColumn(0).getString())));
+  }
+  EXPECT_EQ(topics, 4) << "/tf_static, /clock, /imu, /lidar/points";
 }
 
 // what a recorder listened for and nobody sent is no reason to refuse the rest

@@ -105,7 +105,7 @@ TEST_F(Reference, KittiWrittenByExportComesBack) {
   EXPECT_THAT(fixture::complaint([&] {
                 import_trajectory({folder_ / "truth.txt", "kitti", true, false, {}, 0});
               }),
-              HasSubstr("KITTI's format has no times"));
+              HasSubstr("KITTI's format has no times: a file of stamps (--times)"));
 }
 
 TEST_F(Reference, BadLinesAreNamed) {

@@ -65,6 +65,8 @@ TEST_F(SuiteTest, ComplaintsNameFileLineAndNearestName) {
             std::string::npos);
   EXPECT_NE(complaint(head + "scenarios: [hill, hill]\nseeds: {first: 1, last: 2}\n").find("'hill' stands twice"),
             std::string::npos);
+  EXPECT_NE(complaint(head + "scenarios: [hill]\nseeds: [1, 2]\n").find("must be a map with the keys first, last"),
+            std::string::npos);
   EXPECT_NE(complaint(head + "scenarios: [hill]\nseeds: {first: 2, last: 1}\n").find("last is below first"),
             std::string::npos);
   EXPECT_NE(complaint(head + "scenarios: [hill]\nseeds: {first: 1, last: 2}\ntimeout: 5\n").find("timeout"),
