@@ -117,6 +117,7 @@ class ExamplesTest : public scenarios::testing::TemporaryFolder {
     example.seed = seed;
     example.motion = "tumble";
     example.choice = "why";
+    example.of_failure = seed % 2 == 1;
     example.recording_digest = "abc";
     example.digest_without_lidars = "def";
     example.made_of = "123";

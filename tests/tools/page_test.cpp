@@ -225,6 +225,25 @@ TEST(Page, LinksFailedDrawsThatHavePictures) {
   EXPECT_THAT(page, Not(HasSubstr("#draw-hill-8"))) << "negative control: nothing is there to be seen";
 }
 
+TEST(Page, ShowsAFailedDrawWhereItsFailureIsTold) {
+  PageContent content;
+  content.summary = summary_of("hill");
+  content.examples = {evil_example("roll"), evil_example("hill")};
+  content.examples[1].example.of_failure = true;
+  content.examples[1].replay_address = "a.db.files/hill-7-replay.html";
+  content.failed = {1, {{"hill", 7, {{"rate/saave", "diverged", "went away", "tumble run hill --seed 7"}}}}};
+  const std::string page = page_html(content, "");
+  const std::size_t draw = page.find("<details id=\"draw-hill-7\"><summary>picture"),
+                    failures = page.find("<section id=\"failures\">"),
+                    command = page.find("<pre>tumble run hill --seed 7");
+  EXPECT_LT(failures, draw);
+  EXPECT_LT(draw, command);
+  EXPECT_LT(command, page.size());
+  EXPECT_THAT(page, HasSubstr("<a href=\"a.db.files/hill-7-replay.html\">replay</a>"));
+  EXPECT_THAT(page, Not(HasSubstr("One hill"))) << "and not among the typical draws";
+  EXPECT_THAT(page, HasSubstr("One roll"));
+}
+
 TEST(AtMost, KeepsTheEndsAndTheQuartiles) {
   std::vector<double> values;
   for (int i = 1000; i >= 0; --i) values.push_back(i);

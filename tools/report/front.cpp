@@ -120,11 +120,13 @@ std::string contests_html(const std::vector<ContestResult>& results, std::size_t
   return out + "</section>\n";
 }
 
-/// A draw of these results before others; then a picture that moves before one that stands.
+/// A typical draw before one that failed, one of these results before others, a picture that moves before one that
+/// stands.
 const ShownExample* example_to_show(const std::vector<ShownExample>& examples) {
   const ShownExample* best = nullptr;
   const auto rank = [](const ShownExample& shown) {
-    return 2 * static_cast<int>(shown.of_these_results) + static_cast<int>(!shown.example.moving.empty());
+    return 4 * static_cast<int>(!shown.example.of_failure) + 2 * static_cast<int>(shown.of_these_results) +
+           static_cast<int>(!shown.example.moving.empty());
   };
   for (const ShownExample& shown : examples) {
     if (shown.example.moving.empty() && shown.example.pictures.empty()) continue;
