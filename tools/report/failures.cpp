@@ -3,9 +3,12 @@
 
 #include <algorithm>
 #include <map>
+#include <system_error>
 
 #include "scenarios/summary/example_choice.hpp"
+#include "scenarios/sweep/keep.hpp"
 #include "scenarios/sweep/run_again.hpp"
+#include "scenarios/sweep/sweep_notes.hpp"
 
 namespace tumble::tools {
 
@@ -30,15 +33,24 @@ std::vector<FailedRun> failed_runs(const std::vector<Outcome>& rows, const std::
   return runs;
 }
 
+std::string replay_of_kept(const std::filesystem::path& folder, const scenarios::ExampleDraw& draw) {
+  std::error_code error;
+  if (!std::filesystem::is_regular_file(folder / "recording.h5", error)) return "";
+  return "tumble replay " + scenarios::shell_word((folder / "recording.h5").string()) + " " +
+         scenarios::shell_word((folder / "estimates").string()) + "/* -o " +
+         scenarios::shell_word(draw.scenario + "-" + std::to_string(draw.seed) + ".html");
+}
+
 }  // namespace
 
-FailedDraws failed_draws(const Results& results, const Summary& summary) {
+FailedDraws failed_draws(const Results& results, const Summary& summary, const std::filesystem::path& database) {
+  const scenarios::KeptDraws kept(database);
   std::vector<scenarios::FailedOn> ranked = scenarios::rank_failures(summary);
   FailedDraws out{ranked.size(), {}};
   ranked.resize(std::min(ranked.size(), kFailedDrawsShown));
   const auto notes = results.notes();
   for (const auto& [at, methods] : ranked) {
-    FailedDraw draw{at.scenario, at.seed, {}};
+    FailedDraw draw{at.scenario, at.seed, {}, replay_of_kept(kept.folder_of({at.scenario, at.seed}), at)};
     draw.runs = failed_runs(results.outcomes_of(draw.scenario, draw.seed), notes);
     out.shown.push_back(std::move(draw));
   }

@@ -45,6 +45,8 @@ std::string draw_html(const PageContent& content, const FailedDraw& draw) {
     out += "<li><code>" + escaped(run.method) + "</code> " + escaped(run.status) +
            (run.message.empty() ? "" : ": " + escaped(run.message)) + "<pre>" + escaped(run.command) + "</pre></li>";
   }
+  if (!draw.replay_command.empty() && (shown == nullptr || shown->replay_address.empty()))
+    out += "<li>kept by the sweep: to see it<pre>" + escaped(draw.replay_command) + "</pre></li>";
   return out + "</ul></li>\n";
 }
 

@@ -7,6 +7,7 @@
 #include <filesystem>
 #include <system_error>
 
+#include "scenarios/methods/method.hpp"
 #include "scenarios/provenance/build_id.hpp"
 #include "scenarios/summary/comparison.hpp"
 #include "scenarios/summary/example_choice.hpp"
@@ -44,6 +45,29 @@ std::vector<Fact> versions(const scenarios::Results& results, const Summary& sum
   return out;
 }
 
+/// What each method of the results is: by the registry, or that somebody described it by a file.
+std::vector<Fact> methods_told(const scenarios::Results& results, const Summary& summary) {
+  std::vector<Fact> out;
+  const auto notes = results.notes();
+  const auto add = [&](Kind kind, const std::string& method, bool baseline) {
+    const std::string name = full_name(kind, method) + (baseline ? " (baseline)" : "");
+    if (std::ranges::any_of(out, [&](const Fact& fact) { return fact.first == name; })) return;
+    const auto all = scenarios::methods();
+    const auto found = std::ranges::find_if(
+        all, [&](const scenarios::Method& each) { return each.info.kind == kind && each.info.name == method; });
+    if (notes.contains(scenarios::method_note(kind, method)))
+      out.emplace_back(name, "A method described by a file.");
+    else if (found != all.end())
+      out.emplace_back(name, found->info.doc + " Source: " + found->info.source + ".");
+  };
+  for (const scenarios::Section& section : summary.sections) {
+    for (const scenarios::MethodSummary& method : section.methods)
+      add(section.kind, method.method, method.method == section.baseline);
+  }
+  std::ranges::stable_sort(out, {}, &Fact::first);
+  return out;
+}
+
 /// Whether a sweep by this build, over the data that are found here, would go on with them.
 bool are_of_here(const scenarios::Results& results, const ReportOptions& options) {
   const std::string made_by = results.note("build"), made_of = results.note("data");
@@ -59,7 +83,7 @@ std::vector<Fact> commands(const scenarios::Results& results, const ReportOption
     out.emplace_back("The results", "tumble sweep " + sweep + " --db " + database);
   if (!options.page.empty())
     out.emplace_back("This page", "tumble report " + database + " -o " + scenarios::shell_word(options.page.string()));
-  out.emplace_back("Paired differences, as tables (`--metric` for others)", "tumble compare " + database);
+  out.emplace_back("Paired differences, as tables (with --metric NAME of other metrics)", "tumble compare " + database);
   out.emplace_back("What breaks a method, every number", "tumble sensitivity " + database + " --all");
   return out;
 }
@@ -154,10 +178,11 @@ PageContent report_content(ReportInput input, const ReportOptions& options) {
   content.errors = errors_of_all_draws(summary);
   content.cost = cost_figure(summary);
   content.curves = std::move(input.curves);
-  content.failed = failed_draws(results, summary);
+  content.failed = failed_draws(results, summary, options.database);
   content.rejected = results.rejected();
   content.sensitivity = std::move(input.sensitivity);
   content.sensitivity_note = std::move(input.sensitivity_note);
+  content.methods = methods_told(results, summary);
   content.versions = versions(results, summary, options);
   content.commands = commands(results, options);
   content.certificates = results.certificates();
