@@ -27,7 +27,7 @@ namespace tumble::tools {
 namespace {
 
 /// Unless told: each example costs a draw run once more and its pictures.
-constexpr std::uint64_t kExamplesMax = 3, kFailuresMax = 8, kDrawsPerExample = 8;
+constexpr std::uint64_t kExamplesMax = 3, kDrawsPerExample = 8, kFailuresMax = 8, kDrawsPerFailure = 4;
 
 struct Options {
   std::string suite;
@@ -118,8 +118,8 @@ bool leave_examples(const Session& session, const scenarios::DataRoot& data, con
   LeaveOptions leave;
   leave.count = options.examples.value_or(std::min(kExamplesMax, draws / kDrawsPerExample));
   // who wants no pictures wants none of failures either
-  leave.failures =
-      options.failures.value_or(leave.count == 0 ? 0 : std::clamp(draws / kDrawsPerExample, 1ul, kFailuresMax));
+  leave.failures = options.failures.value_or(
+      leave.count == 0 ? 0 : std::clamp(draws / kDrawsPerFailure, std::uint64_t{1}, kFailuresMax));
   leave.jobs = options.jobs;
   leave.stop = &stop;
   leave.note = [&](std::string_view line) { session.note(line); };
@@ -270,7 +270,7 @@ Action declare_sweep(VerbOptions& verb, const Session& session) {
       .whole(0, 64);
   verb.add("--failures", options->failures,
            "draws that failed, those on which most methods did, run again likewise: a picture and a replay [one for "
-           "each 8 draws of the sweep, 8 at most; none with --examples 0]")
+           "each 4 draws of the sweep, 8 at most; none with --examples 0]")
       .whole(0, 64);
   verb.add("--memory", options->memory_mib,
            "MiB of data that a worker, and each method that it runs, may hold; one that needs more is 'killed'")
