@@ -7,7 +7,6 @@
 #include <filesystem>
 #include <system_error>
 
-#include "scenarios/methods/method.hpp"
 #include "scenarios/provenance/build_id.hpp"
 #include "scenarios/summary/comparison.hpp"
 #include "scenarios/summary/example_choice.hpp"
@@ -45,24 +44,15 @@ std::vector<Fact> versions(const scenarios::Results& results, const Summary& sum
   return out;
 }
 
-/// What each method of the results is: by the registry, or that somebody described it by a file.
-std::vector<Fact> methods_told(const scenarios::Results& results, const Summary& summary) {
+/// What each method of the results is.
+std::vector<Fact> methods_told(const Summary& summary) {
   std::vector<Fact> out;
-  const auto notes = results.notes();
-  const auto add = [&](Kind kind, const std::string& method, bool baseline) {
-    const std::string name = full_name(kind, method) + (baseline ? " (baseline)" : "");
-    if (std::ranges::any_of(out, [&](const Fact& fact) { return fact.first == name; })) return;
-    const auto all = scenarios::methods();
-    const auto found = std::ranges::find_if(
-        all, [&](const scenarios::Method& each) { return each.info.kind == kind && each.info.name == method; });
-    if (notes.contains(scenarios::method_note(kind, method)))
-      out.emplace_back(name, "A method described by a file.");
-    else if (found != all.end())
-      out.emplace_back(name, found->info.doc + " Source: " + found->info.source + ".");
-  };
   for (const scenarios::Section& section : summary.sections) {
-    for (const scenarios::MethodSummary& method : section.methods)
-      add(section.kind, method.method, method.method == section.baseline);
+    for (const scenarios::MethodSummary& method : section.methods) {
+      Fact fact(full_name(section.kind, method.method) + (method.method == section.baseline ? " (baseline)" : ""),
+                method.what.empty() ? "Described by a file." : method.what);
+      if (std::ranges::find(out, fact) == out.end()) out.push_back(std::move(fact));
+    }
   }
   std::ranges::stable_sort(out, {}, &Fact::first);
   return out;
@@ -182,7 +172,7 @@ PageContent report_content(ReportInput input, const ReportOptions& options) {
   content.rejected = results.rejected();
   content.sensitivity = std::move(input.sensitivity);
   content.sensitivity_note = std::move(input.sensitivity_note);
-  content.methods = methods_told(results, summary);
+  content.methods = methods_told(summary);
   content.versions = versions(results, summary, options);
   content.commands = commands(results, options);
   content.certificates = results.certificates();
