@@ -300,6 +300,14 @@ TEST(Report, IsAFunctionOfWhatASweepHasLeft) {
   EXPECT_THAT(own_part(page), HasSubstr("examples.json"));
 }
 
+// the lidar's library said of too little memory that the CPU was too old
+TEST(Sweep, ADrawWithoutMemoryIsKilledAndBlamesNothingElse) {
+  std::vector<std::string> arguments = sweep_arguments(test_folder() / "m.db", "1..1");
+  arguments.insert(arguments.end(), {"--memory", "110", "--method", "position/tumble"});
+  const json swept = json_of(run(arguments));
+  EXPECT_EQ(swept["failures"], (json{{"killed", swept["outcomes"]}})) << swept;
+}
+
 TEST(Report, ShowsDrawsThatFailedWhereItTellsOfThem) {
   const fs::path folder = test_folder();
   const fs::path database = folder / "f.db", page = folder / "report.html";
