@@ -20,7 +20,7 @@ Estimate run(const sim::Sensors& sensors, const sim::Values& parameters, const O
 
 Method slam_icp_raw() {
   return rig_slam({.name = "icp_raw",
-                   .doc = "The chain of seed with the gyro as it is, clipped where it clips.",
+                   .doc = "The chain of icp with the gyro as it is, clipped where it clips.",
                    .source = "baseline of Deschenes et al., ICRA 2024",
                    .settings = {&seed_settings()},
                    .baseline = true},

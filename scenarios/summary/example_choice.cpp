@@ -48,26 +48,30 @@ std::vector<ExampleDraw> choose_examples(const Summary& summary, std::span<const
   return chosen;
 }
 
+std::vector<FailedOn> rank_failures(const Summary& summary) {
+  std::map<ExampleDraw, std::size_t> failures;
+  for (const Section& section : summary.sections) {
+    for (const MethodSummary& method : section.methods) {
+      for (const std::uint64_t seed : method.not_ok_seeds)
+        failures[{section.scenario, seed}] += method.needs_truth ? 0 : 1;
+    }
+  }
+  std::vector<FailedOn> ranked;
+  ranked.reserve(failures.size());
+  for (const auto& [draw, methods] : failures) ranked.push_back({draw, methods});
+  std::stable_sort(ranked.begin(), ranked.end(),
+                   [](const FailedOn& a, const FailedOn& b) { return a.methods > b.methods; });
+  return ranked;
+}
+
 std::vector<ExampleDraw> choose_failures(const Summary& summary, std::span<const ExampleCandidate> candidates,
                                          std::size_t count) {
-  std::vector<std::pair<std::size_t, ExampleDraw>> ranked;
-  for (const ExampleCandidate& candidate : candidates) {
-    std::map<std::uint64_t, std::size_t> failures;
-    for (const Section& section : summary.sections) {
-      if (section.scenario != candidate.scenario) continue;
-      for (const MethodSummary& method : section.methods) {
-        for (const std::uint64_t seed : method.not_ok_seeds) failures[seed] += method.needs_truth ? 0 : 1;
-      }
-    }
-    const auto most = std::max_element(failures.begin(), failures.end(),
-                                       [](const auto& a, const auto& b) { return a.second < b.second; });
-    if (most != failures.end() && most->second > 0)
-      ranked.emplace_back(most->second, ExampleDraw{candidate.scenario, most->first});
-  }
-  std::stable_sort(ranked.begin(), ranked.end(), [](const auto& a, const auto& b) { return a.first > b.first; });
-  if (ranked.size() > count) ranked.resize(count);
   std::vector<ExampleDraw> chosen;
-  for (auto& [failed, draw] : ranked) chosen.push_back(std::move(draw));
+  for (FailedOn& failed : rank_failures(summary)) {
+    if (chosen.size() == count || failed.methods == 0) break;
+    if (std::ranges::any_of(candidates, [&](const auto& each) { return each.scenario == failed.draw.scenario; }))
+      chosen.push_back(std::move(failed.draw));
+  }
   return chosen;
 }
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <span>
 #include <string>
@@ -32,8 +33,17 @@ bool typical_seed(const Summary& summary, const std::string& scenario, std::uint
 std::vector<ExampleDraw> choose_examples(const Summary& summary, std::span<const ExampleCandidate> candidates,
                                          std::size_t count);
 
-/// Of the candidates' scenarios the draw on which most methods that need no truth failed, the first of equals; at most
-/// `count` draws, those with most failures first. None where nothing failed.
+/// A draw on which methods failed.
+struct FailedOn {
+  ExampleDraw draw;
+  std::size_t methods = 0;  ///< of those that need no truth
+};
+
+/// Every draw on which a method failed: those on which most methods did first, of equals by scenario and seed.
+std::vector<FailedOn> rank_failures(const Summary& summary);
+
+/// Of the candidates' scenarios the first `count` of these draws, but those on which only methods failed that know the
+/// truth.
 std::vector<ExampleDraw> choose_failures(const Summary& summary, std::span<const ExampleCandidate> candidates,
                                          std::size_t count);
 

@@ -60,7 +60,8 @@ MethodSummary of_kept(const Seeds& kept, const MethodSummary& method) {
                     method.not_ok_share,
                     of_kept(kept, method.seeds),
                     of_kept(kept, method.not_ok_seeds),
-                    {}};
+                    {},
+                    method.what};
   for (const auto& entry : method.metrics) {
     const MetricSummary& metric = entry.second;  // by name: Clang 14 captures no binding
     MetricSummary& own = out.metrics[entry.first];

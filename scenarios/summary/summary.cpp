@@ -159,6 +159,7 @@ void finish(Section& section) {
   for (MethodSummary& method : section.methods) {
     const MethodInfo* info = registered(section.kind, method.method);
     method.needs_truth = info != nullptr && info->needs_truth;
+    if (info != nullptr) method.what = info->doc + " Source: " + info->source + ".";
     method.not_ok_share = share_interval(method.not_ok, method.outcomes);
     for (auto& [name, metric] : method.metrics) {
       finish(name, metric);

@@ -46,6 +46,7 @@ struct MethodSummary {
   Interval not_ok_share{};                         ///< Clopper and Pearson, 95 %
   std::vector<std::uint64_t> seeds, not_ok_seeds;  ///< of all outcomes, and of those that failed; rising
   std::map<std::string, MetricSummary> metrics;
+  std::string what;  ///< one sentence and the source, as registered; "" of a method out of a file
   const MetricSummary* find(const std::string& metric) const;
 };
 

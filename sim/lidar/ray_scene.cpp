@@ -235,6 +235,8 @@ void RayScene::Impl::add_shapes() {
 
 RayScene::RayScene(const SceneGeometry& geometry) : impl_(std::make_unique<Impl>()) {
   impl_->device.reset(rtcNewDevice(kDevice));
+  // a bound on memory is no defect of the CPU
+  if (!impl_->device && rtcGetDeviceError(nullptr) == RTC_ERROR_OUT_OF_MEMORY) throw std::bad_alloc();
   if (!impl_->device) throw std::runtime_error("lidar: Embree gives no device; the CPU must have AVX2 and FMA");
   impl_->scene.reset(rtcNewScene(impl_->device.get()));
   rtcSetSceneFlags(impl_->scene.get(), RTC_SCENE_FLAG_ROBUST);  // no ray slips through between two triangles

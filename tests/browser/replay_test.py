@@ -128,8 +128,14 @@ class ReplayPage(unittest.TestCase):
             return picture.share(lambda r, g, b: max(r, g, b) < 60, *STRIP)
         self.assertGreater(black(self.drawn(self.page, dark=True)[1]), 0.4)
         self.assertLess(black(self.drawn(self.page)[1]), 0.2, "negative control")
-        phone, _ = self.drawn(self.page, size=(400, 800))
-        self.assertLessEqual(phone.value("document.documentElement.scrollWidth"), 400)
+        for width in (400, 390, 320):
+            phone, _ = self.drawn(self.page, size=(width, 800))
+            # the page does not scroll: what lies outside cannot be reached
+            beyond = phone.value("[...document.querySelectorAll('footer button, footer select, footer input, footer canvas')]"
+                                 f".filter((e) => e.getBoundingClientRect().right > {width}).map((e) => e.id)")
+            self.assertEqual(beyond, [], width)
+            slider = phone.value("document.getElementById('scrub').getBoundingClientRect().width")
+            self.assertGreater(slider, 100, width)
 
     def test_without_truth_and_under_a_hostile_name(self):
         page, _ = self.drawn(self.real, "t=4&pause&still")

@@ -111,6 +111,7 @@ kill_node "$dead"
 for _ in $(seq 900); do [ -z "$(squeue -h 2>/dev/null || echo busy)" ] && break; sleep 0.5; done
 grep -q "shard $task: done" "$folder/out.db.shards/logs/shard_$task.log" || { say "task $task was not done again"; exit 1; }
 [ -s "$folder/out.html" ] || { say "there is no report"; exit 1; }
+grep -q "data:image/webp" "$folder/out.html" || { say "nothing moves in the report"; exit 1; }
 
 python3 "$root/tests/cluster/same_results.py" "$folder/whole.db" "$folder/out.db" 18
 diff -r "$folder/whole.db.files/kept" "$folder/out.db.files/kept"

@@ -300,6 +300,38 @@ TEST(Report, IsAFunctionOfWhatASweepHasLeft) {
   EXPECT_THAT(own_part(page), HasSubstr("examples.json"));
 }
 
+// the lidar's library said of too little memory that the CPU was too old
+TEST(Sweep, ADrawWithoutMemoryIsKilledAndBlamesNothingElse) {
+  std::vector<std::string> arguments = sweep_arguments(test_folder() / "m.db", "1..1");
+  arguments.insert(arguments.end(), {"--memory", "110", "--method", "position/tumble"});
+  const json swept = json_of(run(arguments));
+  EXPECT_EQ(swept["failures"], (json{{"killed", swept["outcomes"]}})) << swept;
+}
+
+TEST(Report, ShowsDrawsThatFailedWhereItTellsOfThem) {
+  const fs::path folder = test_folder();
+  const fs::path database = folder / "f.db", page = folder / "report.html";
+  std::ofstream(folder / "lost.yaml") << "name: lost\nkind: position\ncommand: [sh, -c, 'exit 3 # {output}']\n";
+  std::vector<std::string> arguments = sweep_arguments(database, "1..3", "1");
+  arguments.insert(arguments.end(), {"--method", (folder / "lost.yaml").string(), "--failures", "2"});
+  const Ended ended = run(arguments);
+  ASSERT_EQ(ended.status, 0) << ended.err;
+  const json left = json::parse(read_file(folder / "f.db.files" / "examples.json"));
+  // the typical one, and of the first two that failed what it is not
+  ASSERT_GE(left["examples"].size(), 2u) << ended.err;
+  const json& failed = left["examples"].back();
+  EXPECT_FALSE(left["examples"][0]["of_failure"]);
+  EXPECT_TRUE(failed["of_failure"]);
+  EXPECT_EQ(failed["pictures"].size(), 1u);
+  EXPECT_TRUE(failed["plots"].empty());
+  EXPECT_TRUE(fs::exists(folder / "f.db.files" / failed["replay"].get<std::string>()));
+  ASSERT_EQ(run({"report", database.string(), "-o", page.string()}).status, 0);
+  const std::string text = own_part(page), seed = std::to_string(failed["seed"].get<int>());
+  EXPECT_THAT(text, HasSubstr("<details id=\"draw-roll-" + seed + "\"><summary>picture</summary>"));
+  EXPECT_THAT(text, HasSubstr("<a href=\"f.db.files/" + failed["replay"].get<std::string>() + "\">replay</a>"));
+  EXPECT_THAT(text, Not(HasSubstr("made of other results")));
+}
+
 TEST(Sweep, OfAnotherSuiteKeepsTheExamplesThatStandThere) {
   const fs::path folder = test_folder();
   const fs::path database = folder / "s.db", list = folder / "s.db.files" / "examples.json";

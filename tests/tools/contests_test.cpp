@@ -68,8 +68,9 @@ TEST(Contests, NameTheBestAndByHowMuch) {
   // nine signs alike by chance: 2/512, twice that for two comparisons
   EXPECT_EQ(all[0].certainty, Certainty::corrected);
   EXPECT_TRUE(all[0].won());
+  EXPECT_NEAR(all[0].times, 10.0, 1e-9);
   EXPECT_EQ(tally_text(tally(all)), "tumble is better than the baseline in the one contest");
-  EXPECT_THAT(certainty_text(all[0], 2), HasSubstr("better, also after correction for 2"));
+  EXPECT_THAT(certainty_text(all[0], 2), HasSubstr("more than chance explains, also after correction for 2"));
 }
 
 TEST(Contests, AreLostWhereTheBaselineIsBetter) {
@@ -125,6 +126,17 @@ TEST(Contests, SayNoShareWhereHalfOfTheBaselineFailed) {
   ASSERT_EQ(all.size(), 1u);
   EXPECT_TRUE(std::isnan(all[0].percent));
   EXPECT_TRUE(all[0].won()) << "it ran where the other failed";
+}
+
+// three of nine runs of the baseline failed: how much better is unknown above, not below
+TEST(Contests, HaveAShareWhereAnIntervalIsInfiniteOnOneSide) {
+  std::vector<double> failing(9, 2.0);
+  for (std::size_t i : {0u, 4u, 8u}) failing[i] = kInfinite;
+  const std::vector<ContestResult> all = contests_of(summary_of({method("raw", failing), method("saave", kHalf)}));
+  ASSERT_EQ(all.size(), 1u);
+  EXPECT_NEAR(all[0].percent, -75.0, 1e-9);
+  EXPECT_EQ(all[0].percent_low, -kInfinite);
+  EXPECT_NEAR(all[0].percent_high, -75.0, 1e-9);
 }
 
 TEST(Contests, KnowThatMoreOverlapIsBetter) {

@@ -196,5 +196,18 @@ TEST_F(CurvesTest, ReachThePageWithTheirNumbers) {
   EXPECT_THAT(page_html(content, ""), Not(HasSubstr(id))) << "negative control";
 }
 
+TEST_F(CurvesTest, AreFoldedScenarioByScenarioButTheFirst) {
+  for (const double value : {0.0, 0.01}) store(1, Kind::rate, "raw", {kOffset, value}, {{kMedian, 3.25 + value}});
+  std::vector<Curve> curves = find_curves(results());
+  ASSERT_EQ(curves.size(), 1u);
+  curves.push_back(curves.front());
+  curves.back().scenario = "a<b";
+  std::vector<Figure> figures;
+  const std::string page = curves_html(curves, figures);
+  EXPECT_THAT(page, HasSubstr("<details open><summary>hill · rate</summary>"));
+  EXPECT_THAT(page, HasSubstr("<details><summary>a&lt;b · rate</summary>"));
+  EXPECT_EQ(figures.size(), 2u);
+}
+
 }  // namespace
 }  // namespace tumble::tools

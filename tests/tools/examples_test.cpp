@@ -58,6 +58,17 @@ TEST(RatePlot, ShowsTheAxisThatClips) {
   EXPECT_THAT(plot.caption, HasSubstr("y axis"));
 }
 
+TEST(RatePlot, ShowsTheGyroAlsoWhereNoMethodSaysIt) {
+  scenarios::RunResult run = clipped_run();
+  run.methods = scenarios::find_methods("rate/saave");
+  for (int k = 0; k < 4; ++k) run.recording.sensors.imus[0].gyro_rad_s.emplace_back(0, 10.25, 0);
+  const Plot plot = rate_plot(run);
+  ASSERT_EQ(plot.lines.size(), 3u);
+  EXPECT_THAT(plot.lines[2].y, ElementsAre(10.25, 10.25, 10.25, 10.25));
+  EXPECT_EQ(plot.lines[2].name, "what the gyro says");
+  EXPECT_EQ(plot.lines[2].colour, 1);
+}
+
 TEST(DrawnOf, HasAColourForEachAndBeginsWithTheFirst) {
   EXPECT_THAT(drawn_of({}), ElementsAre());
   EXPECT_THAT(drawn_of({false, true, false}), ElementsAre(0, 1, 2));
@@ -117,6 +128,7 @@ class ExamplesTest : public scenarios::testing::TemporaryFolder {
     example.seed = seed;
     example.motion = "tumble";
     example.choice = "why";
+    example.of_failure = seed % 2 == 1;
     example.recording_digest = "abc";
     example.digest_without_lidars = "def";
     example.made_of = "123";

@@ -4,6 +4,9 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <filesystem>
+#include <fstream>
+
 #include "scenarios/sweep/run_again.hpp"
 #include "scenarios/sweep/sweep_notes.hpp"
 #include "tests/temporary_folder.hpp"
@@ -32,7 +35,7 @@ class FailedDrawsTest : public scenarios::testing::TemporaryFolder {
     outcome.message = message;
     results_->store(outcome);
   }
-  FailedDraws found() const { return failed_draws(*results_, scenarios::summarize(*results_)); }
+  FailedDraws found() const { return failed_draws(*results_, scenarios::summarize(*results_), folder_ / "a.db"); }
   /// Of the first draw.
   std::vector<std::string> commands() const {
     const FailedDraws failed = found();
@@ -86,10 +89,24 @@ TEST_F(FailedDrawsTest, OfMethodsThatNeedTheTruthComeLast) {
   scenarios::Summary summary = scenarios::summarize(results());
   for (scenarios::MethodSummary& method : summary.sections.at(0).methods)
     method.needs_truth = method.method.starts_with("oracle");
-  const FailedDraws failed = failed_draws(results(), summary);
+  const FailedDraws failed = failed_draws(results(), summary, folder_ / "a.db");
   ASSERT_EQ(failed.shown.size(), 2u) << "listed all the same";
   EXPECT_EQ(failed.shown[0].seed, 2u);
   EXPECT_EQ(failed.shown[1].runs.size(), 2u);
+}
+
+TEST_F(FailedDrawsTest, ThatAreKeptHaveACommandThatShowsThem) {
+  store(1, "raw", OutcomeStatus::failed);
+  store(2, "raw", OutcomeStatus::failed);
+  const auto kept = folder_ / "a.db.files" / "kept" / "hill" / "2";
+  std::filesystem::create_directories(kept / "estimates");
+  std::ofstream(kept / "recording.h5") << "a recording";
+  const FailedDraws failed = found();
+  ASSERT_EQ(failed.shown.size(), 2u);
+  EXPECT_EQ(failed.shown[0].replay_command, "");
+  EXPECT_EQ(failed.shown[1].replay_command, "tumble replay " + scenarios::shell_word((kept / "recording.h5").string()) +
+                                                " " + scenarios::shell_word((kept / "estimates").string()) +
+                                                "/* -o hill-2.html");
 }
 
 TEST_F(FailedDrawsTest, AreBounded) {

@@ -78,8 +78,9 @@ TEST(Page, EscapesEveryTextItIsGiven) {
   PageContent content;
   content.title = evil;
   content.versions = {{evil, evil}};
+  content.methods = {{evil, evil}};
   content.commands = {{evil, evil}};
-  content.failed = {1, {{evil, 7, {{evil, evil, evil, evil}}}}};
+  content.failed = {1, {{evil, 7, {{evil, evil, evil, evil}}, evil}}};
   content.sensitivity_note = evil;
   content.sensitivity = {{evil, Kind::rate, evil, evil, 30, {{evil, {}, {}, 0.0, 1.0, 2.0}}}};
   content.motion_map = scenarios::motion_map(std::vector<scenarios::DrawValues>{
@@ -135,6 +136,15 @@ TEST(Page, SaysWhatItsRecordingsAre) {
   content.recorded = true;
   EXPECT_THAT(page_html(content, ""), HasSubstr("the very same recordings (hill), and is judged by the truth"));
   EXPECT_THAT(page_html(content, ""), Not(HasSubstr("simulated, so")));
+}
+
+TEST(Page, SaysWhatItsTasksAndMethodsAre) {
+  PageContent content;
+  content.summary = summary_of("hill");
+  content.methods = {{"rate/raw (baseline)", "The gyro as it is."}};
+  const std::string page = page_html(content, "");
+  EXPECT_THAT(page, HasSubstr("one task on one scenario: rate, how fast it turns.</p>"));
+  EXPECT_THAT(page, HasSubstr("<dt>rate/raw (baseline)</dt><dd>The gyro as it is.</dd>"));
 }
 
 TEST(Page, CountsMethodsThatNeedNoTruth) {
@@ -214,15 +224,37 @@ TEST(Page, LinksFailedDrawsThatHavePictures) {
   content.summary = summary_of("hill");
   content.examples = {evil_example("hill")};
   content.examples[0].replay_address = "a.db.files/hill-7-replay.html";
-  content.failed = {2,
-                    {{"hill", 7, {{"rate/saave", "diverged", "went away", "tumble run hill --seed 7"}}},
-                     {"hill", 8, {{"rate/saave", "diverged", "", "tumble run hill --seed 8"}}}}};
+  content.failed = {
+      2,
+      {{"hill", 7, {{"rate/saave", "diverged", "went away", "tumble run hill --seed 7"}}, "tumble replay 7"},
+       {"hill", 8, {{"rate/saave", "diverged", "", "tumble run hill --seed 8"}}, "tumble replay 8"}}};
   const std::string page = page_html(content, "");
   EXPECT_THAT(page, HasSubstr("<a href=\"#draw-hill-7\">pictures</a>"));
   EXPECT_THAT(page, HasSubstr("<details id=\"draw-hill-7\""));
   EXPECT_THAT(page, HasSubstr("<a href=\"a.db.files/hill-7-replay.html\">replay</a>"));
   EXPECT_THAT(page, HasSubstr("<pre>tumble run hill --seed 7</pre>"));
   EXPECT_THAT(page, Not(HasSubstr("#draw-hill-8"))) << "negative control: nothing is there to be seen";
+  EXPECT_THAT(page, HasSubstr("<pre>tumble replay 8</pre>"));
+  EXPECT_THAT(page, Not(HasSubstr("tumble replay 7"))) << "it has one";
+}
+
+TEST(Page, ShowsAFailedDrawWhereItsFailureIsTold) {
+  PageContent content;
+  content.summary = summary_of("hill");
+  content.examples = {evil_example("roll"), evil_example("hill")};
+  content.examples[1].example.of_failure = true;
+  content.examples[1].replay_address = "a.db.files/hill-7-replay.html";
+  content.failed = {1, {{"hill", 7, {{"rate/saave", "diverged", "went away", "tumble run hill --seed 7"}}, ""}}};
+  const std::string page = page_html(content, "");
+  const std::size_t draw = page.find("<details id=\"draw-hill-7\"><summary>picture"),
+                    failures = page.find("<section id=\"failures\">"),
+                    command = page.find("<pre>tumble run hill --seed 7");
+  EXPECT_LT(failures, draw);
+  EXPECT_LT(draw, command);
+  EXPECT_LT(command, page.size());
+  EXPECT_THAT(page, HasSubstr("<a href=\"a.db.files/hill-7-replay.html\">replay</a>"));
+  EXPECT_THAT(page, Not(HasSubstr("One hill"))) << "and not among the typical draws";
+  EXPECT_THAT(page, HasSubstr("One roll"));
 }
 
 TEST(AtMost, KeepsTheEndsAndTheQuartiles) {

@@ -62,6 +62,18 @@ PlotLine estimated_rate(const scenarios::MethodInfo& info, const std::vector<Rat
   return line;
 }
 
+PlotLine gyro_line(const sim::ImuRecord& imu, int axis, const Span& span) {
+  PlotLine line;
+  line.name = "what the gyro says";
+  line.width = 1.6;
+  for (std::size_t k = 0; k < imu.time_ns.size() && k < imu.gyro_rad_s.size(); ++k) {
+    if (imu.time_ns[k] < span.begin_ns || imu.time_ns[k] > span.end_ns) continue;
+    line.x.push_back(significant(seconds(imu.time_ns[k])));
+    line.y.push_back(significant(imu.gyro_rad_s[k][axis]));
+  }
+  return line;
+}
+
 PlotLine path_line(const std::string& name, int colour, double width, const Path& path) {
   PlotLine line;
   line.name = name;
@@ -128,10 +140,17 @@ Plot rate_plot(const scenarios::RunResult& run) {
   const Span span = moving_span(run.recording.truth, 0.3);
   plot.lines.push_back(true_rate(run.recording, axis, span));
   int colour = 0;
+  bool gyro = false;
   for (std::size_t i = 0; i < run.methods.size(); ++i) {
     if (run.methods[i]->info.kind != Kind::rate) continue;
+    gyro = gyro || run.methods[i]->info.baseline;
     plot.lines.push_back(estimated_rate(run.methods[i]->info, run.estimates[i].rates, axis, span));
     plot.lines.back().colour = colour++;
+  }
+  // what it is all about, also where no method of the run says it
+  if (!gyro) {
+    plot.lines.push_back(gyro_line(run.recording.sensors.imus.front(), axis, span));
+    plot.lines.back().colour = colour;
   }
   plot.caption =
       std::string("Angular velocity about the sensor's ") + "xyz"[axis] +

@@ -46,8 +46,9 @@ struct ExamplePicture {
 struct Example {
   std::string scenario;
   std::uint64_t seed = 0;
-  std::string motion;  ///< what the draw is one of: "tumble", "roll"
-  std::string choice;  ///< why this draw: one sentence
+  std::string motion;       ///< what the draw is one of: "tumble", "roll"
+  std::string choice;       ///< why this draw: one sentence
+  bool of_failure = false;  ///< one picture and a replay, shown where the draw's failures are told
   std::string recording_digest, digest_without_lidars;
   std::string made_of;  ///< digest of the rows of the results that it shows
   std::vector<ExamplePicture> pictures;

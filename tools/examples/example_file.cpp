@@ -132,6 +132,7 @@ Example read_example(const fs::path& folder, const json& from, Pictures pictures
   example.seed = from.at("seed");
   example.motion = from.at("motion");
   example.choice = from.at("choice");
+  example.of_failure = from.value("of_failure", false);  // none of an earlier version is one
   example.recording_digest = from.at("recording_digest");
   example.digest_without_lidars = from.at("digest_without_lidars");
   example.made_of = from.at("made_of");
@@ -213,6 +214,7 @@ std::string to_json(const Example& example) {
               {"seed", example.seed},
               {"motion", example.motion},
               {"choice", example.choice},
+              {"of_failure", example.of_failure},
               {"recording_digest", example.recording_digest},
               {"digest_without_lidars", example.digest_without_lidars},
               {"made_of", example.made_of},

@@ -25,9 +25,10 @@ constexpr int kPollMs = 200;
 /// What simulating and drawing may take beyond the methods, in units of a method's time-out.
 constexpr double kOtherTimeouts = 3.0;
 constexpr const char* kTypical = "The draw whose score is the median one of its scenario";
-constexpr const char* kFailed = "The draw of its scenario on which most methods failed";
-/// Draws that failed, beside the typical ones.
-constexpr std::size_t kFailures = 1;
+constexpr const char* kFailed = "The draw on which most methods failed";
+constexpr const char* kAlsoFailed = "A draw on which methods failed";
+
+enum class Extent { whole, of_failure };
 
 /// One example in the making; the first has the moving picture, of which a report shows one. `text` is what its process
 /// has said so far, or what was there.
@@ -37,7 +38,9 @@ struct Making {
   std::vector<scenarios::MethodPointer> methods;
   std::string choice;
   std::string made_of;
+  scenarios::Lidars lidars;
   Moving moving;
+  Extent extent;
   std::string text;
   bool done = false;
 };
@@ -59,8 +62,21 @@ std::vector<scenarios::MethodPointer> methods_of(const std::vector<scenarios::Ou
   return found;
 }
 
+/// Of a draw that failed: what failed, and of the same kinds what ours made of it.
+std::vector<scenarios::Outcome> rows_of_failure(std::vector<scenarios::Outcome> rows) {
+  std::set<scenarios::Kind> kinds;
+  for (const scenarios::Outcome& row : rows) {
+    if (row.status != scenarios::OutcomeStatus::ok) kinds.insert(row.kind);
+  }
+  // of every kind ours is called tumble (docs/design.md, "Scenarios and methods by name")
+  std::erase_if(rows, [&](const scenarios::Outcome& row) {
+    return row.status == scenarios::OutcomeStatus::ok && (row.method != "tumble" || !kinds.contains(row.kind));
+  });
+  return rows;
+}
+
 std::vector<Making> plan(const scenarios::DataRoot& data, const scenarios::Suite& suite,
-                         const scenarios::Results& results, std::size_t count) {
+                         const scenarios::Results& results, const LeaveOptions& options) {
   std::vector<scenarios::Scenario> all;
   std::vector<scenarios::ExampleCandidate> candidates;
   for (const std::string& name : suite.scenarios) {
@@ -69,22 +85,31 @@ std::vector<Making> plan(const scenarios::DataRoot& data, const scenarios::Suite
   }
   const scenarios::Summary summary = scenarios::summarize(results);
   std::vector<Making> makings;
-  const auto add = [&](const scenarios::ExampleDraw& draw, const char* choice) {
+  const auto add = [&](const scenarios::ExampleDraw& draw, const char* choice, Extent extent) {
     if (std::any_of(makings.begin(), makings.end(), [&](const Making& making) { return making.draw == draw; })) return;
-    const std::vector<scenarios::Outcome> rows = scenarios::rows_to_show(results, draw);
+    std::vector<scenarios::Outcome> rows = scenarios::rows_to_show(results, draw);
+    // as the sweep had them, so that the recording has the digest of the rows
+    const bool lidars = std::ranges::any_of(rows, [](const auto& row) { return row.kind != scenarios::Kind::rate; });
+    if (extent == Extent::of_failure) rows = rows_of_failure(std::move(rows));
     const auto scenario = std::find_if(all.begin(), all.end(), [&](const auto& s) { return s.name == draw.scenario; });
     makings.push_back({draw,
                        *scenario,
                        methods_of(rows, suite),
                        choice,
                        scenarios::digest_of_rows(results, draw),
+                       lidars ? scenarios::Lidars::simulated : scenarios::Lidars::left_out,
                        makings.empty() ? Moving::drawn : Moving::left_out,
+                       extent,
                        {},
                        false});
   };
-  for (const scenarios::ExampleDraw& draw : scenarios::choose_examples(summary, candidates, count)) add(draw, kTypical);
-  for (const scenarios::ExampleDraw& draw : scenarios::choose_failures(summary, candidates, kFailures))
-    add(draw, kFailed);
+  for (const scenarios::ExampleDraw& draw : scenarios::choose_examples(summary, candidates, options.count))
+    add(draw, kTypical, Extent::whole);
+  bool first = true;
+  for (const scenarios::ExampleDraw& draw : scenarios::choose_failures(summary, candidates, options.failures)) {
+    add(draw, first ? kFailed : kAlsoFailed, first ? Extent::whole : Extent::of_failure);
+    first = false;
+  }
   return makings;
 }
 
@@ -103,6 +128,7 @@ std::vector<std::string> keep_known(const scenarios::DataRoot& data, const fs::p
       if (known.made_of != making.made_of || known.scenario != making.draw.scenario || known.seed != making.draw.seed)
         continue;
       if (making.moving == Moving::drawn && known.moving.empty()) continue;
+      if (known.of_failure != (making.extent == Extent::of_failure)) continue;
       making.text = to_json(known);
       making.done = true;
     }
@@ -120,12 +146,9 @@ std::vector<std::string> keep_known(const scenarios::DataRoot& data, const fs::p
 /// none.
 void make(const scenarios::DataRoot& data, const fs::path& folder, const Making& making, int fd) {
   try {
-    const bool lidars = std::any_of(making.methods.begin(), making.methods.end(),
-                                    [](const auto& method) { return method->info.kind != scenarios::Kind::rate; });
     const scenarios::RunResult run =
-        scenarios::run_situation(data, making.scenario, making.draw.seed, making.methods, 1,
-                                 lidars ? scenarios::Lidars::simulated : scenarios::Lidars::left_out);
-    Example example = example_of(run, making.moving);
+        scenarios::run_situation(data, making.scenario, making.draw.seed, making.methods, 1, making.lidars);
+    Example example = making.extent == Extent::whole ? example_of(run, making.moving) : failure_example_of(run);
     example.choice = making.choice;
     example.made_of = making.made_of;
     write_pictures(folder, example);
@@ -229,12 +252,12 @@ class Unfinished {
 
 bool leave_examples(const scenarios::DataRoot& data, const scenarios::Suite& suite, const fs::path& database,
                     const LeaveOptions& options) {
-  if (!suite.recordings.empty() || options.count == 0) return true;
+  if (!suite.recordings.empty() || options.count + options.failures == 0) return true;
   const fs::path folder = examples_folder(database);
   std::vector<Making> makings;
   {
     const scenarios::Results results(database, scenarios::Results::Mode::read_only);
-    makings = plan(data, suite, results, options.count);
+    makings = plan(data, suite, results, options);
   }
   if (makings.empty()) return true;
   std::vector<std::string> texts = keep_known(data, folder, suite, options, makings);

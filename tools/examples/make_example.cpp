@@ -74,8 +74,11 @@ void add_moving(const Scene& scene, Example& example) {
                                        1e-9 * static_cast<double>(span.end_ns - span.begin_ns));
 }
 
-void add_pictures(const scenarios::RunResult& run, const RunPaths& paths, Moving moving, Example& example) {
-  const Scene scene{&run.built.value(), &run.recording.sensors, &run.recording.truth, paths.paths};
+Scene scene_of(const scenarios::RunResult& run, const RunPaths& paths) {
+  return {&run.built.value(), &run.recording.sensors, &run.recording.truth, paths.paths};
+}
+
+void add_way(const scenarios::RunResult& run, const RunPaths& paths, int width, int height, Example& example) {
   ExamplePicture way{"scene",
                      "the robot along its way, with true and estimated paths",
                      "The robot at instants equally far apart along its way." + paths.left_out_text(),
@@ -83,8 +86,13 @@ void add_pictures(const scenarios::RunResult& run, const RunPaths& paths, Moving
                      {}};
   for (std::size_t i = 0; i < paths.methods.size(); ++i) way.legend.emplace_back(paths.methods[i], static_cast<int>(i));
   // spheres that stand close together hide their path
-  way.png = sim::png_bytes(scene_picture(scene, is_sphere(run) ? 3 : 8, 1280, 640));
+  way.png = sim::png_bytes(scene_picture(scene_of(run, paths), is_sphere(run) ? 3 : 8, width, height));
   example.pictures.push_back(std::move(way));
+}
+
+void add_pictures(const scenarios::RunResult& run, const RunPaths& paths, Moving moving, Example& example) {
+  const Scene scene = scene_of(run, paths);
+  add_way(run, paths, 1280, 640, example);
   example.pictures.push_back({"film",
                               "film strip of the same motion",
                               "The same motion close by, left to right and down.",
@@ -98,19 +106,25 @@ void add_plot(Plot plot, Example& example) {
   if (!plot.lines.empty()) example.plots.push_back(std::move(plot));
 }
 
-}  // namespace
-
-Example example_of(const scenarios::RunResult& run, Moving moving) {
+/// What every example says of its draw, and its replay.
+Example replayed(const scenarios::RunResult& run) {
   Example example;
   example.scenario = run.scenario;
   example.seed = run.seed;
   example.motion = is_sphere(run) ? "roll" : "tumble";
   example.recording_digest = run.recording_digest;
   example.digest_without_lidars = scenarios::digest_without_lidars(run.recording);
-  const RunPaths paths = paths_of(run);
-  add_pictures(run, paths, moving, example);
   example.replay_page = replay_page(replay_of_run(run));
   example.replay = replay_file(example);
+  return example;
+}
+
+}  // namespace
+
+Example example_of(const scenarios::RunResult& run, Moving moving) {
+  Example example = replayed(run);
+  const RunPaths paths = paths_of(run);
+  add_pictures(run, paths, moving, example);
   add_plot(rate_plot(run), example);
   add_plot(path_plot(run, paths), example);
   if (is_sphere(run)) {
@@ -119,6 +133,13 @@ Example example_of(const scenarios::RunResult& run, Moving moving) {
     add_plot(sphere_height_plot(run), example);
     add_plot(sphere_standstill_plot(run), example);
   }
+  return example;
+}
+
+Example failure_example_of(const scenarios::RunResult& run) {
+  Example example = replayed(run);
+  example.of_failure = true;
+  add_way(run, paths_of(run), 800, 400, example);
   return example;
 }
 

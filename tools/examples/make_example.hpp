@@ -17,4 +17,8 @@ enum class Moving { drawn, left_out };
 /// stay empty. Throws BadInput or std::runtime_error where nothing can be drawn.
 Example example_of(const scenarios::RunResult& run, Moving moving);
 
+/// The robot along its way, and the replay: what tells most of a draw on which methods failed, and is cheap enough for
+/// many of them. Otherwise as `example_of`.
+Example failure_example_of(const scenarios::RunResult& run);
+
 }  // namespace tumble::tools

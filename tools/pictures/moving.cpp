@@ -84,6 +84,7 @@ std::vector<std::uint8_t> moving_picture(const Scene& scene, const Span& span, c
     }
     view.look_at_W_m = followed(track, time_ns);
     animation.add(renderer.draw(view), i + 1 < frames ? frame_ms : frame_ms + kPause_ms);
+    if (options.drawn) options.drawn(i + 1);
   }
   return animation.bytes();
 }

@@ -3,6 +3,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <vector>
 
 #include "tools/pictures/paths.hpp"
@@ -17,6 +18,7 @@ struct MovingOptions {
   double speed = 0.5;  ///< seconds of the motion in a second that one watches
   int strobe = 6;      ///< robots that stand where it came by, at equal steps of the way; 0: none
   float quality = 60.0f;
+  std::function<void(std::size_t frames)> drawn;  ///< told how many frames are done after each; may be empty
 };
 
 /// The part of the moving span, `length_s` long, in which the body turns most; the whole of it where it is shorter.

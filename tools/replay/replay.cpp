@@ -79,6 +79,10 @@ void find_motion(const ReplayInput& input, Replay& replay) {
   }
 }
 
+bool has_way(const ReplayEstimate& given) {
+  return !given.estimate->poses.empty();
+}
+
 std::vector<ReplayActor> actors_of(const ReplayInput& input) {
   std::vector<ReplayActor> actors;
   if (input.truth != nullptr) {
@@ -89,10 +93,13 @@ std::vector<ReplayActor> actors_of(const ReplayInput& input) {
     truth.T_BB_given = true_from_given_body(*input.sensors, *input.truth);
     actors.push_back(std::move(truth));
   }
-  for (std::size_t i = 0; i < input.estimates.size(); ++i) {
+  // what has a way comes first, as in the pictures of the same run, in which nothing else is drawn
+  const auto with_way = static_cast<std::size_t>(std::ranges::count_if(input.estimates, has_way));
+  std::size_t way = 0, other = with_way;
+  for (const ReplayEstimate& given : input.estimates) {
     ReplayActor actor;
-    actor.name = input.estimates[i].name;
-    actor.colour = method_colour(i).hex;
+    actor.name = given.name;
+    actor.colour = method_colour(has_way(given) ? way++ : other++).hex;
     actors.push_back(std::move(actor));
   }
   return actors;

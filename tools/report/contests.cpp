@@ -57,12 +57,14 @@ ContestResult result_of(const MetricComparison& row) {
     out.better = badness(info, row.difference.value) < 0.0;
   }
   const double scale = info.sense == Sense::two_sided ? kNaN : 100.0 / std::abs(row.against_median);
-  const auto percent = [&](double value) { return std::isfinite(value * scale) ? value * scale : kNaN; };
-  // half of the baseline's runs have failed: a finite share of that is none
+  // half of the baseline's runs have failed: a share of that is none
   const bool known = std::isfinite(row.against_median) && row.against_median != 0.0;
-  out.percent = known ? percent(row.difference.value) : kNaN;
-  out.percent_low = known ? percent(row.difference.low) : kNaN;
-  out.percent_high = known ? percent(row.difference.high) : kNaN;
+  const double factor = known ? scale : kNaN;
+  out.percent = std::isfinite(row.difference.value) ? row.difference.value * factor : kNaN;
+  out.percent_low = row.difference.low * factor;
+  out.percent_high = row.difference.high * factor;
+  if (info.sense == Sense::lower && row.median > 0.0 && std::isfinite(row.against_median))
+    out.times = row.against_median / row.median;
   return out;
 }
 
@@ -132,12 +134,13 @@ std::string tally_text(const Tally& tally) {
 }
 
 std::string certainty_text(const ContestResult& result, std::size_t comparisons) {
-  const std::string side = result.better ? "better" : "worse";
   switch (result.certainty) {
     case Certainty::corrected:
-      return fmt::format("{}, also after correction for {} comparisons", side, comparisons);
+      return fmt::format("{} than chance explains, also after correction for {} comparisons",
+                         result.better ? "more" : "fewer", comparisons);
     case Certainty::interval:
-      return fmt::format("{} by its own interval; too few draws to stand among {} comparisons", side, comparisons);
+      return fmt::format("{} by its own interval; too few draws to stand among {} comparisons",
+                         result.better ? "better" : "worse", comparisons);
     case Certainty::open:
       break;
   }

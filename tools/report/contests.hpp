@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstddef>
+#include <limits>
 #include <string>
 #include <vector>
 
@@ -24,9 +25,11 @@ struct ContestResult {
   scenarios::MetricComparison row;
   Certainty certainty = Certainty::open;
   bool better = false;  ///< the difference is on the better side; where `open` it may be chance
-  /// The difference over the size of the baseline's median, with its interval [%]; NaN where one of them is not finite
-  /// or the median is 0.
+  /// The difference over the size of the baseline's median, with its interval [%]; NaN where the median is 0 or not
+  /// finite, or the difference is not. A bound may be infinite: of pairs of which one run failed.
   double percent = 0.0, percent_low = 0.0, percent_high = 0.0;
+  /// Of a metric where less is better the baseline's median over the method's; NaN where there is none.
+  double times = std::numeric_limits<double>::quiet_NaN();
   /// The interval alone decides nothing: it is that of the best of several methods, chosen by the same draws.
   bool won() const { return better && certainty == Certainty::corrected; }
   bool lost() const { return !better && certainty == Certainty::corrected; }

@@ -129,18 +129,22 @@ json x_axis(const Curve& curve, const std::string& title) {
     axis["tickvals"].push_back(x);
     axis["ticktext"].push_back(plot_text(label));
   }
+  // where Plotly turns them by itself it leaves out the last one
+  if (labels.size() > 4) axis["tickangle"] = -30;
   return axis;
 }
 
 std::string caption_of(const Curve& curve) {
   const std::string what = fmt::format("{}, {}: ", curve.scenario, to_string(curve.kind));
+  const std::string& doc = scenarios::metric_info(curve.axis).doc;
+  const std::string axis = curve.axis + (doc.empty() ? "" : " (" + doc + ")");
   switch (curve.source) {
     case Curve::Source::set:
-      return what + curve.metric + " against " + curve.axis + ", set to each value in every draw.";
+      return what + curve.metric + " against " + axis + ", set to each value in every draw.";
     case Curve::Source::samples:
-      return what + curve.metric + " over the clipped samples of a draw that lie in each bin of " + curve.axis + ".";
+      return what + curve.metric + " over the clipped samples of a draw that lie in each bin of " + axis + ".";
     case Curve::Source::draws:
-      return what + curve.metric + " against " + curve.axis + " of the draw, in bins of equally many draws.";
+      return what + curve.metric + " against " + axis + " of the draw, in bins of equally many draws.";
   }
   return what;
 }
@@ -189,15 +193,20 @@ std::string curves_html(std::span<const Curve> curves, std::vector<Figure>& figu
   std::string out =
       "<h3>Curves</h3>\n<p>Line: median over the draws; band: between the quartiles; dotted: the worst "
       "5 %. A run that failed ranks as the worst of all, so a line ends where half of the runs fail. Below: the share "
-      "of runs that did not end <i>ok</i> or whose map failed, with its 95 % Clopper–Pearson interval.</p>\n"
-      "<div class=\"pair\">";
-  for (const Curve& curve : curves) {
-    Figure figure = curve_figure(curve);
-    out += "<figure><div class=\"plot\" id=\"" + html::escaped(figure.id) + "\"></div><figcaption>" +
-           html::escaped(figure.caption) + "</figcaption></figure>\n";
-    figures.push_back(std::move(figure));
+      "of runs that did not end <i>ok</i> or whose map failed, with its 95 % Clopper–Pearson interval.</p>\n";
+  for (auto curve = curves.begin(); curve != curves.end();) {
+    const Curve& first = *curve;
+    out += fmt::format("<details{}><summary>{} · {}</summary><div class=\"pair\">",
+                       curve == curves.begin() ? " open" : "", html::escaped(first.scenario), to_string(first.kind));
+    for (; curve != curves.end() && curve->scenario == first.scenario && curve->kind == first.kind; ++curve) {
+      Figure figure = curve_figure(*curve);
+      out += "<figure><div class=\"plot\" id=\"" + html::escaped(figure.id) + "\"></div><figcaption>" +
+             html::escaped(figure.caption) + "</figcaption></figure>\n";
+      figures.push_back(std::move(figure));
+    }
+    out += "</div></details>\n";
   }
-  return out + "</div>\n";
+  return out;
 }
 
 }  // namespace tumble::tools

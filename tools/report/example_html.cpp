@@ -89,12 +89,22 @@ std::string moving_html(const ShownExample& shown) {
   return out + "</figcaption></figure>\n";
 }
 
+std::string failure_html(const ShownExample& shown) {
+  const Example& example = shown.example;
+  std::string out = fmt::format("<details id=\"{}\"><summary>picture</summary>\n",
+                                escaped(example_id(example.scenario, example.seed)));
+  if (!shown.of_these_results) out += "<p>It was made of other results than these.</p>\n";
+  for (const ExamplePicture& picture : example.pictures) out += picture_html(picture);
+  return out + "</details>\n";
+}
+
 std::string examples_html(const std::vector<ShownExample>& examples, std::vector<Figure>& figures) {
   std::string out;
   for (const ShownExample& shown : examples) {
     const Example& example = shown.example;
+    if (example.of_failure) continue;
     out += fmt::format("<details id=\"{}\"{}><summary>One {} of <code>{}</code>, seed {}</summary>\n",
-                       escaped(example_id(example.scenario, example.seed)), &shown == &examples.front() ? " open" : "",
+                       escaped(example_id(example.scenario, example.seed)), out.empty() ? " open" : "",
                        escaped(example.motion), escaped(example.scenario), example.seed) +
            example_html(shown, figures) + "</details>\n";
   }

@@ -15,6 +15,9 @@ std::string moving_html(const ShownExample& shown);
 /// Single draws with their pictures and plots, which are added to `figures`; the first open, the others folded.
 std::string examples_html(const std::vector<ShownExample>& examples, std::vector<Figure>& figures);
 
+/// The picture of a draw on which methods failed, folded; examples_html leaves it out.
+std::string failure_html(const ShownExample& shown);
+
 /// Of the element that shows a draw: what other parts of the page link to.
 std::string example_id(const std::string& scenario, std::uint64_t seed);
 

@@ -3,8 +3,12 @@
 
 #include <algorithm>
 #include <map>
+#include <system_error>
 
+#include "scenarios/summary/example_choice.hpp"
+#include "scenarios/sweep/keep.hpp"
 #include "scenarios/sweep/run_again.hpp"
+#include "scenarios/sweep/sweep_notes.hpp"
 
 namespace tumble::tools {
 
@@ -13,21 +17,7 @@ namespace {
 using scenarios::Kind;
 using scenarios::Outcome;
 using scenarios::Results;
-using scenarios::Section;
 using scenarios::Summary;
-
-using Draw = std::pair<std::string, std::uint64_t>;
-
-/// How many methods failed on each draw that need no truth; 0 where only others failed.
-std::map<Draw, std::size_t> failures_of(const Summary& summary) {
-  std::map<Draw, std::size_t> out;
-  for (const Section& section : summary.sections) {
-    for (const scenarios::MethodSummary& method : section.methods) {
-      for (const std::uint64_t seed : method.not_ok_seeds) out[{section.scenario, seed}] += method.needs_truth ? 0 : 1;
-    }
-  }
-  return out;
-}
 
 std::string named(Kind kind, const std::string& method) {
   return full_name(kind, method);
@@ -43,21 +33,24 @@ std::vector<FailedRun> failed_runs(const std::vector<Outcome>& rows, const std::
   return runs;
 }
 
+std::string replay_of_kept(const std::filesystem::path& folder, const scenarios::ExampleDraw& draw) {
+  std::error_code error;
+  if (!std::filesystem::is_regular_file(folder / "recording.h5", error)) return "";
+  return "tumble replay " + scenarios::shell_word((folder / "recording.h5").string()) + " " +
+         scenarios::shell_word((folder / "estimates").string()) + "/* -o " +
+         scenarios::shell_word(draw.scenario + "-" + std::to_string(draw.seed) + ".html");
+}
+
 }  // namespace
 
-FailedDraws failed_draws(const Results& results, const Summary& summary) {
-  const std::map<Draw, std::size_t> failures = failures_of(summary);
-  std::vector<std::pair<std::size_t, const Draw*>> ranked;
-  ranked.reserve(failures.size());
-  for (const auto& [draw, count] : failures) ranked.emplace_back(count, &draw);
-  std::sort(ranked.begin(), ranked.end(), [](const auto& a, const auto& b) {
-    return a.first != b.first ? a.first > b.first : *a.second < *b.second;
-  });
-  const std::size_t shown = std::min(ranked.size(), kFailedDrawsShown);
-  const auto notes = results.notes();
+FailedDraws failed_draws(const Results& results, const Summary& summary, const std::filesystem::path& database) {
+  const scenarios::KeptDraws kept(database);
+  std::vector<scenarios::FailedOn> ranked = scenarios::rank_failures(summary);
   FailedDraws out{ranked.size(), {}};
-  for (std::size_t i = 0; i < shown; ++i) {
-    FailedDraw draw{ranked[i].second->first, ranked[i].second->second, {}};
+  ranked.resize(std::min(ranked.size(), kFailedDrawsShown));
+  const auto notes = results.notes();
+  for (const auto& [at, methods] : ranked) {
+    FailedDraw draw{at.scenario, at.seed, {}, replay_of_kept(kept.folder_of({at.scenario, at.seed}), at)};
     draw.runs = failed_runs(results.outcomes_of(draw.scenario, draw.seed), notes);
     out.shown.push_back(std::move(draw));
   }

@@ -3,6 +3,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <filesystem>
 #include <string>
 #include <vector>
 
@@ -27,6 +28,7 @@ struct FailedDraw {
   std::string scenario;
   std::uint64_t seed = 0;
   std::vector<FailedRun> runs;
+  std::string replay_command;  ///< makes a replay of what `sweep --keep` has kept of it; "": nothing is kept
 };
 
 struct FailedDraws {
@@ -34,7 +36,9 @@ struct FailedDraws {
   std::vector<FailedDraw> shown;  ///< those on which most methods failed, at most `kFailedDrawsShown`
 };
 
-/// What failed, its messages read for the draws shown alone.
-FailedDraws failed_draws(const scenarios::Results& results, const scenarios::Summary& summary);
+/// What failed, its messages read for the draws shown alone; `database` is where the results stand, and beside it what
+/// is kept.
+FailedDraws failed_draws(const scenarios::Results& results, const scenarios::Summary& summary,
+                         const std::filesystem::path& database);
 
 }  // namespace tumble::tools

@@ -18,24 +18,35 @@ using html::escaped;
 /// So many failed draws stand open, the others are folded.
 constexpr std::size_t kOpenDraws = 8;
 
-std::string links_html(const PageContent& content, const FailedDraw& draw) {
+const ShownExample* example_of(const PageContent& content, const FailedDraw& draw) {
   const auto shown = std::find_if(content.examples.begin(), content.examples.end(), [&](const ShownExample& each) {
     return each.example.scenario == draw.scenario && each.example.seed == draw.seed;
   });
-  if (shown == content.examples.end()) return "";
-  std::string out =
-      " · <a href=\"#" + escaped(html::file_address(example_id(draw.scenario, draw.seed))) + "\">pictures</a>";
+  return shown == content.examples.end() ? nullptr : &*shown;
+}
+
+/// To what is shown of the draw among the motions, and to its replay.
+std::string links_html(const ShownExample* shown) {
+  if (shown == nullptr) return "";
+  std::string out;
+  if (!shown->example.of_failure)
+    out += " · <a href=\"#" + escaped(html::file_address(example_id(shown->example.scenario, shown->example.seed))) +
+           "\">pictures</a>";
   if (!shown->replay_address.empty()) out += " · <a href=\"" + escaped(shown->replay_address) + "\">replay</a>";
   return out;
 }
 
 std::string draw_html(const PageContent& content, const FailedDraw& draw) {
-  std::string out = fmt::format("<li><b>{}</b>, seed {}{}<ul class=\"runs\">", escaped(draw.scenario), draw.seed,
-                                links_html(content, draw));
+  const ShownExample* shown = example_of(content, draw);
+  std::string out = fmt::format("<li><b>{}</b>, seed {}{}", escaped(draw.scenario), draw.seed, links_html(shown));
+  if (shown != nullptr && shown->example.of_failure) out += failure_html(*shown);
+  out += "<ul class=\"runs\">";
   for (const FailedRun& run : draw.runs) {
     out += "<li><code>" + escaped(run.method) + "</code> " + escaped(run.status) +
            (run.message.empty() ? "" : ": " + escaped(run.message)) + "<pre>" + escaped(run.command) + "</pre></li>";
   }
+  if (!draw.replay_command.empty() && (shown == nullptr || shown->replay_address.empty()))
+    out += "<li>kept by the sweep: to see it<pre>" + escaped(draw.replay_command) + "</pre></li>";
   return out + "</ul></li>\n";
 }
 

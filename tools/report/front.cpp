@@ -56,6 +56,21 @@ std::string data_text(const PageContent& content) {
          "), and is judged by the truth or the reference that a recording holds.";
 }
 
+/// What the tasks are, in words.
+std::string tasks_text(const Summary& summary) {
+  using scenarios::Kind;
+  const std::pair<Kind, const char*> tasks[] = {{Kind::rate, "rate, how fast it turns"},
+                                                {Kind::attitude, "attitude, how it is turned"},
+                                                {Kind::position, "position, where it goes"},
+                                                {Kind::slam, "slam, where it goes and what is around it"}};
+  std::string out;
+  for (const auto& [kind, text] : tasks) {
+    const auto of_kind = [kind = kind](const Section& section) { return section.kind == kind; };
+    if (std::ranges::any_of(summary.sections, of_kind)) out += (out.empty() ? "" : "; ") + std::string(text);
+  }
+  return out;
+}
+
 /// Of those that need no truth.
 std::size_t method_count(const Summary& summary) {
   std::set<std::pair<scenarios::Kind, std::string>> names;
@@ -71,7 +86,8 @@ std::size_t method_count(const Summary& summary) {
 std::string bar_html(const ContestResult& result) {
   if (!std::isfinite(result.percent)) return "<span class=\"bar none\"></span>";
   const auto at = [](double percent) { return 50.0 + 0.5 * std::clamp(percent, -100.0, 100.0); };
-  const bool known = std::isfinite(result.percent_low) && std::isfinite(result.percent_high);
+  const bool known = !std::isnan(result.percent_low) && !std::isnan(result.percent_high) &&
+                     (std::isfinite(result.percent_low) || std::isfinite(result.percent_high));
   const double low = known ? at(result.percent_low) : 0.0, high = known ? at(result.percent_high) : 100.0;
   return fmt::format(
       "<span class=\"bar\" aria-hidden=\"true\"><i class=\"zero\"></i><i class=\"span{}\" style=\"left:{:.1f}%;"
@@ -89,6 +105,13 @@ std::string difference_text(const ContestResult& result) {
   return sign + value + " " + styled_interval(result.row.metric, own);
 }
 
+/// "0.894 rad/s, 37 times as much".
+std::string baseline_text(const ContestResult& result) {
+  const std::string value = styled_value(result.row.metric, result.row.against_median, true);
+  if (!(result.times >= 1.5)) return value;
+  return fmt::format("{}, {:.{}f} times as much", value, result.times, result.times < 10.0 ? 1 : 0);
+}
+
 std::string contest_html(const ContestResult& result, std::size_t comparisons) {
   const scenarios::MetricComparison& row = result.row;
   const std::string& metric = row.metric;
@@ -100,8 +123,16 @@ std::string contest_html(const ContestResult& result, std::size_t comparisons) {
       state, escaped(row.contest.scenario), to_string(row.contest.kind),
       escaped(scenarios::metric_info(metric).doc.empty() ? metric : scenarios::metric_info(metric).doc),
       escaped(row.contest.method), escaped(styled_value(metric, row.median, true)), escaped(row.contest.against),
-      escaped(styled_value(metric, row.against_median, true)), bar_html(result), escaped(difference_text(result)),
-      row.better, row.pairs, escaped(certainty_text(result, comparisons)));
+      escaped(baseline_text(result)), bar_html(result), escaped(difference_text(result)), row.better, row.pairs,
+      escaped(certainty_text(result, comparisons)));
+}
+
+/// What each method is; folded.
+std::string methods_html(const std::vector<Fact>& methods) {
+  if (methods.empty()) return "";
+  std::string out = "<details class=\"methods\"><summary>What the methods are</summary><dl class=\"facts\">";
+  for (const auto& [name, what] : methods) out += "<dt>" + escaped(name) + "</dt><dd>" + escaped(what) + "</dd>";
+  return out + "</dl></details>\n";
 }
 
 std::string contests_html(const std::vector<ContestResult>& results, std::size_t comparisons) {
@@ -120,11 +151,13 @@ std::string contests_html(const std::vector<ContestResult>& results, std::size_t
   return out + "</section>\n";
 }
 
-/// A draw of these results before others; then a picture that moves before one that stands.
+/// A typical draw before one that failed, one of these results before others, a picture that moves before one that
+/// stands.
 const ShownExample* example_to_show(const std::vector<ShownExample>& examples) {
   const ShownExample* best = nullptr;
   const auto rank = [](const ShownExample& shown) {
-    return 2 * static_cast<int>(shown.of_these_results) + static_cast<int>(!shown.example.moving.empty());
+    return 4 * static_cast<int>(!shown.example.of_failure) + 2 * static_cast<int>(shown.of_these_results) +
+           static_cast<int>(!shown.example.moving.empty());
   };
   for (const ShownExample& shown : examples) {
     if (shown.example.moving.empty() && shown.example.pictures.empty()) continue;
@@ -145,13 +178,14 @@ std::string front_html(const PageContent& content) {
     const std::size_t methods = method_count(content.summary);
     out += fmt::format(
         "<p class=\"lead\">Compared: {} from its sensors alone how a robot moved while it tumbles or rolls. {} A "
-        "contest is one task on one {}.</p>\n",
+        "contest is one task on one {}: {}.</p>\n",
         methods == 1 ? "1 method that tells" : fmt::format("{} methods that tell", methods),
-        escaped(data_text(content)), content.recorded ? "recording" : "scenario");
+        escaped(data_text(content)), content.recorded ? "recording" : "scenario", tasks_text(content.summary));
   }
   out += "</div>\n";
   if (shown != nullptr) out += moving_html(*shown);
-  return out + "</header>\n" + contests_html(results, content.comparison.metrics.size());
+  return out + "</header>\n" + contests_html(results, content.comparison.metrics.size()) +
+         methods_html(content.methods);
 }
 
 }  // namespace tumble::tools

@@ -45,6 +45,7 @@ struct PageContent {
   std::vector<scenarios::Sensitivity> sensitivity;
   std::string sensitivity_note;  ///< of which draws it is, or why there is none
   std::vector<scenarios::Certificate> certificates;
+  std::vector<Fact> methods;          ///< each, and what it is
   std::vector<Fact> versions;         ///< suite, draws, builds, data, date
   std::vector<Fact> commands;         ///< what it does, and the command that does it again
   std::vector<std::string> warnings;  ///< what is missing, and why

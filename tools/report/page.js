@@ -7,7 +7,7 @@
   const colour = (name) => getComputedStyle(document.documentElement).getPropertyValue(name).trim();
   const drawn = new Set();
 
-  function themed(layout, width) {
+  function themed(layout, width, height) {
     const axis = { gridcolor: colour('--rule'), linecolor: colour('--rule'), zerolinecolor: colour('--rule'), automargin: true };
     const narrow = width < 520;
     const base = {
@@ -19,14 +19,17 @@
     };
     const axes = { xaxis: {}, yaxis: {} };
     for (const name of Object.keys(layout)) if (/^[xy]axis/.test(name)) axes[name] = layout[name];
-    for (const name of Object.keys(axes)) axes[name] = Object.assign({}, axis, axes[name]);
+    // between decades Plotly writes the digit alone ("5" for 0.05), which nobody reads as that
+    const logarithmic = (name) => ({ tickformat: '~g', nticks: Math.max(3, Math.round((name[0] === 'y' ? height : width) / 90)) });
+    for (const name of Object.keys(axes))
+      axes[name] = Object.assign({}, axis, axes[name].type === 'log' ? logarithmic(name) : {}, axes[name]);
     return Object.assign(base, layout, axes);
   }
 
   function draw(element) {
     const figure = figures.get(element.id);
     drawn.add(element);
-    const layout = Object.assign(themed(figure.layout, element.clientWidth), { width: element.clientWidth, height: element.clientHeight });
+    const layout = Object.assign(themed(figure.layout, element.clientWidth, element.clientHeight), { width: element.clientWidth, height: element.clientHeight });
     Plotly.react(element, figure.data, layout, { displaylogo: false, displayModeBar: false });
     document.documentElement.dataset.drawn = String(drawn.size);
   }

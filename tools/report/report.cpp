@@ -44,6 +44,20 @@ std::vector<Fact> versions(const scenarios::Results& results, const Summary& sum
   return out;
 }
 
+/// What each method of the results is.
+std::vector<Fact> methods_told(const Summary& summary) {
+  std::vector<Fact> out;
+  for (const scenarios::Section& section : summary.sections) {
+    for (const scenarios::MethodSummary& method : section.methods) {
+      Fact fact(full_name(section.kind, method.method) + (method.method == section.baseline ? " (baseline)" : ""),
+                method.what.empty() ? "Described by a file." : method.what);
+      if (std::ranges::find(out, fact) == out.end()) out.push_back(std::move(fact));
+    }
+  }
+  std::ranges::stable_sort(out, {}, &Fact::first);
+  return out;
+}
+
 /// Whether a sweep by this build, over the data that are found here, would go on with them.
 bool are_of_here(const scenarios::Results& results, const ReportOptions& options) {
   const std::string made_by = results.note("build"), made_of = results.note("data");
@@ -59,7 +73,7 @@ std::vector<Fact> commands(const scenarios::Results& results, const ReportOption
     out.emplace_back("The results", "tumble sweep " + sweep + " --db " + database);
   if (!options.page.empty())
     out.emplace_back("This page", "tumble report " + database + " -o " + scenarios::shell_word(options.page.string()));
-  out.emplace_back("Paired differences, as tables (`--metric` for others)", "tumble compare " + database);
+  out.emplace_back("Paired differences, as tables (with --metric NAME of other metrics)", "tumble compare " + database);
   out.emplace_back("What breaks a method, every number", "tumble sensitivity " + database + " --all");
   return out;
 }
@@ -154,10 +168,11 @@ PageContent report_content(ReportInput input, const ReportOptions& options) {
   content.errors = errors_of_all_draws(summary);
   content.cost = cost_figure(summary);
   content.curves = std::move(input.curves);
-  content.failed = failed_draws(results, summary);
+  content.failed = failed_draws(results, summary, options.database);
   content.rejected = results.rejected();
   content.sensitivity = std::move(input.sensitivity);
   content.sensitivity_note = std::move(input.sensitivity_note);
+  content.methods = methods_told(summary);
   content.versions = versions(results, summary, options);
   content.commands = commands(results, options);
   content.certificates = results.certificates();

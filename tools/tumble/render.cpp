@@ -9,12 +9,14 @@
 #include "scenarios/draw/scenario.hpp"
 #include "scenarios/errors.hpp"
 #include "scenarios/methods/estimate_file.hpp"
+#include "scenarios/processes/process.hpp"
 #include "scenarios/recordings/recording_file.hpp"
 #include "scenarios/recordings/replace_file.hpp"
 #include "tools/pictures/map_pictures.hpp"
 #include "tools/pictures/moving.hpp"
 #include "tools/pictures/pictures.hpp"
 #include "tools/tumble/arguments.hpp"
+#include "tools/tumble/progress.hpp"
 #include "tools/tumble/recording_info.hpp"
 #include "tools/tumble/verbs.hpp"
 
@@ -114,7 +116,10 @@ int render_maps(const Session& session, const Options& options, const scenarios:
 /// Frames of a video: minutes of rendering, and of watching.
 constexpr std::size_t kFramesMax = 3000;
 
-std::vector<std::uint8_t> video_of(const Options& options, const Scene& scene) {
+/// A line every so often, of what takes minutes.
+constexpr double kSayEvery_s = 10.0;
+
+std::vector<std::uint8_t> video_of(const Session& session, const Options& options, const Scene& scene) {
   MovingOptions moving;
   moving.width = options.width;
   moving.height = options.height;
@@ -127,6 +132,15 @@ std::vector<std::uint8_t> video_of(const Options& options, const Scene& scene) {
     throw BadInput(
         fmt::format("the video would have {} frames, must be at most {}: take a higher --speed or a lower --fps",
                     frames, kFramesMax));
+  const double began_s = scenarios::now_s();
+  double said_s = began_s;
+  moving.drawn = [&](std::size_t done) {
+    const double now_s = scenarios::now_s();
+    if (now_s - said_s < kSayEvery_s) return;
+    said_s = now_s;
+    const double left_s = (now_s - began_s) * static_cast<double>(frames - done) / static_cast<double>(done);
+    session.note(fmt::format("frame {} of {}  left {}", done, frames, duration_text(left_s)));
+  };
   return moving_picture(scene, span, moving);
 }
 
@@ -138,9 +152,9 @@ void require_video(const Options& options) {
     throw BadInput("--video writes a WebP: " + options.output.string() + " must end in .webp");
 }
 
-void write_picture(const Options& options, const Scene& scene) {
+void write_picture(const Session& session, const Options& options, const Scene& scene) {
   if (options.video) {
-    const std::vector<std::uint8_t> bytes = video_of(options, scene);
+    const std::vector<std::uint8_t> bytes = video_of(session, options, scene);
     scenarios::replace_file(options.output, std::as_bytes(std::span(bytes)));
   } else if (options.film > 0) {
     save_picture(options.output, film_picture(scene, options.film, options.columns, options.width, options.height));
@@ -166,7 +180,7 @@ int render(const Session& session, const Options& options) {
     load_draw(data, options, content);
   }
   content.scene.built = &content.built.value();
-  write_picture(options, content.scene);
+  write_picture(session, options, content.scene);
   Table legend("", {"path", "colour"});
   nlohmann::json document = {{"picture", options.output.string()}, {"paths", nlohmann::json::array()}};
   const auto add = [&](const std::string& name, Colour colour) {

@@ -27,14 +27,14 @@ namespace tumble::tools {
 namespace {
 
 /// Unless told: each example costs a draw run once more and its pictures.
-constexpr std::uint64_t kExamplesMax = 3, kDrawsPerExample = 8;
+constexpr std::uint64_t kExamplesMax = 3, kDrawsPerExample = 8, kFailuresMax = 8, kDrawsPerFailure = 4;
 
 struct Options {
   std::string suite;
   std::string seeds, shard;
   std::vector<std::string> scenarios, methods, again;
   int jobs = available_processors();
-  std::optional<std::size_t> examples;  ///< as many as the sweep can bear, where it is not told
+  std::optional<std::size_t> examples, failures;  ///< as many as the sweep can bear, where it is not told
   std::filesystem::path database, recordings;
   double memory_mib = scenarios::kWorkerMemoryMib;
   std::string keep = "none";
@@ -117,6 +117,9 @@ bool leave_examples(const Session& session, const scenarios::DataRoot& data, con
   if (!options.shard.empty()) return true;
   LeaveOptions leave;
   leave.count = options.examples.value_or(std::min(kExamplesMax, draws / kDrawsPerExample));
+  // who wants no pictures wants none of failures either
+  leave.failures = options.failures.value_or(
+      leave.count == 0 ? 0 : std::clamp(draws / kDrawsPerFailure, std::uint64_t{1}, kFailuresMax));
   leave.jobs = options.jobs;
   leave.stop = &stop;
   leave.note = [&](std::string_view line) { session.note(line); };
@@ -262,8 +265,12 @@ Action declare_sweep(VerbOptions& verb, const Session& session) {
       .separated_by(',')
       .one_at_a_time();
   verb.add("--examples", options->examples,
-           "draws run again at the end, and the one on which most methods failed, their pictures and plots left in "
-           "FILE.db.files for 'report'; not of a shard [one for each 8 draws of the sweep, 3 at most]")
+           "typical draws run again at the end, their pictures, plots and replays left in FILE.db.files for 'report'; "
+           "not of a shard [one for each 8 draws of the sweep, 3 at most]")
+      .whole(0, 64);
+  verb.add("--failures", options->failures,
+           "draws that failed, those on which most methods did, run again likewise: a picture and a replay [one for "
+           "each 4 draws of the sweep, 8 at most; none with --examples 0]")
       .whole(0, 64);
   verb.add("--memory", options->memory_mib,
            "MiB of data that a worker, and each method that it runs, may hold; one that needs more is 'killed'")

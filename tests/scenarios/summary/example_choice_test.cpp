@@ -68,6 +68,10 @@ TEST(FailureChoice, IsTheDrawOnWhichMostMethodsFailed) {
   EXPECT_EQ(choose_failures(summary, suite, 2), (Draws{{"scree", 4}, {"hill", 3}})) << "three failed on the one";
   EXPECT_EQ(choose_failures(summary, suite, 1), (Draws{{"scree", 4}}));
   EXPECT_TRUE(choose_failures(summary, suite, 0).empty());
+  const Draws all = {{"scree", 4}, {"hill", 3}, {"hill", 2}, {"scree", 1}};
+  EXPECT_EQ(choose_failures(summary, suite, 9), all) << "also several of a scenario, of equals by name and seed";
+  const std::vector<ExampleCandidate> hills = {{"hill", "rig"}};
+  EXPECT_EQ(choose_failures(summary, hills, 9), (Draws{{"hill", 3}, {"hill", 2}}));
 }
 
 TEST(FailureChoice, IsNoneWhereNothingFailedOrOnlyWhatKnowsTheTruth) {
