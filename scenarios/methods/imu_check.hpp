@@ -27,8 +27,8 @@ Status check_imus(const sim::Sensors& sensors, const MergedImus& imus, Estimate&
 void check_rates(const sim::Sensors& sensors, std::span<const ImuSample> samples, Estimate& estimate);
 
 /// Whether `rates`, one for each sample, those of an estimate of rates or what an attitude was turned by, lead gravity
-/// from one rest to the next (RestGravity): `rest_gravity_missed_rad` with its deviation, `rest_velocity_share` with its
-/// bound, and `imu_implausible`. O(N).
+/// from one rest to the next (RestGravity): `rest_gravity_missed_rad` with its deviation, `rest_velocity_share` with
+/// its bound, and `imu_implausible`. O(N).
 Status check_turning_between_rests(const sim::Sensors& sensors, std::span<const ImuSample> samples,
                                    std::span<const RateState> rates, Estimate& estimate);
 
