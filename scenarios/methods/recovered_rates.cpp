@@ -16,12 +16,24 @@ namespace tumble::scenarios {
 
 namespace {
 
+/// Whether a reading of the gyro stands beside what rate/tumble says of it.
+using Stands = bool (*)(const RateState&);
+
+bool does_not_clip(const RateState& rate) {
+  return rate.clipped_axes == 0;
+}
+
+/// And nothing makes it doubtful either, as the level tops of a motion do that are no clear rail.
+bool is_read(const RateState& rate) {
+  return does_not_clip(rate) && rate.source == RateSource::measured;
+}
+
 /// The smoother's rates are without the gyro's bias: the mean difference of the samples that are read.
-Eigen::Vector3d bias_rad_s(const std::vector<ImuSample>& samples, const std::vector<RateState>& rates) {
+Eigen::Vector3d bias_rad_s(const std::vector<ImuSample>& samples, const std::vector<RateState>& rates, Stands stands) {
   double free = 0.0;
   Eigen::Vector3d bias = Eigen::Vector3d::Zero();
   for (std::size_t k = 0; k < samples.size(); ++k) {
-    if (rates[k].clipped_axes != 0) continue;
+    if (!stands(rates[k])) continue;
     free += 1.0;
     bias += (samples[k].angular_velocity_rad_s - rates[k].w_WI_I_rad_s - bias) / free;
   }
@@ -40,7 +52,7 @@ struct Recovery {
   }
 };
 
-Recovery recovery_of(const sim::Sensors& sensors, const std::vector<ImuSample>& samples) {
+Recovery recovery_of(const sim::Sensors& sensors, const std::vector<ImuSample>& samples, Stands stands) {
   Recovery out;
   const std::vector<ClipSigns> signs = find_clipped(sensors.imus.front(), samples).signs;
   const auto clips = [](const ClipSigns& sign) { return sign.gyro != std::array<std::int8_t, 3>{}; };
@@ -51,12 +63,12 @@ Recovery recovery_of(const sim::Sensors& sensors, const std::vector<ImuSample>& 
   if (!tumble_rates(sensors, samples, params, rates, of_rates).ok()) return out;
   const auto carried = of_rates.find("regime_carried_clipped_max");
   if (carried != of_rates.end()) out.carried = carried->second;
-  out.bias_rad_s = bias_rad_s(samples, rates);
+  out.bias_rad_s = bias_rad_s(samples, rates, stands);
   out.rates = std::move(rates);
   return out;
 }
 
-RecoveredRates recover(const Recovery& recovery, std::vector<ImuSample>& samples,
+RecoveredRates recover(const Recovery& recovery, Stands stands, std::vector<ImuSample>& samples,
                        std::map<std::string, double>& health) {
   RecoveredRates out;
   out.covariances_rad2_s2.assign(samples.size(), Eigen::Matrix3d::Zero());
@@ -66,7 +78,7 @@ RecoveredRates recover(const Recovery& recovery, std::vector<ImuSample>& samples
   double recovered = 0.0;
   for (std::size_t k = 0; k < samples.size(); ++k) {
     out.sources[k] = recovery.rates[k].source;
-    if (recovery.rates[k].clipped_axes == 0) continue;
+    if (stands(recovery.rates[k])) continue;
     recovery.put(k, samples, out.covariances_rad2_s2);
     recovered += 1.0;
   }
@@ -78,16 +90,16 @@ RecoveredRates recover(const Recovery& recovery, std::vector<ImuSample>& samples
 
 RecoveredRates recover_clipped(const sim::Sensors& sensors, std::vector<ImuSample>& samples,
                                std::map<std::string, double>& health) {
-  return recover(recovery_of(sensors, samples), samples, health);
+  return recover(recovery_of(sensors, samples, does_not_clip), does_not_clip, samples, health);
 }
 
 RecoveredRates recover_in_time(const sim::Sensors& sensors, std::vector<ImuSample>& samples,
                                std::map<std::string, double>& health) {
-  const Recovery recovery = recovery_of(sensors, samples);
+  const Recovery recovery = recovery_of(sensors, samples, is_read);
   std::vector<std::uint8_t> hidden(samples.size(), 0);
-  for (std::size_t k = 0; k < recovery.rates.size(); ++k) hidden[k] = recovery.rates[k].clipped_axes;
+  for (std::size_t k = 0; k < recovery.rates.size(); ++k) hidden[k] = is_read(recovery.rates[k]) ? 0 : 1;
   const std::vector<std::optional<HeldRate>> told = rates_between_readings(samples, hidden);
-  RecoveredRates out = recover(recovery, samples, health);
+  RecoveredRates out = recover(recovery, is_read, samples, health);
   for (std::size_t k = 0; k < told.size(); ++k) {
     if (told[k]) {
       samples[k].angular_velocity_rad_s = told[k]->rate_rad_s;

@@ -27,8 +27,9 @@ struct RecoveredRates {
 RecoveredRates recover_clipped(const sim::Sensors& sensors, std::vector<ImuSample>& samples,
                                std::map<std::string, double>& health);
 
-/// The same, and where the gyro is slower than its log, so that its readings tell of what was, what they tell of each
-/// sample's own time; beside those that clip, all of it is rate/tumble's.
+/// The same of readings that it doubts as well (a smoother that bounds the motion by itself errs less with those as
+/// they stand), and where the gyro is slower than its log, so that its readings tell of what was, what they tell of
+/// each sample's own time; beside those that clip, all of it is rate/tumble's.
 RecoveredRates recover_in_time(const sim::Sensors& sensors, std::vector<ImuSample>& samples,
                                std::map<std::string, double>& health);
 
