@@ -2,11 +2,9 @@
 #include "scenarios/methods/command_run.hpp"
 
 #include <fmt/format.h>
-#include <stdlib.h>
 #include <xxhash.h>
 
 #include <algorithm>
-#include <cerrno>
 #include <system_error>
 
 #include "scenarios/draw/strict_yaml.hpp"
@@ -21,19 +19,6 @@ constexpr double kVersionLimit_s = 30.0;
 constexpr std::size_t kFirstLineMax = 120;
 
 }  // namespace
-
-ScratchFolder::ScratchFolder() {
-  const SignalsWait until_listed;
-  std::string name = (std::filesystem::temp_directory_path() / "tumble-method-XXXXXX").string();
-  if (mkdtemp(name.data()) == nullptr) throw std::system_error(errno, std::generic_category(), name);
-  path_ = name;
-  on_signal_.emplace(path_, Unfinished::Kind::folder);
-}
-
-ScratchFolder::~ScratchFolder() {
-  std::error_code ignored;
-  std::filesystem::remove_all(path_, ignored);
-}
 
 std::string with_last_words(const std::string& what, const CommandEnd& end) {
   return what + (end.last_words.empty() ? "" : "; it said: " + end.last_words);

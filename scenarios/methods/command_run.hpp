@@ -1,30 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <filesystem>
-#include <optional>
 #include <string>
 
 #include "scenarios/processes/command.hpp"
-#include "scenarios/recordings/unfinished.hpp"
 
 /// What runs of somebody else's program share, a command or a function of Python.
 namespace tumble::scenarios {
-
-/// A folder for one run, gone with it, also when a signal ends the program. Throws std::system_error when there is no
-/// room.
-class ScratchFolder {
- public:
-  ScratchFolder();
-  ~ScratchFolder();
-  ScratchFolder(const ScratchFolder&) = delete;
-  ScratchFolder& operator=(const ScratchFolder&) = delete;
-  const std::filesystem::path& path() const { return path_; }
-
- private:
-  std::filesystem::path path_;
-  std::optional<Unfinished> on_signal_;
-};
 
 /// `what`, and the end of what the program said.
 std::string with_last_words(const std::string& what, const CommandEnd& end);

@@ -18,6 +18,7 @@
 #include "scenarios/recordings/export.hpp"
 #include "scenarios/recordings/recording_file.hpp"
 #include "scenarios/recordings/replace_file.hpp"
+#include "scenarios/recordings/scratch_folder.hpp"
 
 namespace tumble::scenarios {
 
@@ -99,7 +100,7 @@ CommandEnd provide_and_run(const ExternalDescription& description, const sim::Se
 }
 
 Estimate run_its_command(const ExternalDescription& description, const sim::Sensors& sensors) {
-  const ScratchFolder scratch;
+  const ScratchFolder scratch("method");
   const std::map<std::string, std::string> values = places(description, scratch.path());
   const CommandEnd end = provide_and_run(description, sensors, values, scratch.path());
   require_done(end);
@@ -120,7 +121,7 @@ std::string version_of(const ExternalDescription& description) {
   const std::string own = "description " + description.digest;
   if (!description.python.empty()) return python_version(description) + "; " + own;
   if (description.version.empty()) return own;
-  const ScratchFolder scratch;
+  const ScratchFolder scratch("method");
   const Command command =
       command_of(description, description.version, places(description, scratch.path()), scratch.path());
   return version_said(command, description.file.string() + ": its version command: ") + "; " + own;

@@ -12,6 +12,7 @@
 #include "scenarios/methods/external_method.hpp"
 #include "scenarios/methods/python_exchange.hpp"
 #include "scenarios/methods/python_runner.hpp"
+#include "scenarios/recordings/scratch_folder.hpp"
 
 namespace tumble::scenarios {
 
@@ -48,7 +49,7 @@ Command interpreter(const ExternalDescription& description, const ScratchFolder&
 Estimate call_python(const ExternalDescription& description, const sim::Sensors& sensors) {
   SharedMemory given("tumble-sensors"), answer("tumble-answer");
   write_sensors(sensors, given);
-  const ScratchFolder scratch;
+  const ScratchFolder scratch("method");
   Command command =
       interpreter(description, scratch,
                   {"-c", kPythonRunner, description.python.string(), description.function, to_string(description.kind),
@@ -60,7 +61,7 @@ Estimate call_python(const ExternalDescription& description, const sim::Sensors&
 }
 
 std::string python_version(const ExternalDescription& description) {
-  const ScratchFolder scratch;
+  const ScratchFolder scratch("method");
   const std::string said =
       version_said(interpreter(description, scratch, {"-c", kVersions}), description.file.string() + ": ");
   const std::string text = read_text_file(description.python);

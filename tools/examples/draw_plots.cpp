@@ -34,16 +34,15 @@ int most_clipped_axis(const scenarios::RunResult& run) {
   return -1;
 }
 
-PlotLine true_rate(const sim::Recording& recording, int axis, const Span& span) {
-  const sim::ImuRecord& imu = recording.sensors.imus.front();
-  const sim::ImuTruth& truth = recording.truth.imus.front();
+PlotLine sampled_rate(const std::string& name, double width, const std::vector<TimeNs>& time_ns,
+                      const std::vector<Eigen::Vector3d>& rate_rad_s, int axis, const Span& span) {
   PlotLine line;
-  line.name = "truth";
-  line.width = 3.5;
-  for (std::size_t k = 0; k < imu.time_ns.size() && k < truth.rate_rad_s.size(); ++k) {
-    if (imu.time_ns[k] < span.begin_ns || imu.time_ns[k] > span.end_ns) continue;
-    line.x.push_back(significant(seconds(imu.time_ns[k])));
-    line.y.push_back(significant(truth.rate_rad_s[k][axis]));
+  line.name = name;
+  line.width = width;
+  for (std::size_t k = 0; k < time_ns.size() && k < rate_rad_s.size(); ++k) {
+    if (time_ns[k] < span.begin_ns || time_ns[k] > span.end_ns) continue;
+    line.x.push_back(significant(seconds(time_ns[k])));
+    line.y.push_back(significant(rate_rad_s[k][axis]));
   }
   return line;
 }
@@ -58,18 +57,6 @@ PlotLine estimated_rate(const scenarios::MethodInfo& info, const std::vector<Rat
     if (rate.time_ns < span.begin_ns || rate.time_ns > span.end_ns) continue;
     line.x.push_back(significant(seconds(rate.time_ns)));
     line.y.push_back(significant(rate.w_WI_I_rad_s[axis]));
-  }
-  return line;
-}
-
-PlotLine gyro_line(const sim::ImuRecord& imu, int axis, const Span& span) {
-  PlotLine line;
-  line.name = "what the gyro says";
-  line.width = 1.6;
-  for (std::size_t k = 0; k < imu.time_ns.size() && k < imu.gyro_rad_s.size(); ++k) {
-    if (imu.time_ns[k] < span.begin_ns || imu.time_ns[k] > span.end_ns) continue;
-    line.x.push_back(significant(seconds(imu.time_ns[k])));
-    line.y.push_back(significant(imu.gyro_rad_s[k][axis]));
   }
   return line;
 }
@@ -138,7 +125,9 @@ Plot rate_plot(const scenarios::RunResult& run) {
   const int axis = most_clipped_axis(run);
   if (axis < 0 || run.recording.truth.imus.empty()) return plot;
   const Span span = moving_span(run.recording.truth, 0.3);
-  plot.lines.push_back(true_rate(run.recording, axis, span));
+  const sim::ImuRecord& imu = run.recording.sensors.imus.front();
+  plot.lines.push_back(
+      sampled_rate("truth", 3.5, imu.time_ns, run.recording.truth.imus.front().rate_rad_s, axis, span));
   int colour = 0;
   bool gyro = false;
   for (std::size_t i = 0; i < run.methods.size(); ++i) {
@@ -149,7 +138,7 @@ Plot rate_plot(const scenarios::RunResult& run) {
   }
   // what it is all about, also where no method of the run says it
   if (!gyro) {
-    plot.lines.push_back(gyro_line(run.recording.sensors.imus.front(), axis, span));
+    plot.lines.push_back(sampled_rate("what the gyro says", 1.6, imu.time_ns, imu.gyro_rad_s, axis, span));
     plot.lines.back().colour = colour;
   }
   plot.caption =

@@ -1,20 +1,18 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "scenarios/recordings/bags/packed_bag.hpp"
 
-#include <stdlib.h>
 #include <zstd.h>
 
 #include <algorithm>
 #include <fstream>
 #include <new>
-#include <optional>
 #include <string>
 #include <string_view>
 #include <utility>
 
 #include "scenarios/errors.hpp"
 #include "scenarios/recordings/bags/packed.hpp"
-#include "scenarios/recordings/unfinished.hpp"
+#include "scenarios/recordings/scratch_folder.hpp"
 
 namespace tumble::scenarios {
 
@@ -27,28 +25,6 @@ constexpr std::uint64_t most_of(std::uint64_t packed_bytes) {
   constexpr std::uint64_t kAlways = 64u << 20, kRatioMax = 200;
   return kAlways + kRatioMax * packed_bytes;
 }
-
-class TemporaryFolder {
- public:
-  TemporaryFolder() {
-    const SignalsWait until_listed;
-    std::string name = (std::filesystem::temp_directory_path() / "tumble-bag-XXXXXX").string();
-    if (mkdtemp(name.data()) == nullptr) throw BadInput(name + ": cannot be made, to unpack a bag into");
-    path_ = name;
-    on_signal_.emplace(path_, Unfinished::Kind::folder);
-  }
-  ~TemporaryFolder() {
-    std::error_code ignored;
-    std::filesystem::remove_all(path_, ignored);
-  }
-  TemporaryFolder(const TemporaryFolder&) = delete;
-  TemporaryFolder& operator=(const TemporaryFolder&) = delete;
-  const std::filesystem::path& place() const { return path_; }
-
- private:
-  std::filesystem::path path_;
-  std::optional<Unfinished> on_signal_;
-};
 
 /// What may come out of a file that is to be unpacked into a folder.
 std::uint64_t most_bytes(const path& file, const path& folder) {
@@ -95,7 +71,7 @@ class UnpackedFiles : public BagReader {
     std::vector<path> unpacked;
     for (const path& file : files) {
       if (!std::filesystem::is_regular_file(file)) throw BadInput(file.string() + ": no such file");
-      unpacked.push_back(folder_.place() / file.stem());
+      unpacked.push_back(folder_.path() / file.stem());
       unpack(file, unpacked.back());
     }
     bag_ = open(unpacked);
@@ -105,7 +81,7 @@ class UnpackedFiles : public BagReader {
   bool cdr(const std::string& topic) const override { return bag_->cdr(topic); }
 
  private:
-  TemporaryFolder folder_;
+  ScratchFolder folder_{"bag"};
   std::unique_ptr<BagReader> bag_;  ///< gone before its files are
 };
 

@@ -1,0 +1,27 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <string>
+
+#include "scenarios/recordings/unfinished.hpp"
+
+namespace tumble::scenarios {
+
+/// A folder among the temporary ones, gone with it, also when a signal ends the program.
+class ScratchFolder {
+ public:
+  /// `use` stands in its name. Throws std::filesystem::filesystem_error when it cannot be made.
+  explicit ScratchFolder(const std::string& use);
+  ~ScratchFolder();
+  ScratchFolder(const ScratchFolder&) = delete;
+  ScratchFolder& operator=(const ScratchFolder&) = delete;
+  const std::filesystem::path& path() const { return path_; }
+
+ private:
+  std::filesystem::path path_;
+  std::optional<Unfinished> on_signal_;
+};
+
+}  // namespace tumble::scenarios
