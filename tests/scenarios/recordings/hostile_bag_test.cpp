@@ -1,0 +1,234 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Bags as others pack them, that are damaged or that are none.
+#include <SQLiteCpp/SQLiteCpp.h>
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <lz4frame.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "scenarios/recordings/bags/bag.hpp"
+#include "scenarios/recordings/bags/bag_storage.hpp"
+#include "scenarios/recordings/bags/ros1_chunks.hpp"
+#include "scenarios/recordings/bags/ros2_definitions.hpp"
+#include "scenarios/recordings/export.hpp"
+#include "scenarios/recordings/fixture_recording.hpp"
+
+namespace tumble::scenarios {
+namespace {
+
+using testing::HasSubstr;
+
+using HostileBag = fixture::Folder;
+
+sim::Sensors small_sensors() {
+  sim::Recording recording = fixture::recording();
+  for (std::uint32_t& offset : recording.sensors.lidars[0].offset_ns) offset *= 600;
+  recording.sensors.imus.resize(1);
+  recording.sensors.imus[0].time_ns.resize(3);
+  for (auto* rows : {&recording.sensors.imus[0].gyro_rad_s, &recording.sensors.imus[0].accel_m_s2}) {
+    rows->assign(3, Eigen::Vector3d(0, 0, 9.8));
+  }
+  return recording.sensors;
+}
+
+/// A chunk as others pack it: blocks that lean on the ones before, checksums, the size of the content.
+void pack_lz4(Ros1Chunk& chunk) {
+  LZ4F_preferences_t how{};
+  how.frameInfo.blockMode = LZ4F_blockLinked;
+  how.frameInfo.blockSizeID = LZ4F_max64KB;
+  how.frameInfo.contentChecksumFlag = LZ4F_contentChecksumEnabled;
+  how.frameInfo.contentSize = chunk.data.size();
+  std::string packed(LZ4F_compressFrameBound(chunk.data.size(), &how), '\0');
+  packed.resize(LZ4F_compressFrame(packed.data(), packed.size(), chunk.data.data(), chunk.data.size(), &how));
+  chunk.data = packed;
+  chunk.compression = "lz4";
+}
+
+class Lz4Bag : public fixture::Folder {
+ protected:
+  Lz4Bag() {
+    // a chunk of several blocks: one alone leans on none
+    sim::ImuRecord& imu = sensors_.imus[0];
+    imu.time_ns.clear(), imu.gyro_rad_s.clear(), imu.accel_m_s2.clear();
+    for (int k = 0; k < 600; ++k) {
+      imu.time_ns.push_back(2'500'000LL * k);
+      imu.gyro_rad_s.emplace_back(std::sin(0.37 * k), std::cos(1.1 * k), 0.2);
+      imu.accel_m_s2.emplace_back(0.3 * std::sin(k), 0.1, 9.8);
+    }
+    imu.clip_flags.assign(imu.time_ns.size(), 0);
+    export_ros1_bag(sensors_, {}, folder_ / "plain.bag");
+    copy_ros1_bag(folder_ / "plain.bag", folder_ / "lz4.bag", pack_lz4);
+  }
+  std::string complaint_of(const std::string& bytes) {
+    fixture::put(folder_ / "b.bag", bytes);
+    return fixture::complaint([&] { import_ros1_bag(folder_ / "b.bag", {}); });
+  }
+  sim::Sensors sensors_ = small_sensors();
+};
+
+TEST_F(Lz4Bag, IsReadLikeAPlainOne) {
+  EXPECT_TRUE(has_lz4_chunks(folder_ / "lz4.bag"));
+  EXPECT_FALSE(has_lz4_chunks(folder_ / "plain.bag"));
+  // what room is asked for: the chunks' own lengths differ by the headers' alone
+  EXPECT_NEAR(static_cast<double>(bytes_unpacked(folder_ / "lz4.bag")),
+              static_cast<double>(std::filesystem::file_size(folder_ / "plain.bag")), 16.0);
+  EXPECT_GT(bytes_unpacked(folder_ / "lz4.bag"), std::filesystem::file_size(folder_ / "lz4.bag"));
+  const Imported plain = import_ros1_bag(folder_ / "plain.bag", {}), lz4 = import_ros1_bag(folder_ / "lz4.bag", {});
+  EXPECT_EQ(digest(lz4.sensors, nullptr), digest(plain.sensors, nullptr));
+  ASSERT_EQ(lz4.sensors.imus.size(), 1u);
+  EXPECT_EQ(lz4.sensors.imus[0].gyro_rad_s, sensors_.imus[0].gyro_rad_s);
+  // and back to the very bytes
+  copy_ros1_bag(folder_ / "lz4.bag", folder_ / "back.bag", unpack_lz4);
+  EXPECT_EQ(fixture::bytes_of(folder_ / "back.bag"), fixture::bytes_of(folder_ / "plain.bag"));
+}
+
+TEST_F(Lz4Bag, DamageIsOneLine) {
+  const std::string whole = fixture::bytes_of(folder_ / "lz4.bag");
+  int refused = 0;
+  for (std::size_t at = 0; at < whole.size(); at += 397) {
+    std::string bytes = whole;
+    bytes[at] = static_cast<char>(bytes[at] ^ 0xff);
+    const std::string complaint = complaint_of(bytes);
+    EXPECT_THAT(complaint, testing::Not(HasSubstr("\n")));
+    refused += complaint.empty() ? 0 : 1;
+  }
+  EXPECT_GT(refused, 10);
+  const auto states = [](std::int64_t change) {
+    return [change](Ros1Chunk& chunk) {
+      pack_lz4(chunk);
+      chunk.unpacked_bytes = static_cast<std::uint32_t>(chunk.unpacked_bytes + change);
+    };
+  };
+  copy_ros1_bag(folder_ / "plain.bag", folder_ / "more.bag", states(-1));
+  EXPECT_THAT(fixture::complaint([&] { import_ros1_bag(folder_ / "more.bag", {}); }), HasSubstr("its LZ4 frame"));
+  copy_ros1_bag(folder_ / "plain.bag", folder_ / "fewer.bag", states(1));
+  EXPECT_THAT(fixture::complaint([&] { import_ros1_bag(folder_ / "fewer.bag", {}); }),
+              HasSubstr("bytes, the chunk states"));
+}
+
+// a bag is refused, or read: it never ends the program, whatever byte of it is gone or changed
+TEST_F(HostileBag, EveryCutOfARos1BagIsOneLine) {
+  export_ros1_bag(small_sensors(), {}, folder_ / "a.bag");
+  const std::string whole = fixture::bytes_of(folder_ / "a.bag");
+  ASSERT_GT(whole.size(), 5000u);
+  for (std::size_t size = 0; size < whole.size(); size += size < 100 ? 7 : 499) {
+    fixture::put(folder_ / "cut.bag", whole.substr(0, size));
+    EXPECT_THAT(fixture::complaint([&] { import_ros1_bag(folder_ / "cut.bag", {}); }), HasSubstr("cut.bag: at byte "))
+        << size;
+  }
+}
+
+TEST_F(HostileBag, ChangedBytesOfARos1BagNeverCrash) {
+  export_ros1_bag(small_sensors(), {}, folder_ / "a.bag");
+  const std::string whole = fixture::bytes_of(folder_ / "a.bag");
+  int refused = 0, read = 0;
+  for (std::size_t at = 0; at < whole.size(); at += 61) {
+    std::string bytes = whole;
+    bytes[at] = static_cast<char>(bytes[at] ^ 0xff);
+    fixture::put(folder_ / "b.bag", bytes);
+    const std::string complaint = fixture::complaint([&] { import_ros1_bag(folder_ / "b.bag", {}); });
+    EXPECT_THAT(complaint, testing::Not(HasSubstr("\n")));
+    complaint.empty() ? ++read : ++refused;
+  }
+  EXPECT_GT(refused, 10);
+  EXPECT_GT(read, 20) << "a reading or a text may change without harm";
+}
+
+TEST_F(HostileBag, DamagedRos2BagsAreOneLine) {
+  const std::filesystem::path bag = folder_ / "bag";
+  export_ros2_bag(small_sensors(), {}, bag);
+  const auto complaint = [&] { return fixture::complaint([&] { import_ros2_bag(bag, {}); }); };
+  ASSERT_EQ(complaint(), "");
+  const std::string database = fixture::bytes_of(bag / "bag_0.db3"),
+                    metadata = fixture::bytes_of(bag / "metadata.yaml");
+  EXPECT_EQ(fixture::complaint([&] { import_ros2_bag(bag / "bag_0.db3", {}); }), "") << "the file alone is read too";
+  for (const std::size_t size : {std::size_t{0}, std::size_t{100}, std::size_t{5000}, database.size() / 2}) {
+    fixture::put(bag / "bag_0.db3", database.substr(0, size));
+    EXPECT_THAT(complaint(), HasSubstr("bag_0.db3: cannot be read as a ROS 2 bag")) << size;
+  }
+  std::filesystem::remove(bag / "bag_0.db3");
+  EXPECT_THAT(complaint(), HasSubstr("bag_0.db3: no such file"));
+  fixture::put(bag / "bag_0.db3", database);
+  fixture::put(bag / "metadata.yaml", metadata.substr(0, metadata.size() / 2));
+  EXPECT_THAT(complaint(), HasSubstr("metadata.yaml"));
+  std::string mcap = metadata;
+  mcap.replace(mcap.find("sqlite3"), 7, "mcbp");
+  fixture::put(bag / "metadata.yaml", mcap);
+  EXPECT_THAT(complaint(), HasSubstr("the storage is 'mcbp', must be sqlite3 or mcap"));
+  std::filesystem::remove(bag / "metadata.yaml");
+  EXPECT_THAT(complaint(), HasSubstr("no metadata.yaml"));
+}
+
+// without them a reader that knows no ROS cannot tell what a message holds
+TEST_F(HostileBag, ARos2BagBringsTheDefinitionsOfItsMessages) {
+  export_ros2_bag(small_sensors(), {}, folder_ / "bag");
+  SQLite::Database database((folder_ / "bag/bag_0.db3").string(), SQLite::OPEN_READONLY);
+  EXPECT_EQ(database.execAndGet("SELECT schema_version FROM schema").getInt(), 4);
+  SQLite::Statement query(database,
+                          "SELECT type, encoding, encoded_message_definition FROM topics LEFT JOIN message_definitions "
+                          "ON type = topic_type");
+  int topics = 0;
+  for (; query.executeStep(); ++topics) {
+    EXPECT_EQ(query.getColumn(1).getString(), "ros2msg");
+    EXPECT_EQ(query.getColumn(2).getString(), ros2_definition(ros1_type(query.getColumn(0).getString())));
+  }
+  EXPECT_EQ(topics, 4) << "/tf_static, /clock, /imu, /lidar/points";
+}
+
+// what a recorder listened for and nobody sent is no reason to refuse the rest
+TEST_F(HostileBag, TopicsWithoutMessagesAreLeftOutUnlessNamed) {
+  const std::filesystem::path bag = folder_ / "bag";
+  for (const char* topic : {"/imu", "/lidar/points"}) {
+    std::filesystem::remove_all(bag);
+    export_ros2_bag(small_sensors(), {}, bag);
+    SQLite::Database database((bag / "bag_0.db3").string(), SQLite::OPEN_READWRITE);
+    database.exec(std::string("DELETE FROM messages WHERE topic_id = (SELECT id FROM topics WHERE name = '") + topic +
+                  "')");
+    const Imported imported = import_ros2_bag(bag, {});
+    EXPECT_THAT(imported.notes, testing::Contains(topic + std::string(": is declared and has no message: left out")));
+    EXPECT_EQ(imported.sensors.lidars.size(), topic == std::string("/imu") ? 1u : 0u);
+    BagReading named;
+    (topic == std::string("/imu") ? named.imu_topics : named.lidar_topics) = {topic};
+    EXPECT_THAT(fixture::complaint([&] { import_ros2_bag(bag, named); }), HasSubstr(topic));
+  }
+}
+
+TEST_F(HostileBag, AMessageThatPromisesTooMuchAllocatesNothing) {
+  const std::filesystem::path bag = folder_ / "bag";
+  for (const bool field_count : {false, true}) {
+    std::filesystem::remove_all(bag);
+    export_ros2_bag(small_sensors(), {}, bag);
+    SQLite::Database database((bag / "bag_0.db3").string(), SQLite::OPEN_READWRITE);
+    SQLite::Statement query(database,
+                            "SELECT id, data FROM messages WHERE topic_id = (SELECT id FROM topics WHERE name = "
+                            "'/lidar/points') ORDER BY timestamp");
+    ASSERT_TRUE(query.executeStep());
+    const SQLite::Column blob = query.getColumn(1);
+    std::string bytes(static_cast<const char*>(blob.getBlob()), static_cast<std::size_t>(blob.getBytes()));
+    // header: 4 encapsulation, 8 stamp, 4 + 6 frame; then at 24 height and width, at 32 the number of fields
+    const std::uint32_t absurd = 0xfffffff0u;
+    const std::size_t at = field_count ? 32 : 28;
+    std::copy_n(reinterpret_cast<const char*>(&absurd), 4, bytes.begin() + static_cast<std::ptrdiff_t>(at));
+    SQLite::Statement update(database, "UPDATE messages SET data = ? WHERE id = ?");
+    update.bind(1, bytes.data(), static_cast<int>(bytes.size()));
+    update.bind(2, query.getColumn(0).getInt());
+    query.reset();
+    update.exec();
+    EXPECT_THAT(fixture::complaint([&] { import_ros2_bag(bag, {}); }),
+                field_count ? HasSubstr("message 0 of /lidar/points: promises 4294967280 entries of 13 bytes")
+                            : HasSubstr("message 0 of /lidar/points: 1 x 4294967280 points of 26 bytes do not fit"));
+  }
+}
+
+TEST_F(HostileBag, WhatIsNoBagIsSaid) {
+  fixture::put(folder_ / "a.bag", "hello");
+  EXPECT_THAT(fixture::complaint([&] { import_ros1_bag(folder_ / "a.bag", {}); }), HasSubstr("no ROS 1 bag"));
+  EXPECT_THAT(fixture::complaint([&] { import_ros1_bag(folder_ / "none.bag", {}); }), HasSubstr("no such file"));
+  EXPECT_THAT(fixture::complaint([&] { export_ros1_bag(small_sensors(), {}, folder_ / "none" / "a.bag"); }),
+              HasSubstr("cannot be written"));
+  EXPECT_EQ(files(), 1u) << "nothing is left of it";
+}
+}  // namespace
+}  // namespace tumble::scenarios

@@ -1,0 +1,29 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <filesystem>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+#include "system/program.hpp"
+
+/// The sweep that tests of sweeps, of what they leave and of its report share.
+namespace tumble::system_test {
+
+inline Ended run_shortened(const std::vector<std::string>& arguments) {
+  return run_program(arguments, in_short_catalogue());
+}
+
+/// The sweep that these tests share: short draws of the sphere.
+inline std::vector<std::string> sweep_arguments(const std::filesystem::path& database, const std::string& seeds,
+                                         const std::string& examples = "0") {
+  return {"sweep",   "roll", "--seeds", seeds,        "--method", "rate/raw", "--method",
+          "rolling", "--db", database,  "--examples", examples,   "--json"};
+}
+
+inline nlohmann::json report_json(const std::filesystem::path& database) {
+  return json_of(run_shortened({"report", database.string(), "--json"}));
+}
+
+}  // namespace tumble::system_test
