@@ -34,7 +34,7 @@ std::string text_of(const fs::path& file) {
 
 /// Lines of prose that end in a number mention an equation; those of the note's equations are indented.
 std::multiset<std::string> definitions_in(const std::string& text) {
-  static const std::regex number(R"(^    .*\(([A-Z]{1,2}[0-9]+)\)\s*$)");
+  static const std::regex number(R"(^    .*\(([A-Z]{1,2}[0-9]+[a-z]?)\)\s*$)");
   std::multiset<std::string> out;
   std::istringstream lines(text);
   std::smatch match;
@@ -59,8 +59,8 @@ std::set<std::string> defined_twice(const std::string& text) {
 
 /// Comments run over lines: the marks at their beginnings are no part of a citation.
 std::vector<Citation> cited_in(const std::string& source) {
-  static const std::regex line_break(R"(\s*\n\s*(///<?|//)?\s*)"), number(R"(\(([A-Z]{1,2}[0-9]+)\))");
-  static const std::regex citation(R"(\b([a-z_]+\.md) ((?:\([A-Z]{1,2}[0-9]+\)(?:, | and | to )?)+))");
+  static const std::regex line_break(R"(\s*\n\s*(///<?|//)?\s*)"), number(R"(\(([A-Z]{1,2}[0-9]+[a-z]?)\))");
+  static const std::regex citation(R"(\b([a-z_]+\.md) ((?:\([A-Z]{1,2}[0-9]+[a-z]?\)(?:, | and | to )?)+))");
   const std::string text = std::regex_replace(source, line_break, " ");
   std::vector<Citation> out;
   for (std::sregex_iterator it(text.begin(), text.end(), citation), end; it != end; ++it) {
@@ -141,15 +141,20 @@ TEST(Citations, FilesThatContributingNamesAreThere) {
 }
 
 TEST(Citations, CheckerFindsWhatIsMissing) {
-  const Notes notes = {{"mapping.md", defined_in("    p = 1   (R1)\nsee (R2) here, or\n(R2)\n    q = 2 (R3)  \n")}};
+  const Notes notes = {
+      {"mapping.md", defined_in("    p = 1   (R1)\nsee (R2) here, or\n(R2)\n    q = 2 (R3)  \n    s = 4 (R3a)\n")}};
   EXPECT_EQ(defined_twice("    p = 1 (R1)\n    q = 2 (R2)\nas (R2)\n    r = 3 (R1)\n"), std::set<std::string>{"R1"});
-  EXPECT_EQ(notes.at("mapping.md"), (std::set<std::string>{"R1", "R3"}));
+  EXPECT_EQ(notes.at("mapping.md"), (std::set<std::string>{"R1", "R3", "R3a"}));
   const auto found = cited_in("/// By mapping.md (R1),\n  /// (R3) and (R2); rolling.md (R1).");
   ASSERT_EQ(found.size(), 4u);
   EXPECT_EQ(complaint(found[0], notes), "");
   EXPECT_EQ(complaint(found[1], notes), "");
   EXPECT_NE(complaint(found[2], notes), "") << "(R2) is mentioned there, not defined";
   EXPECT_NE(complaint(found[3], notes), "") << "no such note";
+  const auto lettered = cited_in("by mapping.md (R3a), (R3b)");
+  ASSERT_EQ(lettered.size(), 2u);
+  EXPECT_EQ(complaint(lettered[0], notes), "");
+  EXPECT_NE(complaint(lettered[1], notes), "");
 }
 
 }  // namespace
