@@ -61,7 +61,7 @@ Estimate run(const sim::Sensors& sensors, const sim::Values& parameters, const O
   RecoveredRates told;
   if (sensors.sphere_radius_m <= 0.0) told = recover_clipped(sensors, recovered, estimate.health);
   std::vector<RateState> rates;
-  if (estimate.health.contains("samples_recovered") && told.carried < kCarried) {
+  if (told.answered && told.carried < kCarried) {
     estimate.status = run_thrown(sensors, parameters, samples, recovered, told.covariances_rad2_s2, rates, estimate);
   } else {
     estimate.status = run_carried(sensors, parameters, rates, estimate.attitudes, estimate.health);

@@ -171,6 +171,21 @@ Method learning_method(const Method& method, Learning& learning) {
   return out;
 }
 
+Status tumble_rates(const sim::Sensors& sensors, std::span<const ImuSample> samples, RateSmoother::Params params,
+                    SmoothedRates& out, std::map<std::string, double>& health) {
+  out = {};
+  std::vector<std::vector<AuxiliaryReading>> auxiliary_imus;
+  Status status = auxiliary_readings(sensors, samples, params.model, auxiliary_imus);
+  out.auxiliary_imus = auxiliary_imus.size();
+  if (status.ok()) status = RateSmoother(params).estimate(samples, auxiliary_imus, out.rates, out.report);
+  if (status.ok()) {
+    report_health(out.report, health);
+    // further IMUs tell the rate whoever holds the body; the other smoother does not know them
+    if (auxiliary_imus.empty()) out.carried_clipped_max = join_regimes(sensors, samples, out.report, out.rates, health);
+  }
+  return status;
+}
+
 Estimate run_rate_tumble(const sim::Sensors& sensors, const sim::Values& parameters, const LearntRig* given,
                          std::optional<LearntRig>* found) {
   Estimate estimate;
@@ -179,38 +194,18 @@ Estimate run_rate_tumble(const sim::Sensors& sensors, const sim::Values& paramet
   if (estimate.status.ok()) {
     RateSmoother::Params params = smoother_params(sensors.imus.front(), rate_tumble_settings(), parameters);
     if (given != nullptr) start_from_learnt(*given, params);
-    std::vector<std::vector<AuxiliaryReading>> auxiliary_imus;
-    RateReport report;
-    estimate.status = auxiliary_readings(sensors, samples, params.model, auxiliary_imus);
+    SmoothedRates smoothed;
+    estimate.status = tumble_rates(sensors, samples, params, smoothed, estimate.health);
+    estimate.rates = std::move(smoothed.rates);
     if (estimate.status.ok()) {
-      estimate.status = RateSmoother(params).estimate(samples, auxiliary_imus, estimate.rates, report);
-    }
-    if (estimate.status.ok()) {
-      report_health(report, estimate.health);
-      // further IMUs tell the rate whoever holds the body; the other smoother does not know them
-      if (auxiliary_imus.empty()) join_regimes(sensors, samples, report, estimate.rates, estimate.health);
       check_rates(sensors, samples, estimate);
       tell_frozen_axes(sensors, samples, estimate);
     }
-    estimate.health["imus"] = 1.0 + static_cast<double>(auxiliary_imus.size());
-    if (estimate.status.ok() && !report.rig_held && found != nullptr) *found = learnt(report);
+    estimate.health["imus"] = 1.0 + static_cast<double>(smoothed.auxiliary_imus);
+    if (estimate.status.ok() && !smoothed.report.rig_held && found != nullptr) *found = learnt(smoothed.report);
   }
   count_sources(estimate.rates, estimate.health);
   return estimate;
-}
-
-Status tumble_rates(const sim::Sensors& sensors, std::span<const ImuSample> samples, RateSmoother::Params params,
-                    std::vector<RateState>& out, std::map<std::string, double>& health) {
-  out.clear();
-  RateReport report;
-  std::vector<std::vector<AuxiliaryReading>> auxiliary_imus;
-  Status status = auxiliary_readings(sensors, samples, params.model, auxiliary_imus);
-  if (status.ok()) status = RateSmoother(params).estimate(samples, auxiliary_imus, out, report);
-  if (status.ok()) {
-    report_health(report, health);
-    if (auxiliary_imus.empty()) join_regimes(sensors, samples, report, out, health);
-  }
-  return status;
 }
 
 Method rate_tumble() {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <cstddef>
 #include <map>
 #include <optional>
 #include <span>
@@ -29,10 +30,18 @@ RateSmoother::Params stated_params(const sim::ImuRecord& record, RateSmoother::P
 RateSmoother::Params smoother_params(const sim::ImuRecord& record, const Settings<RateSmoother::Params>& settings,
                                      const sim::Values& parameters);
 
+/// What the smoother makes of a recording, that of carried bodies asked where it may matter (join_regimes).
+struct SmoothedRates {
+  std::vector<RateState> rates;  ///< one per sample
+  RateReport report;
+  double carried_clipped_max = 0.0;  ///< as join_regimes returns it
+  std::size_t auxiliary_imus = 0;
+};
+
 /// Rates of `samples`, which may have other readings than the recording. Adds what the smoother tells of its run to
 /// `health`.
 Status tumble_rates(const sim::Sensors& sensors, std::span<const ImuSample> samples, RateSmoother::Params params,
-                    std::vector<RateState>& out, std::map<std::string, double>& health);
+                    SmoothedRates& out, std::map<std::string, double>& health);
 
 /// The other IMUs of a recording on the same body, at the stamps of `samples`: those of its first further IMUs that are
 /// not `imu_reference`, at most kAuxiliaryImusMax. Adds their mountings, as calibrated, to `model`. Trouble: that of a

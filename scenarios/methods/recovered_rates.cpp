@@ -59,12 +59,11 @@ Recovery recovery_of(const sim::Sensors& sensors, const std::vector<ImuSample>& 
   if (std::none_of(signs.begin(), signs.end(), clips)) return out;
   const RateSmoother::Params params = stated_params(sensors.imus.front(), rate_tumble_settings().defaults());
   std::map<std::string, double> of_rates;
-  std::vector<RateState> rates;
-  if (!tumble_rates(sensors, samples, params, rates, of_rates).ok()) return out;
-  const auto carried = of_rates.find("regime_carried_clipped_max");
-  if (carried != of_rates.end()) out.carried = carried->second;
-  out.bias_rad_s = bias_rad_s(samples, rates, stands);
-  out.rates = std::move(rates);
+  SmoothedRates smoothed;
+  if (!tumble_rates(sensors, samples, params, smoothed, of_rates).ok()) return out;
+  out.carried = smoothed.carried_clipped_max;
+  out.bias_rad_s = bias_rad_s(samples, smoothed.rates, stands);
+  out.rates = std::move(smoothed.rates);
   return out;
 }
 
@@ -74,7 +73,8 @@ RecoveredRates recover(const Recovery& recovery, Stands stands, std::vector<ImuS
   out.covariances_rad2_s2.assign(samples.size(), Eigen::Matrix3d::Zero());
   out.sources.assign(samples.size(), RateSource::measured);
   out.carried = recovery.carried;
-  if (recovery.rates.empty()) return out;
+  out.answered = !recovery.rates.empty();
+  if (!out.answered) return out;
   double recovered = 0.0;
   for (std::size_t k = 0; k < samples.size(); ++k) {
     out.sources[k] = recovery.rates[k].source;

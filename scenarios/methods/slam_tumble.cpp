@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include <utility>
+
 #include "scenarios/methods/bridge.hpp"
 #include "scenarios/methods/imu_check.hpp"
 #include "scenarios/methods/rate_tumble.hpp"
@@ -26,7 +28,9 @@ Estimate run(const sim::Sensors& sensors, const sim::Values& parameters, const O
   std::vector<ImuSample> samples;
   Estimate estimate = begin_with_rates(sensors, samples, [&](Estimate& out) {
     const RateSmoother::Params params = smoother_params(sensors.imus.front(), rate_settings(), parameters);
-    const Status status = tumble_rates(sensors, samples, params, out.rates, out.health);
+    SmoothedRates smoothed;
+    const Status status = tumble_rates(sensors, samples, params, smoothed, out.health);
+    out.rates = std::move(smoothed.rates);
     if (status.ok()) check_rates(sensors, samples, out);
     return status;
   });

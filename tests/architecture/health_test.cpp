@@ -1,0 +1,60 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// An estimate's health is for people: what one stage of a method tells the next is a typed member or an argument.
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <fstream>
+#include <regex>
+#include <sstream>
+#include <string>
+#include <vector>
+
+#include "tests/tree.hpp"
+
+namespace {
+
+namespace fs = std::filesystem;
+
+/// Lines of a source that ask an estimate's health for a row. It is for people: what one stage tells the next is typed.
+std::vector<std::string> reads_of_health(const std::string& source) {
+  static const std::regex asks(R"(health\s*\.\s*(contains|find|at|count)\s*\(|health\[[^\]]*\]\s*[;,)<>!&|?*/])");
+  std::vector<std::string> out;
+  std::istringstream lines(source);
+  for (std::string line; std::getline(lines, line);) {
+    if (std::regex_search(line, asks)) out.push_back(line);
+  }
+  return out;
+}
+
+/// Sources of the harness, by their place in the tree.
+std::vector<std::string> sources() {
+  std::vector<std::string> out;
+  for (const char* folder : {"scenarios", "tools"}) {
+    for (const auto& entry : fs::recursive_directory_iterator(tumble::test::source_dir() / folder)) {
+      const std::string extension = entry.path().extension().string();
+      if (extension == ".hpp" || extension == ".cpp")
+        out.push_back(fs::relative(entry.path(), tumble::test::source_dir()).generic_string());
+    }
+  }
+  return out;
+}
+
+TEST(Health, IsReadByNoStage) {
+  std::size_t writers = 0;
+  for (const std::string& file : sources()) {
+    // takes the doubts of a finished estimate back, for those who judge whether they were right
+    if (file == "scenarios/methods/imu_check.cpp") continue;
+    std::ostringstream text;
+    text << std::ifstream(tumble::test::source_dir() / file).rdbuf();
+    writers += text.str().find("health[") != std::string::npos;
+    EXPECT_EQ(reads_of_health(text.str()), std::vector<std::string>{}) << file;
+  }
+  EXPECT_GT(writers, 10u) << "the scan found too little to mean anything";
+  // negative control
+  EXPECT_EQ(reads_of_health("health[\"imus\"] = 1.0;\nestimate.health[\"a\"] += 1.0;\n"), std::vector<std::string>{});
+  for (const char* line :
+       {"if (estimate.health.contains(\"a\")) f();", "x = out.health.at(kName);", "g(health[\"a\"]);"})
+    EXPECT_EQ(reads_of_health(line), std::vector<std::string>{line});
+}
+
+}  // namespace
