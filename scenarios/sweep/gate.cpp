@@ -105,11 +105,10 @@ void hold_worst_draw(const MetricInfo& info, const std::vector<Pair>& pairs, con
                  text_of(before.before) + " at most as bad";
 }
 
-/// Tests of a metric count once, two-sided ones too: they take twice the smaller chance.
-GateResult hold_metric(const GateRun& all, const MethodRun& before, const MethodRun& now, const MetricInfo& info,
-                       const GatePolicy& policy, std::size_t tests) {
-  GateResult result{before.scenario, before.kind, before.method, info.name};
-  const auto [pairs, lost] = pairs_of(all, before, now, info);
+/// Tests of a metric count once, two-sided ones too: they take twice the smaller chance. Puts a shift of the pairs, and
+/// the fault where it is one, into a result that says of what they are.
+void hold_middle(const std::vector<Pair>& pairs, const MetricInfo& info, const GatePolicy& policy, std::size_t tests,
+                 GateResult& result) {
   result.draws = pairs.size();
   result.accepted = median_of(pairs, &Pair::before);
   result.value = median_of(pairs, &Pair::now);
@@ -129,17 +128,22 @@ GateResult hold_metric(const GateRun& all, const MethodRun& before, const Method
   const auto corrected = [&](double chance) { return std::min(1.0, chance * static_cast<double>(tests)); };
   result.chance = corrected(worse);
   result.better = corrected(better) < policy.risk;
+  if (!(result.chance < policy.risk)) return;
+  const auto count = std::count_if(more.begin(), more.end(), [&](double d) { return rises < falls ? d > 0 : d < 0; });
+  result.fault = (info.sense == Sense::two_sided ? (rises < falls ? "higher in " : "lower in ") : "worse in ") +
+                 std::to_string(count) + " of " + std::to_string(pairs.size());
+}
 
-  if (!lost.empty()) {
-    result.seed = lost.front();
-    result.fault = "has no value any more: seed " + std::to_string(lost.front());
-    if (lost.size() > 1) result.fault += " and " + std::to_string(lost.size() - 1) + " more";
-  } else if (result.chance < policy.risk) {
-    const auto count = std::count_if(more.begin(), more.end(), [&](double d) { return rises < falls ? d > 0 : d < 0; });
-    result.fault = (info.sense == Sense::two_sided ? (rises < falls ? "higher in " : "lower in ") : "worse in ") +
-                   std::to_string(count) + " of " + std::to_string(pairs.size());
-  } else {
-    hold_worst_draw(info, pairs, policy, result);
+GateResult hold_metric(const Pairs& found, const MethodRun& before, const MetricInfo& info, const GatePolicy& policy,
+                       std::size_t tests) {
+  GateResult result{before.scenario, before.kind, before.method, info.name};
+  hold_middle(found.pairs, info, policy, tests, result);
+  if (!found.lost.empty()) {
+    result.seed = found.lost.front();
+    result.fault = "has no value any more: seed " + std::to_string(found.lost.front());
+    if (found.lost.size() > 1) result.fault += " and " + std::to_string(found.lost.size() - 1) + " more";
+  } else if (result.passes()) {
+    hold_worst_draw(info, found.pairs, policy, result);
   }
   return result;
 }
@@ -191,6 +195,33 @@ MethodRun without_outcomes(const MethodRun& like) {
   return none;
 }
 
+/// A metric of a method over all scenarios that hold it.
+struct Pooled {
+  Kind kind = Kind::rate;
+  std::string method;
+  const MetricInfo* info = nullptr;
+  std::vector<Pair> pairs = {};
+  bool is_of(const MethodRun& run, const MetricInfo& metric) const {
+    return run.kind == kind && run.method == method && &metric == info;
+  }
+};
+
+/// Those that more than one scenario holds, in the order of the accepted run.
+std::vector<Pooled> pooled_metrics(const GateRun& accepted) {
+  std::vector<Pooled> seen, out;
+  const auto has = [](const std::vector<Pooled>& list, const MethodRun& run, const MetricInfo& info) {
+    return std::any_of(list.begin(), list.end(), [&](const Pooled& each) { return each.is_of(run, info); });
+  };
+  for (const MethodRun& run : accepted.methods) {
+    for (const auto& [name, values] : run.values) {
+      const MetricInfo& info = metric_info(name);
+      if (info.unit == Unit::verdict || has(out, run, info)) continue;
+      (has(seen, run, info) ? out : seen).push_back({run.kind, run.method, &info});
+    }
+  }
+  return out;
+}
+
 }  // namespace
 
 const MethodRun* GateRun::find(const std::string& scenario, Kind kind, const std::string& method) const {
@@ -207,7 +238,8 @@ std::vector<GateResult> hold_to_gate(const GateRun& run, const Gate& gate) {
                    " draws of other seeds than the " + std::to_string(run.seeds.size()) + " given; 'tumble gate " +
                    gate.suite + " --accept' accepts anew");
   }
-  std::size_t tests = 0;
+  std::vector<Pooled> all = pooled_metrics(gate.accepted);
+  std::size_t tests = all.size();
   for (const MethodRun& before : gate.accepted.methods) tests += before.values.size();
   std::vector<GateResult> held;
   for (const MethodRun& before : gate.accepted.methods) {
@@ -219,7 +251,19 @@ std::vector<GateResult> hold_to_gate(const GateRun& run, const Gate& gate) {
       (info.unit == Unit::verdict ? verdicts : metrics).push_back(&info);
     }
     held.push_back(hold_outcomes(run, before, now, verdicts));
-    for (const MetricInfo* info : metrics) held.push_back(hold_metric(run, before, now, *info, gate.policy, tests));
+    for (const MetricInfo* info : metrics) {
+      const Pairs found_pairs = pairs_of(run, before, now, *info);
+      held.push_back(hold_metric(found_pairs, before, *info, gate.policy, tests));
+      for (Pooled& pooled : all) {
+        if (pooled.is_of(before, *info))
+          pooled.pairs.insert(pooled.pairs.end(), found_pairs.pairs.begin(), found_pairs.pairs.end());
+      }
+    }
+  }
+  for (const Pooled& pooled : all) {
+    GateResult result{"", pooled.kind, pooled.method, pooled.info->name};
+    hold_middle(pooled.pairs, *pooled.info, gate.policy, tests, result);
+    held.push_back(std::move(result));
   }
   return held;
 }

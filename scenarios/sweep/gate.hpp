@@ -25,6 +25,9 @@
 ///   (statistics/paired.hpp) of the differences less the margin; metrics with a target are held on both sides, a
 ///   covariance that becomes smaller fails as one that becomes larger does. A run that is no worse fails any of all
 ///   tests of a gate with at most `risk` (Bonferroni);
+/// - the middle of a metric over the draws of all scenarios of a method, where several have it: a shift that is too
+/// small
+///   for the draws of one;
 /// - the worst draw, which a test of the middle does not see: it may be `worst` times the accepted worst.
 namespace tumble::scenarios {
 
@@ -74,9 +77,9 @@ std::string to_yaml(const Gate& gate);
 std::string to_csv(const GateRun& run);
 GateRun parse_gate_run(const std::string& text, const std::string& file, std::span<const MethodPointer> described = {});
 
-/// One line of the gate: the outcomes of a method (no metric), or one metric.
+/// One line of the gate: the outcomes of a method (no metric), or one metric, of a scenario or of all together.
 struct GateResult {
-  std::string scenario;
+  std::string scenario;  ///< empty: all that hold the metric
   Kind kind = Kind::rate;
   std::string method, metric;
   std::size_t draws = 0;                   ///< pairs that count

@@ -114,7 +114,7 @@ std::string verdict_text(const GateResult& result) {
 Table result_table(const std::vector<GateResult>& results) {
   Table table("", {"scenario", "method", "held", "draws", "accepted", "now", "pairs", "chance", "verdict"});
   for (const GateResult& result : results) {
-    table.add_row({result.scenario, full_name(result.kind, result.method),
+    table.add_row({result.scenario.empty() ? "together" : result.scenario, full_name(result.kind, result.method),
                    result.metric.empty() ? "outcomes" : result.metric, std::to_string(result.draws),
                    number_text(result.accepted), number_text(result.value), change_text(result),
                    result.metric.empty() ? "" : fmt::format("{:.2g}", result.chance), verdict_text(result)});
