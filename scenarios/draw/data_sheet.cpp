@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "scenarios/draw/data_sheet.hpp"
 
+#include <algorithm>
+
+#include "scenarios/draw/registry.hpp"
 #include "scenarios/draw/scenario_text.hpp"
 #include "scenarios/draw/strict_yaml.hpp"
 #include "scenarios/draw/yaml_folder.hpp"
@@ -8,16 +11,33 @@
 
 namespace tumble::scenarios {
 
+namespace {
+
+/// A number that was forgotten would be simulated as its default, whatever the device has.
+void require_every_number(const DataSheet& sheet, const std::string& file, const Registry& registry) {
+  for (const sim::Parameter& parameter : find_type(registry.sensors, sheet.sensor_kind)->parameters) {
+    const auto is_it = [&](const DataSheet::Entry& entry) { return entry.name == parameter.name; };
+    if (std::none_of(sheet.entries.begin(), sheet.entries.end(), is_it)) {
+      throw BadInput(file + ": '" + std::string(parameter.name) + "' is missing; a sheet has every number of kind '" +
+                     sheet.sensor_kind + "' (" + std::string(parameter.doc) + ")");
+    }
+  }
+}
+
+}  // namespace
+
 std::vector<std::string> device_names(const DataRoot& data) {
   return yaml_stems(data.data_sheets());
 }
 
 DataSheet load_data_sheet(const DataRoot& data, const std::string& device) {
   const std::filesystem::path path = find_yaml(data.data_sheets(), "device", device);
-  DataSheet sheet = parse_data_sheet(read_text_file(path), path.string(), Registry::of_simulation());
+  const Registry registry = Registry::of_simulation();
+  DataSheet sheet = parse_data_sheet(read_text_file(path), path.string(), registry);
   if (sheet.device != device) {
     throw BadInput(path.string() + ": device is '" + sheet.device + "', must be the file's, '" + device + "'");
   }
+  require_every_number(sheet, path.string(), registry);
   return sheet;
 }
 

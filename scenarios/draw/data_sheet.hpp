@@ -26,7 +26,7 @@ struct DataSheet {
 
 std::vector<std::string> device_names(const DataRoot& data);
 /// Throws BadInput: unknown device (nearest named), unknown key, a unit that is not the parameter's, a number without
-/// source.
+/// source, a number of its kind of sensor that is missing.
 DataSheet load_data_sheet(const DataRoot& data, const std::string& device);
 
 }  // namespace tumble::scenarios

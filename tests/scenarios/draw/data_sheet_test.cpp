@@ -4,6 +4,9 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <filesystem>
+#include <fstream>
+
 #include "scenarios/draw/fixture_registry.hpp"
 #include "scenarios/draw/scenario_text.hpp"
 #include "tests/tree.hpp"
@@ -80,6 +83,22 @@ TEST(DataSheet, UnknownDeviceNamesTheNearest) {
   EXPECT_EQ(fixture::complaint([&] { load_data_sheet(data, "rs17"); }), "unknown device 'rs17'; did you mean 'rs16'?");
   const DataRoot nowhere{"no_such_folder"};
   EXPECT_THAT(fixture::complaint([&] { device_names(nowhere); }), HasSubstr("no_such_folder"));
+}
+
+// it would be simulated as the default, whatever the device has
+TEST(DataSheet, ANumberThatIsMissingIsNamed) {
+  const DataRoot whole{test::source_dir()}, own{std::filesystem::path(testing::TempDir()) / "data_sheet_without"};
+  std::filesystem::create_directories(own.data_sheets());
+  std::ifstream sheet(whole.data_sheets() / "mti30.yaml");
+  std::ofstream less(own.data_sheets() / "mti30.yaml");
+  for (std::string line; std::getline(sheet, line);) {
+    if (line.find("  accel_rail_m_s2:") == std::string::npos) less << line << "\n";
+  }
+  less.close();
+  EXPECT_EQ(fixture::complaint([&] { load_data_sheet(whole, "mti30"); }), "");
+  EXPECT_THAT(fixture::complaint([&] { load_data_sheet(own, "mti30"); }),
+              HasSubstr("mti30.yaml: 'accel_rail_m_s2' is missing; a sheet has every number of kind 'imu'"));
+  std::filesystem::remove_all(own.root);
 }
 
 // Each sheet of the project is checked against the registries of this build.
