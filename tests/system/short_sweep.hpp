@@ -17,7 +17,7 @@ inline Ended run_shortened(const std::vector<std::string>& arguments) {
 
 /// The sweep that these tests share: short draws of the sphere.
 inline std::vector<std::string> sweep_arguments(const std::filesystem::path& database, const std::string& seeds,
-                                         const std::string& examples = "0") {
+                                                const std::string& examples = "0") {
   return {"sweep",   "roll", "--seeds", seeds,        "--method", "rate/raw", "--method",
           "rolling", "--db", database,  "--examples", examples,   "--json"};
 }
