@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 namespace tumble {
 
@@ -149,9 +150,9 @@ void OdometryPass::begin_rates(const RegimeStream::Params& rate) {
   rate_state_.rate.sense = sense;
 }
 
-void OdometryPass::take_map(const OdometryPass& other) {
-  mapper_ = other.mapper_;
-  scale_ = other.scale_;
+void OdometryPass::take_map(OdometryPass&& other) {
+  mapper_ = std::move(other.mapper_);
+  scale_ = std::move(other.scale_);
   localisation_ = other.localisation_;
   time_offset_s_ = other.time_offset_s_;
   told_ns_ = other.told_ns_;

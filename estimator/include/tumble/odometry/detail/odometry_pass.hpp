@@ -49,8 +49,9 @@ class OdometryPass {
   void settle_until(TimeNs time_ns);
   /// The rates go on with another stream, anew; the mapper stays.
   void begin_rates(const RegimeStream::Params& rate);
-  /// The map and all that hangs on it is that of another pass; the rates stay, and go on where that one was told last.
-  void take_map(const OdometryPass& other);
+  /// The map and all that hangs on it is that of another pass, with the memory that it keeps for its samples; the rates
+  /// stay, and go on where that one was told last. The other is spent.
+  void take_map(OdometryPass&& other);
 
   const RegimeStream& rates() const { return rates_; }
   const RegimeStream::State& rate_state() const { return rate_state_; }
