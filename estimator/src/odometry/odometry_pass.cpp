@@ -100,6 +100,15 @@ bool OdometryPass::covers(TimeNs end_ns) const {
   return settled_ && settled_->time_ns >= needed_ns(end_ns);
 }
 
+std::optional<TimeNs> OdometryPass::covering_ns(TimeNs end_ns) const {
+  const std::span<const ImuSample> open = unsettled_.all();
+  const TimeNs needed = needed_ns(end_ns);
+  const auto covers = [&](const ImuSample& sample) { return sample.time_ns >= needed; };
+  const auto first = std::find_if(open.begin(), open.end(), covers);
+  if (first == open.end()) return std::nullopt;
+  return first->time_ns;
+}
+
 Status OdometryPass::add_sweep(TimeNs start_ns, TimeNs end_ns, std::span<const LidarPoint> points,
                                LidarInertialOdometry::SweepReport& report) {
   const Status status = mapper_.add_sweep(start_ns, end_ns, points, report);

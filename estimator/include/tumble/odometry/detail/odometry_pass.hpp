@@ -38,6 +38,8 @@ class OdometryPass {
   bool covers(TimeNs end_ns) const;
   /// The same for the newest of them, by the lidar's clock. Nothing before the first.
   std::optional<TimeNs> covered_ns() const;
+  /// The first sample, by the IMU's clock, that covers this time of the lidar's and whose rate is not settled yet.
+  std::optional<TimeNs> covering_ns(TimeNs end_ns) const;
   Status add_sweep(TimeNs start_ns, TimeNs end_ns, std::span<const LidarPoint> points,
                    LidarInertialOdometry::SweepReport& report);
   /// As TumblingOdometry::newest.
