@@ -55,6 +55,36 @@ TEST(Allocation, NoneForASampleOfATumblingBodyOnceItHasBegun) {
   EXPECT_GT(in_all, 0u) << "negative control: the counter counts";
 }
 
+TEST(Allocation, NoneForASampleAfterTheSecondPassTookOver) {
+  test::ThrownBody body;
+  body.end_s = 4.2;  // it lies long enough for the second pass to catch up
+  TumblingOdometry::Params params;
+  params.lever_arm_I_m = body.lever_arm_I_m + Eigen::Vector3d(0.006, -0.006, 0.006);  // it has something to put right
+  params.T_IL.linear() = Eigen::AngleAxisd(0.015, Eigen::Vector3d(1.0, -2.0, 2.0).normalized()).toRotationMatrix();
+  params.imu.rate_hz = body.imu_hz;
+  params.expert.again.after_s = 0.9;
+  TumblingOdometry odometry(params);
+  const std::vector<test::ThrownBody::Sweep> sweeps = body.sweeps();
+  std::size_t next = 0, samples = 0, made = 0;
+  for (const ImuSample& sample : body.imu()) {
+    const bool taken_over = odometry.passed_again();
+    const std::size_t before = g_allocations;
+    ASSERT_TRUE(odometry.add_imu(sample).ok());
+    const std::size_t by_it = g_allocations - before;
+    if (!odometry.take() && taken_over) {
+      ++samples;
+      made += by_it;
+    }
+    while (next < sweeps.size() && sweeps[next].end_ns <= sample.time_ns) {
+      ASSERT_TRUE(odometry.add_sweep(sweeps[next].start_ns, sweeps[next].end_ns, sweeps[next].points).ok());
+      ++next;
+    }
+  }
+  ASSERT_TRUE(odometry.passed_again());
+  EXPECT_GT(samples, 10u) << "it took over while samples came";
+  EXPECT_EQ(made, 0u);
+}
+
 TEST(Allocation, NoneForASampleOfARollingSphereOnceItHasBegun) {
   RollingOdometry::Params params = test::params_of({test::kPlaces[0]});
   params.lag_s = 0.0;

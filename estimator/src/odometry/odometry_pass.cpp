@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 namespace tumble {
 
@@ -99,6 +100,15 @@ bool OdometryPass::covers(TimeNs end_ns) const {
   return settled_ && settled_->time_ns >= needed_ns(end_ns);
 }
 
+std::optional<TimeNs> OdometryPass::covering_ns(TimeNs end_ns) const {
+  const std::span<const ImuSample> open = unsettled_.all();
+  const TimeNs needed = needed_ns(end_ns);
+  const auto covers = [&](const ImuSample& sample) { return sample.time_ns >= needed; };
+  const auto first = std::find_if(open.begin(), open.end(), covers);
+  if (first == open.end()) return std::nullopt;
+  return first->time_ns;
+}
+
 Status OdometryPass::add_sweep(TimeNs start_ns, TimeNs end_ns, std::span<const LidarPoint> points,
                                LidarInertialOdometry::SweepReport& report) {
   const Status status = mapper_.add_sweep(start_ns, end_ns, points, report);
@@ -149,9 +159,9 @@ void OdometryPass::begin_rates(const RegimeStream::Params& rate) {
   rate_state_.rate.sense = sense;
 }
 
-void OdometryPass::take_map(const OdometryPass& other) {
-  mapper_ = other.mapper_;
-  scale_ = other.scale_;
+void OdometryPass::take_map(OdometryPass&& other) {
+  mapper_ = std::move(other.mapper_);
+  scale_ = std::move(other.scale_);
   localisation_ = other.localisation_;
   time_offset_s_ = other.time_offset_s_;
   told_ns_ = other.told_ns_;

@@ -157,7 +157,7 @@ void SecondPass::take_over(OdometryPass& first) {
   pass_->settle_until(first.settled()->time_ns);
   const bool first_lost = sweeps_.back().verdict == SweepVerdict::rejected;
   if (rejected_ <= rejected_by_first_ + sweeps_.size() / kMoreShare && (!lost_ || first_lost)) {
-    first.take_map(*pass_);
+    first.take_map(std::move(*pass_));
     taken_ = true;
   }
   give_up();

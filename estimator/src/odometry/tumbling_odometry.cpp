@@ -145,8 +145,22 @@ void TumblingOdometry::register_sweep(TimeNs start_ns, TimeNs end_ns, std::vecto
   again_.advance(pass_);
 }
 
+/// Whether the sweep would be more than lag_s old with the sample after the newest one, while the sample that covers it
+/// has all of the lag ahead of it but a period: one after a gap has not.
+bool TumblingOdometry::is_due(TimeNs end_ns) const {
+  const std::optional<TimeNs> covering_ns = pass_.covering_ns(end_ns);
+  if (!covering_ns) return false;
+  const double period_s = 1.0 / params_.imu.rate_hz, lag_s = std::max(params_.lag_s, 2.0 * period_s);
+  return seconds(*newest_ns_ - pass_.needed_ns(end_ns)) + period_s > lag_s &&
+         seconds(*newest_ns_ - *covering_ns) > lag_s - 1.5 * period_s;
+}
+
 void TumblingOdometry::register_covered() {
-  while (!waiting_.empty() && pass_.covers(waiting_.front().end_ns)) {
+  while (!waiting_.empty()) {
+    const TimeNs end_ns = waiting_.front().end_ns;
+    // the sample that covers it ends up to a period later: its rate is settled so much sooner
+    if (!pass_.covers(end_ns) && is_due(end_ns)) pass_.settle_until(pass_.needed_ns(end_ns));
+    if (!pass_.covers(end_ns)) break;
     Waiting sweep = std::move(waiting_.front());
     waiting_.pop_front();
     register_sweep(sweep.start_ns, sweep.end_ns, std::move(sweep.points));

@@ -19,12 +19,13 @@ namespace tumble {
 /// old; LidarInertialOdometry takes samples and sweeps as their rates become known.
 ///
 /// Of each sweep there are three words: newest() places the IMU at any time, by inertia from the last sweep that was
-/// registered on; take() gives the sweep lag_s after its end, registered (`report.pose`); and the sweep after it brings
-/// its last word (`report.smoothed`): 0.3 s after its end at ten sweeps a second. Sweeps stand in the world of
-/// LidarInertialOdometry: z up, origin and yaw at the IMU at the first sample. Begin at rest, half a second or more: it
-/// levels the attitude. Once, some seconds after the motion began, map and pose move to where a second pass over those
-/// seconds puts them, with the rig and the calibration that they told (SecondPass); poses given out before stay. A
-/// lidar that is silent for a second is made up for by inertia, a sweep without points.
+/// registered on; take() gives the sweep at most lag_s after its end, registered (`report.pose`); and the sweep after
+/// it brings its last word (`report.smoothed`), at ten a second at most 0.3 s after its end. Poses bear times of the
+/// IMU's clock and stand in the world of LidarInertialOdometry: z up, origin and yaw at the IMU at the first sample.
+/// Begin at rest, half a second or more: it levels the attitude. Once, some seconds after the motion began, map and
+/// pose move to where a second pass over those seconds puts them, with the rig and the calibration that they told
+/// (SecondPass); poses given out before stay. A lidar that is silent for a second is made up for by inertia, a sweep
+/// without points.
 ///
 /// An IMU sample costs one step of the stream, and now and then a sweep's registration; one that ends no sweep
 /// allocates nothing once the first have come. While the second pass runs a sweep costs up to four registrations, and
@@ -87,7 +88,7 @@ class TumblingOdometry {
   /// the first sample.
   std::optional<RateState> newest_rate() const { return pass_.rates().rate().newest(pass_.rate_state().rate); }
 
-  /// Latest settled rate, lag_s old. Nothing while the lag fills.
+  /// Latest settled rate, lag_s old, or a sample less where a sweep waited for it. Nothing while the lag fills.
   const std::optional<RateState>& settled_rate() const { return pass_.settled(); }
 
   /// What is known of the IMU on the body: lever arm, biases, elements.
@@ -130,6 +131,7 @@ class TumblingOdometry {
 
   Status take_in(const ImuSample& sample);
   void register_sweep(TimeNs start_ns, TimeNs end_ns, std::vector<LidarPoint> points);
+  bool is_due(TimeNs end_ns) const;
   void register_covered();
   void settle_all();
   void begin_anew();

@@ -54,7 +54,7 @@ struct TumblingParams {
   /// Returns inside are the robot's own; Eigen's empty box, as here: none are. One whose corners are swapped is
   /// refused.
   Eigen::AlignedBox3d own_body_L;
-  double lag_s = 0.2;  ///< how old a sample is when its rate is settled
+  double lag_s = 0.2;  ///< how old a sample is when its rate is settled; a sweep waits no longer, two samples at least
 
   using Expert = TumblingExpertParams;
   Expert expert;  ///< what few need
@@ -80,7 +80,7 @@ struct TumblingParams {
     visit(p.time_offset_sigma_s,
           {"time_offset_sigma_s", "s", 0.0, 0.02, "offset between the clocks of lidar and IMU; 0: none", Rank::first});
     visit.group("", p.lidar);
-    visit(p.lag_s, {"lag_s", "s", 0.0, 10.0, "how old a sample is when its rate is settled", Rank::first});
+    visit(p.lag_s, {"lag_s", "s", 0.0, 10.0, "how long a sweep waits, at most, for what follows it", Rank::first});
     visit.group("", p.expert);
   }
 };

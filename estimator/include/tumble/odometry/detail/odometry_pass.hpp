@@ -38,6 +38,8 @@ class OdometryPass {
   bool covers(TimeNs end_ns) const;
   /// The same for the newest of them, by the lidar's clock. Nothing before the first.
   std::optional<TimeNs> covered_ns() const;
+  /// The first sample, by the IMU's clock, that covers this time of the lidar's and whose rate is not settled yet.
+  std::optional<TimeNs> covering_ns(TimeNs end_ns) const;
   Status add_sweep(TimeNs start_ns, TimeNs end_ns, std::span<const LidarPoint> points,
                    LidarInertialOdometry::SweepReport& report);
   /// As TumblingOdometry::newest.
@@ -49,8 +51,9 @@ class OdometryPass {
   void settle_until(TimeNs time_ns);
   /// The rates go on with another stream, anew; the mapper stays.
   void begin_rates(const RegimeStream::Params& rate);
-  /// The map and all that hangs on it is that of another pass; the rates stay, and go on where that one was told last.
-  void take_map(const OdometryPass& other);
+  /// The map and all that hangs on it is that of another pass, with the memory that it keeps for its samples; the rates
+  /// stay, and go on where that one was told last. The other is spent.
+  void take_map(OdometryPass&& other);
 
   const RegimeStream& rates() const { return rates_; }
   const RegimeStream::State& rate_state() const { return rate_state_; }
