@@ -52,8 +52,8 @@ struct SensitivityOptions {
   std::vector<std::string> metrics;  ///< empty: the headline ones of each kind
 };
 
-/// Draws that a row needs, and of "not ok" how many of either sort.
-inline constexpr std::size_t kSensitivityDrawsMin = 24, kSensitivityFailuresMin = 5;
+/// Draws that a row needs, and of "not ok" how many of either sort. Below 24 the rank correlation speaks alone.
+inline constexpr std::size_t kSensitivityDrawsMin = 12, kSensitivityFailuresMin = 5;
 
 /// Of the sections of scenarios that `numbers` has, in their order; rows of fewer draws are left out. A failed run
 /// ranks as the worst. Throws BadInput on a method or metric that the results do not hold.

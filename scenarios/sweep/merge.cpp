@@ -57,6 +57,13 @@ void join_place_notes(const Notes& shard, Results& into) {
   }
 }
 
+/// How the rows of all of them were asked for.
+void join_command_notes(const std::vector<Notes>& notes, Results& into) {
+  std::string commands = into.note(kCommandNote);
+  for (const Notes& own : notes) commands = with_commands(commands, text_of(own, kCommandNote));
+  if (!commands.empty()) into.set_note(kCommandNote, commands);
+}
+
 /// Of every input, so that none is read in vain; one is open at a time.
 std::vector<Notes> checked_notes(std::span<const fs::path> in, bool mixed) {
   std::vector<Notes> notes;
@@ -118,8 +125,9 @@ MergeCounts merge_results(const DatabaseOwner& owner, std::span<const fs::path> 
         join_method_notes(notes[i], in[i], mixed, results);
       }
       for (const Notes& own : notes) join_place_notes(own, results);
+      join_command_notes(notes, results);
       // the joined database says where its rows come from, not which program has joined them
-      for (const char* key : {"suite", "build", "data", kCommandNote}) {
+      for (const char* key : {"suite", "build", "data"}) {
         std::string text;
         for (std::size_t i = 0; i < notes.size() && text.empty(); ++i) text = text_of(notes[i], key);
         if (!text.empty()) results.set_note(key, mixed && std::string_view(key) == "build" ? kMixedBuilds : text);

@@ -4,6 +4,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <limits>
 #include <nlohmann/json.hpp>
 
 #include "scenarios/summary/comparison.hpp"
@@ -205,6 +206,24 @@ TEST(Page, HasItsPartsInOrderAndInTheListOfContents) {
     at = next;
   }
   EXPECT_THAT(page_html({}, ""), Not(HasSubstr("<a href=\"#errors\">"))) << "of nothing there is nothing to go to";
+}
+
+// of the first class the score is small and sure, of the last it has no upper end
+TEST(Page, DrawsAScoreOverTheRangeOfWhatBreaksIt) {
+  PageContent content;
+  content.summary = summary_of("hill");
+  scenarios::Influence slope{"world.<slope>", {}, {}, 0.001, 0.1, 2.0};
+  const double infinity = std::numeric_limits<double>::infinity();
+  slope.dependence = {
+      {0.1, 0.2, 12, {0.1, 0.05, 0.2}}, {0.3, 0.4, 12, {1.0, 0.5, 2.0}}, {0.4, 0.9, 12, {3.0, 1.0, infinity}}};
+  content.sensitivity = {{"hill", Kind::rate, "raw", "rate_error_clipped_median_rad_s", 36, {slope}}};
+  const std::string page = page_html(content, "");
+  EXPECT_THAT(page, HasSubstr("<svg class=\"dependence\""));
+  EXPECT_THAT(page, HasSubstr("<title>world.&lt;slope&gt; 0.1 to 0.2: 0.100 rad/s [0.0500, 0.200], 12 draws</title>"));
+  EXPECT_THAT(page, Not(HasSubstr("nan")));
+  EXPECT_THAT(page, Not(HasSubstr("=\"inf"))) << "an infinite end lies on the frame";
+  content.sensitivity[0].influences[0].dependence.resize(1);
+  EXPECT_THAT(page_html(content, ""), Not(HasSubstr("<svg class=\"dependence\""))) << "one class has no shape";
 }
 
 TEST(Page, MovesByItselfAndStandsStillForWhoeverAsks) {

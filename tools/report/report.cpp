@@ -68,9 +68,13 @@ bool are_of_here(const scenarios::Results& results, const ReportOptions& options
 std::vector<Fact> commands(const scenarios::Results& results, const ReportOptions& options) {
   const std::string database = scenarios::shell_word(options.database.string());
   std::vector<Fact> out;
-  const std::string sweep = results.note(scenarios::kCommandNote);
-  if (!sweep.empty() && are_of_here(results, options))
-    out.emplace_back("The results", "tumble sweep " + sweep + " --db " + database);
+  if (are_of_here(results, options)) {
+    const char* what = "The results";
+    for (const std::string& sweep : scenarios::commands_of(results.note(scenarios::kCommandNote))) {
+      out.emplace_back(what, "tumble sweep " + sweep + " --db " + database);
+      what = "and";
+    }
+  }
   if (!options.page.empty())
     out.emplace_back("This page", "tumble report " + database + " -o " + scenarios::shell_word(options.page.string()));
   out.emplace_back("Paired differences, as tables (with --metric NAME of other metrics)", "tumble compare " + database);
@@ -118,13 +122,14 @@ std::string how_to_get_pictures(const scenarios::Results& results, const ReportO
         "{}. A sweep over the models and scenarios that these results were made of (digest {}) makes them; over those "
         "that are found here (digest {}) it is refused.",
         none, made_of, options.data);
-  const std::string command = results.note(scenarios::kCommandNote), suite = results.note("suite");
+  const std::vector<std::string> commands = scenarios::commands_of(results.note(scenarios::kCommandNote));
+  const std::string suite = results.note("suite");
   return fmt::format(
       "{}. They are made, and nothing that the results hold is run again, by: tumble sweep {} --db {} --examples 3",
       none,
-      !command.empty() ? command
-      : suite.empty()  ? "SUITE"
-                       : suite,
+      !commands.empty() ? commands.front()
+      : suite.empty()   ? "SUITE"
+                        : suite,
       scenarios::shell_word(options.database.string()));
 }
 

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "tools/html/html.hpp"
+#include "tools/report/dependence_svg.hpp"
 #include "tools/report/score_html.hpp"
 
 namespace tumble::tools {
@@ -32,12 +33,26 @@ std::string strength_cell(double strength) {
                      60.0 * strength, strength);
 }
 
+/// What the score is where the number lies, drawn.
+std::string dependence_cell(const Sensitivity& row, const Influence& each) {
+  const bool is_share = row.metric == kFailure || scenarios::metric_info(row.metric).unit == scenarios::Unit::verdict;
+  const auto told = [&](const scenarios::DependenceClass& part) {
+    const std::string centre =
+        is_share ? fmt::format("{:.0f} % of runs [{:.0f}, {:.0f}]", 100.0 * part.centre.value, 100.0 * part.centre.low,
+                               100.0 * part.centre.high)
+                 : styled_value(row.metric, part.centre.value, true) + " " + styled_interval(row.metric, part.centre);
+    return fmt::format("{} {:.4g} to {:.4g}: {}, {} draws", each.number, part.low, part.high, centre, part.draws);
+  };
+  return "<td>" + dependence_svg(each.dependence, told) + "</td>";
+}
+
 std::string influence_cells(const Sensitivity& row, const Influence& each) {
   return "<td><code>" + escaped(each.number) + "</code></td>" + strength_cell(each.strength()) +
          cell(fmt::format("{:+.2f} [{:+.2f}, {:+.2f}]", each.correlation.rho, each.correlation.low,
                           each.correlation.high),
               "number") +
-         cell(median_text(row, each.median_low), "number") + cell(median_text(row, each.median_high), "number");
+         cell(median_text(row, each.median_low), "number") + cell(median_text(row, each.median_high), "number") +
+         dependence_cell(row, each);
 }
 
 std::string row_html(const Sensitivity& row) {
@@ -51,7 +66,7 @@ std::string row_html(const Sensitivity& row) {
     ++shown;
   }
   if (shown > 0) return out;
-  return "<tr>" + cell(row.method) + cell(row.metric) + "<td colspan=\"5\">none is told from chance</td></tr>\n";
+  return "<tr>" + cell(row.method) + cell(row.metric) + "<td colspan=\"6\">none is told from chance</td></tr>\n";
 }
 
 }  // namespace
@@ -67,13 +82,16 @@ std::string sensitivity_html(const std::vector<Sensitivity>& rows, const std::st
       "that the number explains, of its first-order index and its squared rank correlation the larger; a correlation "
       "above 0 says: the larger the number, the "
       "worse the score. Then the median score over the quarter of the draws with the lowest and with the highest "
-      "numbers.</p>\n";
+      "numbers, and what lies between: the score over the number’s range, in classes of as many draws each, the line "
+      "at "
+      "the median (or the share that failed) within its 95 % interval, upwards the larger score (point at a class to "
+      "read it).</p>\n";
   for (auto row = rows.begin(); row != rows.end();) {
     const Sensitivity& first = *row;
     out += fmt::format("<details{}><summary>{} · {}</summary>\n", row == rows.begin() ? " open" : "",
                        escaped(first.scenario), to_string(first.kind)) +
            html::table_head({"method", "score", "number", "strength", "rank correlation [95 %]", "lowest quarter",
-                             "highest quarter"},
+                             "highest quarter", "over its range"},
                             3);
     for (; row != rows.end() && row->scenario == first.scenario && row->kind == first.kind; ++row)
       out += row_html(*row);

@@ -109,6 +109,12 @@ std::string command_of(const Options& options) {
   return words;
 }
 
+/// Behind those of the sweeps before into the same database.
+void note_command(scenarios::Results results, const Options& options) {
+  const std::string known = results.note(scenarios::kCommandNote);
+  results.set_note(scenarios::kCommandNote, scenarios::with_commands(known, command_of(options)));
+}
+
 /// Of a whole suite alone: what is typical of a part of its seeds need not be so of all. What is wrong with the
 /// pictures costs the sweep a line, not its table and its status. Returns false when it was
 /// stopped.
@@ -217,7 +223,7 @@ int run_sweep(const Session& session, const Options& options) {
   }
 
   const std::optional<scenarios::Question> question = ask(options, data, suite);
-  scenarios::open_results(data, suite, options.database).set_note(scenarios::kCommandNote, command_of(options));
+  note_command(scenarios::open_results(data, suite, options.database), options);
   const InterruptFlag interrupt;
   // it speaks of simulations
   if (suite.recordings.empty()) certify(session, data, options.database, interrupt.raised());

@@ -16,6 +16,7 @@
 #include "scenarios/errors.hpp"
 #include "scenarios/sweep/database_owner.hpp"
 #include "scenarios/sweep/results.hpp"
+#include "scenarios/sweep/sweep_notes.hpp"
 #include "tests/temporary_folder.hpp"
 
 namespace tumble::scenarios {
@@ -94,6 +95,17 @@ TEST_F(MergeTest, CountsWhatItWrote) {
   EXPECT_EQ(merge_results(out_, Paths{a, b, a}, false).added, 3u);
   EXPECT_EQ(merged().size(), 3u);
   EXPECT_EQ(merge_results(out_, Paths{a, b}, false).added, 0u);
+}
+
+TEST_F(MergeTest, SaysOfAllInputsHowTheyWereAskedFor) {
+  const auto a = make("a.db", {row(1, OutcomeStatus::ok)});
+  const auto b = make("b.db", {row(2, OutcomeStatus::ok)});
+  const auto shard = make("c.db", {row(3, OutcomeStatus::ok)});
+  Results(a, Results::Mode::create_or_append).set_note(kCommandNote, "hill --seeds 1..1");
+  Results(b, Results::Mode::create_or_append).set_note(kCommandNote, "throw --seeds 2..3");
+  Results(shard, Results::Mode::create_or_append).set_note(kCommandNote, "throw --seeds 2..3");
+  merge_results(out_, Paths{a, b, shard}, false);
+  EXPECT_EQ(Results(out_, Results::Mode::read_only).note(kCommandNote), "hill --seeds 1..1\nthrow --seeds 2..3");
 }
 
 TEST_F(MergeTest, TwoAnswersOfOneBuildAreRefusedAndNothingIsLeft) {

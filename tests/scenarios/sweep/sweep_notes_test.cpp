@@ -27,5 +27,15 @@ TEST(SweepNotes, AShellReadsAWordAsItWas) {
   EXPECT_EQ(shell_word("suites/my-own_1.yaml"), "suites/my-own_1.yaml") << "no quotes where none are needed";
 }
 
+TEST(SweepNotes, EachCommandStandsOnceInItsOrder) {
+  std::string note = with_commands("", "hill --seeds 1..4");
+  note = with_commands(note, "throw --seeds 1..4");
+  note = with_commands(note, "hill --seeds 1..4\nhill --seeds 5..8");
+  const std::vector<std::string> all = {"hill --seeds 1..4", "throw --seeds 1..4", "hill --seeds 5..8"};
+  EXPECT_EQ(commands_of(note), all);
+  EXPECT_TRUE(commands_of("").empty());
+  EXPECT_EQ(with_commands(note, ""), note);
+}
+
 }  // namespace
 }  // namespace tumble::scenarios
