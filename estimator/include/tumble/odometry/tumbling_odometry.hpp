@@ -84,8 +84,7 @@ class TumblingOdometry {
   /// Time of the newest sample that was taken in.
   std::optional<TimeNs> newest_ns() const { return newest_ns_; }
 
-  /// Rate of the newest sample: provisional where the gyro clips, since what follows tells most of it. Nothing before
-  /// the first sample.
+  /// Rate of the newest sample, if any: provisional where the gyro clips, since what follows tells most of it.
   std::optional<RateState> newest_rate() const { return pass_.rates().rate().newest(pass_.rate_state().rate); }
 
   /// Latest settled rate, lag_s old, or a sample less where a sweep waited for it. Nothing while the lag fills.
@@ -128,7 +127,6 @@ class TumblingOdometry {
   };
 
   Status check_state() const;
-
   Status take_in(const ImuSample& sample);
   void register_sweep(TimeNs start_ns, TimeNs end_ns, std::vector<LidarPoint> points);
   bool is_due(TimeNs end_ns) const;
