@@ -26,8 +26,7 @@
 ///   covariance that becomes smaller fails as one that becomes larger does. A run that is no worse fails any of all
 ///   tests of a gate with at most `risk` (Bonferroni);
 /// - the middle of a metric over the draws of all scenarios of a method, where several have it: a shift that is too
-/// small
-///   for the draws of one;
+///   small for the draws of one;
 /// - the worst draw, which a test of the middle does not see: it may be `worst` times the accepted worst.
 namespace tumble::scenarios {
 
