@@ -48,11 +48,11 @@ std::string dependence_cell(const Sensitivity& row, const Influence& each) {
 
 std::string influence_cells(const Sensitivity& row, const Influence& each) {
   return "<td><code>" + escaped(each.number) + "</code></td>" + strength_cell(each.strength()) +
+         dependence_cell(row, each) +
          cell(fmt::format("{:+.2f} [{:+.2f}, {:+.2f}]", each.correlation.rho, each.correlation.low,
                           each.correlation.high),
               "number") +
-         cell(median_text(row, each.median_low), "number") + cell(median_text(row, each.median_high), "number") +
-         dependence_cell(row, each);
+         cell(median_text(row, each.median_low), "number") + cell(median_text(row, each.median_high), "number");
 }
 
 std::string row_html(const Sensitivity& row) {
@@ -78,20 +78,18 @@ std::string sensitivity_html(const std::vector<Sensitivity>& rows, const std::st
   out +=
       "<p>What breaks a method: of the numbers that its draws differ in the three strongest that chance does not "
       "explain (95 %, after Holm’s correction over all numbers of the row). The strength is the share of the variance "
-      "of the score’s ranks "
-      "that the number explains, of its first-order index and its squared rank correlation the larger; a correlation "
-      "above 0 says: the larger the number, the "
-      "worse the score. Then the median score over the quarter of the draws with the lowest and with the highest "
-      "numbers, and what lies between: the score over the number’s range, in classes of as many draws each, the line "
-      "at "
-      "the median (or the share that failed) within its 95 % interval, upwards the larger score (point at a class to "
-      "read it).</p>\n";
+      "of the score’s ranks that the number explains, of its first-order index and its squared rank correlation the "
+      "larger. Drawn is the score over the number’s range, in classes of as many draws each: the line at the median "
+      "(or "
+      "the share that failed) within its 95 % interval, upwards the larger score; point at a class to read it. A "
+      "correlation above 0 says: the larger the number, the worse the score. Then the median score over the quarter of "
+      "the draws with the lowest and with the highest numbers.</p>\n";
   for (auto row = rows.begin(); row != rows.end();) {
     const Sensitivity& first = *row;
     out += fmt::format("<details{}><summary>{} · {}</summary>\n", row == rows.begin() ? " open" : "",
                        escaped(first.scenario), to_string(first.kind)) +
-           html::table_head({"method", "score", "number", "strength", "rank correlation [95 %]", "lowest quarter",
-                             "highest quarter", "over its range"},
+           html::table_head({"method", "score", "number", "strength", "score over its range", "rank correlation [95 %]",
+                             "lowest quarter", "highest quarter"},
                             3);
     for (; row != rows.end() && row->scenario == first.scenario && row->kind == first.kind; ++row)
       out += row_html(*row);
