@@ -62,7 +62,8 @@ RateStream::RateStream(const Params& params)
       frozen_(ranges_of(params.rails)),
       sense_({.lever_arm_m = params.model.nominal.lever_arm_m,
               .gyro_range_rad_s = params.rails.stated_gyro_rad_s.value_or(0.0)}),
-      model_(params.model, params.period_s) {
+      model_(params.model, params.period_s),
+      device_(params.model.expert.error_sizes) {
   require_fields(params);
   require_within("lag_s", params.lag_s, 2.0 * params.period_s, std::min(10.0, 4096.0 * params.period_s));
   capacity_ = static_cast<std::size_t>(std::lround(params.lag_s / params.period_s)) + 1;
@@ -74,6 +75,8 @@ RateStream::State RateStream::start() const {
   state.rails = rails_.start();
   state.window.reserve(capacity_ + every_);
   state.work.resize(capacity_ + every_);
+  state.device.work.resize(capacity_ + every_);
+  state.device.open = params_.error_covariance ? DeviceDoubt::Open{*params_.error_covariance, 0.0} : device_.open({});
   state.rig = state.prior_rig = model_.prior_constants();
   state.rig_covariance = model_.prior_covariance();
   model_.add_rig_prior(state.rig, state.prior_corner);
@@ -147,15 +150,17 @@ void RateStream::marginalise(std::size_t first, State& state) const {
   if (!short_flight && flies(oldest)) ++state.learnt_from;
   model_.add_sample(oldest.observation, oldest.estimate, state.rig, block, corner,
                     short_flight ? &state.rig_covariance : nullptr);
+  arrow::ErrorMatrix errors = state.device.prior;
+  model_.add_errors(oldest.observation, oldest.estimate, state.rig, errors, state.device.corner, state.device.evidence,
+                    short_flight);
   model_.add_step(oldest.estimate, next.estimate, seconds_between(oldest, next), block, after);
   if (arrow::eliminate(block, &after, corner)) {
     state.prior = after;
     state.prior_corner = corner;
+    remember_errors(block, errors, state);
   } else {
     // nothing can be said of what left: start from what was known of the rig
-    state.prior = {};
-    state.prior_corner = {};
-    model_.add_rig_prior(state.rig, state.prior_corner);
+    forget_left(state);
     ++state.failures;
   }
   state.left = oldest.estimate.knot;
@@ -166,9 +171,7 @@ void RateStream::marginalise(std::size_t first, State& state) const {
     // contact was taken for flight of another rig: drop what was learnt of the rig and of the motion with it
     state.rig = state.prior_rig = model_.prior_constants();
     state.rig_covariance = model_.prior_covariance();
-    state.prior = {};
-    state.prior_corner = {};
-    model_.add_rig_prior(state.rig, state.prior_corner);
+    forget_left(state);
     state.learnt_from = 0;
     ++state.rig_resets;
   }
@@ -292,6 +295,7 @@ bool RateStream::step(State& state) const {
   arrow::BorderMatrix rig_covariance;
   if (!arrow::solve_corner(corner, rig_step, rig_covariance)) return false;
   state.rig_covariance = rig_covariance;
+  consider_errors(rig_step, state);
   state.rig.add(rig_step);
   const arrow::BorderMatrix doubted = widened(state);
   arrow::StateVector x;
@@ -305,7 +309,7 @@ bool RateStream::step(State& state) const {
     const double share = std::min(1.0, params_.expert.step_max_rad_s / std::max(1e-300, physical.head<3>().norm()));
     knot.estimate.knot.rate_rad_s += share * physical.head<3>();
     knot.estimate.knot.acceleration_rad_s2 += share * physical.tail<3>();
-    knot.covariance_rad2_s2 = arrow::rate_covariance(conditional, doubted);
+    knot.covariance_rad2_s2 = arrow::rate_covariance(conditional, doubted) + of_device(k, state);
     if (knot.estimate.soft_bounds) {
       model_.update_bounds(knot.observation, state.rig, conditional, rig_covariance, params_.expert.bound_damping,
                            knot.estimate);

@@ -117,6 +117,10 @@ SensorErrors SensorErrors::from(const Vector& v) {
   return out;
 }
 
+Vector error_deviations(const SensorErrorSizes& sizes, double share) {
+  return deviations(sizes, {share, share, share, share});
+}
+
 void discount_untold(double share, SensorErrorEvidence& evidence) {
   if (share >= 1.0) return;
   // orthonormal columns

@@ -37,6 +37,9 @@ struct RateStreamParams {
   double gap_max_s = 1.0;                    ///< longest time between samples
   double step_s = 0.005;                     ///< least time between Gauss-Newton steps; 0: with each sample
 
+  /// Of model.errors, where an earlier run has told them: taken as it is. Else what is open is asked of the readings.
+  std::optional<SensorErrors::Matrix> error_covariance = std::nullopt;
+
   using Expert = RateStreamExpertParams;
   Expert expert = {};  ///< what few need
 
@@ -116,6 +119,10 @@ class RateStream {
  private:
   void forget_oldest(State& state) const;
   void marginalise(std::size_t first, State& state) const;
+  void remember_errors(const arrow::Block& block, arrow::ErrorMatrix& errors, State& state) const;
+  void forget_left(State& state) const;
+  void consider_errors(const arrow::BorderVector& rig_step, State& state) const;
+  Eigen::Matrix3d of_device(std::size_t k, const State& state) const;
   void predict_covariance(State& state) const;
   double jump_before(const Knot& oldest, const State& state) const;
   void append(const ImuSample& sample, std::span<const AuxiliaryReading> auxiliary_imus, State& state) const;
@@ -143,6 +150,7 @@ class RateStream {
   FrozenAxes frozen_;
   FlightSense sense_;
   RateModel model_;
+  DeviceDoubt device_;
   std::size_t capacity_;
   std::size_t every_;  ///< samples from one step to the next
 };

@@ -64,6 +64,10 @@ struct SensorErrorSizes {
   }
 };
 
+/// Deviations of all errors; `share` from 0, the sheet's, to 1, those of a device that nobody has calibrated. None is
+/// 0.
+SensorErrors::Vector error_deviations(const SensorErrorSizes& sizes, double share);
+
 /// What a run's readings say of the errors: of the cost, once all else is at its optimum for each value of the errors,
 /// half the second derivative's double and minus the first, about `about`.
 struct SensorErrorEvidence {
