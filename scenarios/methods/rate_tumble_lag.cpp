@@ -52,10 +52,7 @@ RegimeStream::Params stream_params(const sim::Sensors& sensors, const sim::Value
   rate.rails = batch.rails;
   rate.expert.planes = batch.expert.planes;
   rate.expert.accel_planes = batch.expert.accel_planes;
-  if (batch.learnt_errors) {
-    rate.model.errors = batch.learnt_errors->errors;
-    rate.error_covariance = batch.learnt_errors->covariance;
-  }
+  rate.learnt_errors = batch.learnt_errors;
   return params;
 }
 

@@ -53,6 +53,12 @@ void add_prior(const RateStream::State& state, const RateModel& model, const Rat
   corner.gradient += state.prior_corner.gradient - state.prior_corner.matrix * c - state.prior.border.transpose() * x;
 }
 
+RateModelParams corrected_for(const RateStreamParams& params) {
+  RateModelParams out = params.model;
+  if (params.learnt_errors) out.errors = params.learnt_errors->errors;
+  return out;
+}
+
 }  // namespace
 
 RateStream::RateStream(const Params& params)
@@ -62,9 +68,10 @@ RateStream::RateStream(const Params& params)
       frozen_(ranges_of(params.rails)),
       sense_({.lever_arm_m = params.model.nominal.lever_arm_m,
               .gyro_range_rad_s = params.rails.stated_gyro_rad_s.value_or(0.0)}),
-      model_(params.model, params.period_s),
+      model_(corrected_for(params), params.period_s),
       device_(params.model.expert.error_sizes) {
   require_fields(params);
+  if (params.learnt_errors) require_known(*params.learnt_errors);
   require_within("lag_s", params.lag_s, 2.0 * params.period_s, std::min(10.0, 4096.0 * params.period_s));
   capacity_ = static_cast<std::size_t>(std::lround(params.lag_s / params.period_s)) + 1;
   every_ = std::clamp(static_cast<std::size_t>(params.step_s / params.period_s + 1e-6), std::size_t{1}, capacity_);
@@ -76,7 +83,8 @@ RateStream::State RateStream::start() const {
   state.window.reserve(capacity_ + every_);
   state.work.resize(capacity_ + every_);
   state.device.work.resize(capacity_ + every_);
-  state.device.open = params_.error_covariance ? DeviceDoubt::Open{*params_.error_covariance, 0.0} : device_.open({});
+  state.device.open =
+      params_.learnt_errors ? DeviceDoubt::Open{params_.learnt_errors->covariance, 0.0} : device_.open({});
   state.rig = state.prior_rig = model_.prior_constants();
   state.rig_covariance = model_.prior_covariance();
   model_.add_rig_prior(state.rig, state.prior_corner);

@@ -115,6 +115,12 @@ void members(Self& s, Visitor& visit) {
   visit("errors.accel_blur_s2", s.accel_blur_s2);
 }
 
+template <StateOf<KnownSensorErrors> Self, class Visitor>
+void members(Self& s, Visitor& visit) {
+  visit("known.errors", s.errors);
+  visit("known.covariance", s.covariance);
+}
+
 template <StateOf<SensorErrorEvidence> Self, class Visitor>
 void members(Self& s, Visitor& visit) {
   visit("evidence.about", s.about);
@@ -191,7 +197,7 @@ void others(Self& p, Visitor& visit) {
   others(p.rails, visit);
   others(p.expert.planes, visit);
   others(p.expert.accel_planes, visit);
-  visit("error_covariance", p.error_covariance);
+  visit("learnt_errors", p.learnt_errors);
 }
 
 }  // namespace tumble

@@ -36,6 +36,10 @@ struct KnownSensorErrors {
   SensorErrors::Matrix covariance = SensorErrors::Matrix::Zero();
 };
 
+/// Throws InvalidParams on errors beyond 0.2, or on what is no covariance: a negative eigenvalue would pass for perfect
+/// knowledge.
+void require_known(const KnownSensorErrors& learnt);
+
 /// What is assumed of a device's errors: standard deviations as a data sheet states them, and those of a device that
 /// nobody has calibrated. Which of the two a device is, the readings tell (SensorErrorFit); a second deviation that
 /// does not exceed the first takes the sheet's word for it. [0, 0.1] each, units as in SensorErrors.
