@@ -35,15 +35,15 @@ TEST(DeviceDoubt, WithoutEvidenceIsTheMixtureAssumed) {
   EXPECT_EQ((open.covariance - SensorErrors::Matrix(open.covariance.diagonal().asDiagonal())).norm(), 0.0);
 }
 
-// One number alone: odds, mean and variance by hand. Of what samples say, kBelieved is believed, of the odds and of the
-// variance; where the errors lie is taken from the same share.
+// One number alone: odds, mean and variance by hand. Of what samples say of the odds three tenths are believed, of
+// where the errors lie three hundredths.
 TEST(DeviceDoubt, IsBayesOverTwoDevices) {
   const SensorErrorSizes sizes;
   const double delay_s = 1.5e-4, sigma_s = 1e-4;
   const DeviceDoubt::Open open = DeviceDoubt(sizes).open(delay_of(delay_s, sigma_s));
-  const double believed_s = sigma_s / std::sqrt(0.03);
+  const double of_odds_s = sigma_s / std::sqrt(0.3), believed_s = sigma_s / std::sqrt(0.03);
   const auto density = [&](double size) {
-    const double variance = size * size + believed_s * believed_s;
+    const double variance = size * size + of_odds_s * of_odds_s;
     return std::exp(-0.5 * delay_s * delay_s / variance) / std::sqrt(variance);
   };
   const double of_sheet = 0.7 * density(sizes.delay_s), of_unknown = 0.3 * density(sizes.delay_unknown_s);
