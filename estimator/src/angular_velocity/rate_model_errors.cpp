@@ -55,8 +55,8 @@ RateFactor RateModel::flight(const RateObservation& observation, const RateKnot&
 
 // rate_smoother.md (R35), and the sums over samples of (R37)
 void RateModel::add_errors(const RateObservation& observation, const RateEstimate& estimate, const RigConstants& rig,
-                           arrow::ErrorMatrix& block, arrow::BorderErrors& border,
-                           SensorErrorEvidence& evidence) const {
+                           arrow::ErrorMatrix& block, arrow::BorderErrors& border, SensorErrorEvidence& evidence,
+                           bool doubted) const {
   constexpr int kGyroBias = 3, kAccelBias = 6;
   using Row = Eigen::Matrix<double, 1, SensorErrors::kSize>;
   const Vector3d &rate = estimate.knot.rate_rad_s, &force = observation.sample.specific_force_m_s2;
@@ -66,6 +66,7 @@ void RateModel::add_errors(const RateObservation& observation, const RateEstimat
   };
 
   const bool by_elements = observation.by_elements();
+  if (doubted && by_elements) return;
   const Vector3d reading = corrected_rate(observation, estimate);
   const RateFactor gyro = by_elements ? element_factor(at_reading(observation, estimate), rig, reading)
                                       : gyro_factor(at_reading(observation, estimate), rig, reading);
@@ -91,7 +92,7 @@ void RateModel::add_errors(const RateObservation& observation, const RateEstimat
     add(by_errors, information, gyro.residual[j] - part);
   }
 
-  if (says_nothing_of_rig(estimate)) return;
+  if (doubted || says_nothing_of_rig(estimate)) return;
   if (observation.clipping.accel != 0 && observation.accel_rows.tilted()) return;  // rows mix what each axis is told
   auto [flight, information] = force_factor(observation, estimate, rig);
   Vector3d by_delay;

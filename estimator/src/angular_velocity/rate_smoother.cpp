@@ -33,15 +33,7 @@ RateSmoother::RateSmoother(const Params& params)
       rails_({params.rails, params.expert.planes, params.expert.accel_planes}),
       rests_(params.expert.rests) {
   require_fields(params);
-  if (params.learnt_errors) {
-    for (const double value : params.learnt_errors->errors.vector()) require_within("learnt errors", value, -0.2, 0.2);
-    for (const double value : params.learnt_errors->covariance.reshaped()) {
-      require_within("learnt errors' covariance", value, -1.0, 1.0);
-    }
-    // a negative eigenvalue would pass for perfect knowledge
-    const SensorErrors::Vector pivots = params.learnt_errors->covariance.ldlt().vectorD();
-    require_within("learnt errors' covariance, least pivot", pivots.minCoeff(), -1e-9 * pivots.maxCoeff(), 1.0);
-  }
+  if (params.learnt_errors) require_known(*params.learnt_errors);
   (void)RateModel(params.model, 0.01);  // throws on bad parameters
 }
 

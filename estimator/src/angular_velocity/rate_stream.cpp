@@ -53,6 +53,12 @@ void add_prior(const RateStream::State& state, const RateModel& model, const Rat
   corner.gradient += state.prior_corner.gradient - state.prior_corner.matrix * c - state.prior.border.transpose() * x;
 }
 
+RateModelParams corrected_for(const RateStreamParams& params) {
+  RateModelParams out = params.model;
+  if (params.learnt_errors) out.errors = params.learnt_errors->errors;
+  return out;
+}
+
 }  // namespace
 
 RateStream::RateStream(const Params& params)
@@ -62,8 +68,10 @@ RateStream::RateStream(const Params& params)
       frozen_(ranges_of(params.rails)),
       sense_({.lever_arm_m = params.model.nominal.lever_arm_m,
               .gyro_range_rad_s = params.rails.stated_gyro_rad_s.value_or(0.0)}),
-      model_(params.model, params.period_s) {
+      model_(corrected_for(params), params.period_s),
+      device_(params.model.expert.error_sizes) {
   require_fields(params);
+  if (params.learnt_errors) require_known(*params.learnt_errors);
   require_within("lag_s", params.lag_s, 2.0 * params.period_s, std::min(10.0, 4096.0 * params.period_s));
   capacity_ = static_cast<std::size_t>(std::lround(params.lag_s / params.period_s)) + 1;
   every_ = std::clamp(static_cast<std::size_t>(params.step_s / params.period_s + 1e-6), std::size_t{1}, capacity_);
@@ -74,6 +82,9 @@ RateStream::State RateStream::start() const {
   state.rails = rails_.start();
   state.window.reserve(capacity_ + every_);
   state.work.resize(capacity_ + every_);
+  state.device.work.resize(capacity_ + every_);
+  state.device.open =
+      params_.learnt_errors ? DeviceDoubt::Open{params_.learnt_errors->covariance, 0.0} : device_.open({});
   state.rig = state.prior_rig = model_.prior_constants();
   state.rig_covariance = model_.prior_covariance();
   model_.add_rig_prior(state.rig, state.prior_corner);
@@ -147,15 +158,17 @@ void RateStream::marginalise(std::size_t first, State& state) const {
   if (!short_flight && flies(oldest)) ++state.learnt_from;
   model_.add_sample(oldest.observation, oldest.estimate, state.rig, block, corner,
                     short_flight ? &state.rig_covariance : nullptr);
+  arrow::ErrorMatrix errors = state.device.prior;
+  model_.add_errors(oldest.observation, oldest.estimate, state.rig, errors, state.device.corner, state.device.evidence,
+                    short_flight);
   model_.add_step(oldest.estimate, next.estimate, seconds_between(oldest, next), block, after);
   if (arrow::eliminate(block, &after, corner)) {
     state.prior = after;
     state.prior_corner = corner;
+    remember_errors(block, errors, state);
   } else {
     // nothing can be said of what left: start from what was known of the rig
-    state.prior = {};
-    state.prior_corner = {};
-    model_.add_rig_prior(state.rig, state.prior_corner);
+    forget_left(state);
     ++state.failures;
   }
   state.left = oldest.estimate.knot;
@@ -166,9 +179,7 @@ void RateStream::marginalise(std::size_t first, State& state) const {
     // contact was taken for flight of another rig: drop what was learnt of the rig and of the motion with it
     state.rig = state.prior_rig = model_.prior_constants();
     state.rig_covariance = model_.prior_covariance();
-    state.prior = {};
-    state.prior_corner = {};
-    model_.add_rig_prior(state.rig, state.prior_corner);
+    forget_left(state);
     state.learnt_from = 0;
     ++state.rig_resets;
   }
@@ -292,6 +303,7 @@ bool RateStream::step(State& state) const {
   arrow::BorderMatrix rig_covariance;
   if (!arrow::solve_corner(corner, rig_step, rig_covariance)) return false;
   state.rig_covariance = rig_covariance;
+  consider_errors(rig_step, state);
   state.rig.add(rig_step);
   const arrow::BorderMatrix doubted = widened(state);
   arrow::StateVector x;
@@ -305,7 +317,7 @@ bool RateStream::step(State& state) const {
     const double share = std::min(1.0, params_.expert.step_max_rad_s / std::max(1e-300, physical.head<3>().norm()));
     knot.estimate.knot.rate_rad_s += share * physical.head<3>();
     knot.estimate.knot.acceleration_rad_s2 += share * physical.tail<3>();
-    knot.covariance_rad2_s2 = arrow::rate_covariance(conditional, doubted);
+    knot.covariance_rad2_s2 = arrow::rate_covariance(conditional, doubted) + of_device(k, state);
     if (knot.estimate.soft_bounds) {
       model_.update_bounds(knot.observation, state.rig, conditional, rig_covariance, params_.expert.bound_damping,
                            knot.estimate);

@@ -106,6 +106,39 @@ void members(Self& s, Visitor& visit) {
   visit("sense.started", s.started);
 }
 
+template <StateOf<SensorErrors> Self, class Visitor>
+void members(Self& s, Visitor& visit) {
+  visit("errors.gyro", s.gyro);
+  visit("errors.accel", s.accel);
+  visit("errors.felt_s_m", s.felt_s_m);
+  visit("errors.accel_delay_s", s.accel_delay_s);
+  visit("errors.accel_blur_s2", s.accel_blur_s2);
+}
+
+template <StateOf<KnownSensorErrors> Self, class Visitor>
+void members(Self& s, Visitor& visit) {
+  visit("known.errors", s.errors);
+  visit("known.covariance", s.covariance);
+}
+
+template <StateOf<SensorErrorEvidence> Self, class Visitor>
+void members(Self& s, Visitor& visit) {
+  visit("evidence.about", s.about);
+  visit("evidence.information", s.information);
+  visit("evidence.gradient", s.gradient);
+}
+
+template <StateOf<RateStreamDevice> Self, class Visitor>
+void members(Self& s, Visitor& visit) {
+  visit("device.prior", s.prior);
+  visit("device.corner", s.corner);
+  visit("device.evidence", s.evidence);
+  visit("device.covariance", s.open.covariance);
+  visit("device.unlike", s.open.unlike);
+  visit("device.asked_ns", s.asked_ns);
+  visit.scratch(s.work);
+}
+
 template <StateOf<RateStream::State> Self, class Visitor>
 void members(Self& s, Visitor& visit) {
   visit("rate.rails", s.rails);
@@ -118,6 +151,7 @@ void members(Self& s, Visitor& visit) {
   visit("rate.rig_covariance", s.rig_covariance);
   visit("rate.prior", s.prior);
   visit("rate.prior_corner", s.prior_corner);
+  visit("rate.device", s.device);
   visit("rate.extremes", s.extremes);
   visit("rate.least", s.least);
   visit("rate.entry_rad_s", s.entry_rad_s);
@@ -133,15 +167,6 @@ void members(Self& s, Visitor& visit) {
   visit("rate.rig_resets", s.rig_resets);
   visit("rate.failures", s.failures);
   visit.scratch(s.work);
-}
-
-template <StateOf<SensorErrors> Self, class Visitor>
-void members(Self& s, Visitor& visit) {
-  visit("errors.gyro", s.gyro);
-  visit("errors.accel", s.accel);
-  visit("errors.felt_s_m", s.felt_s_m);
-  visit("errors.accel_delay_s", s.accel_delay_s);
-  visit("errors.accel_blur_s2", s.accel_blur_s2);
 }
 
 template <StateOf<AuxiliaryImu> Self, class Visitor>
@@ -172,6 +197,7 @@ void others(Self& p, Visitor& visit) {
   others(p.rails, visit);
   others(p.expert.planes, visit);
   others(p.expert.accel_planes, visit);
+  visit("learnt_errors", p.learnt_errors);
 }
 
 }  // namespace tumble

@@ -26,6 +26,11 @@ Status RateStream::check_state(const State& state) const {
 }
 
 bool RateStream::equal(const State& a, const State& b) {
+  const auto alike = [](const RateStreamDevice& x, const RateStreamDevice& y) {
+    return x.prior == y.prior && x.corner == y.corner && x.evidence.about == y.evidence.about &&
+           x.evidence.information == y.evidence.information && x.evidence.gradient == y.evidence.gradient &&
+           x.open.covariance == y.open.covariance && x.open.unlike == y.open.unlike && x.asked_ns == y.asked_ns;
+  };
   const auto same = [](const Knot& x, const Knot& y) {
     const ImuSample &p = x.observation.sample, &q = y.observation.sample;
     const RateEstimate &e = x.estimate, &f = y.estimate;
@@ -48,11 +53,11 @@ bool RateStream::equal(const State& a, const State& b) {
          a.rig == b.rig && a.rig_covariance == b.rig_covariance && a.prior.diagonal == b.prior.diagonal &&
          a.prior.border == b.prior.border && a.prior.gradient == b.prior.gradient &&
          a.prior_corner.matrix == b.prior_corner.matrix && a.prior_corner.gradient == b.prior_corner.gradient &&
-         a.extremes == b.extremes && a.least == b.least && a.entry_rad_s == b.entry_rad_s &&
-         a.entry_samples == b.entry_samples && a.left == b.left && a.left_ns == b.left_ns &&
-         a.prior_knot == b.prior_knot && a.prior_rig == b.prior_rig && a.samples == b.samples &&
-         a.rig_resets == b.rig_resets && a.flight_run == b.flight_run && a.waiting == b.waiting &&
-         a.learnt_from == b.learnt_from && a.failures == b.failures;
+         alike(a.device, b.device) && a.extremes == b.extremes && a.least == b.least &&
+         a.entry_rad_s == b.entry_rad_s && a.entry_samples == b.entry_samples && a.left == b.left &&
+         a.left_ns == b.left_ns && a.prior_knot == b.prior_knot && a.prior_rig == b.prior_rig &&
+         a.samples == b.samples && a.rig_resets == b.rig_resets && a.flight_run == b.flight_run &&
+         a.waiting == b.waiting && a.learnt_from == b.learnt_from && a.failures == b.failures;
 }
 
 }  // namespace tumble

@@ -117,6 +117,17 @@ SensorErrors SensorErrors::from(const Vector& v) {
   return out;
 }
 
+void require_known(const KnownSensorErrors& learnt) {
+  for (const double value : learnt.errors.vector()) require_within("learnt errors", value, -0.2, 0.2);
+  for (const double value : learnt.covariance.reshaped()) require_within("learnt errors' covariance", value, -1.0, 1.0);
+  const Vector pivots = learnt.covariance.ldlt().vectorD();
+  require_within("learnt errors' covariance, least pivot", pivots.minCoeff(), -1e-9 * pivots.maxCoeff(), 1.0);
+}
+
+Vector error_deviations(const SensorErrorSizes& sizes, double share) {
+  return deviations(sizes, {share, share, share, share});
+}
+
 void discount_untold(double share, SensorErrorEvidence& evidence) {
   if (share >= 1.0) return;
   // orthonormal columns

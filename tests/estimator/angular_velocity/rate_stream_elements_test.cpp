@@ -233,6 +233,7 @@ Believed believed(const RateStream::Params& params) {
 TEST(RateStreamElements, NothingAtARailGoesOutAsMeasuredBeforeTheRailIsKnown) {
   auto params = with_lever_arm<RateStream::Params>();
   params.lag_s = 0.06;
+  params.learnt_errors = KnownSensorErrors{};  // a device that is as on its sheet: its rail alone is in doubt
   const Believed doubted = believed(params);
   // negative control: axes that turn slower than this are believed
   params.expert.planes.distance_min_rad_s = 1000.0;
@@ -257,7 +258,9 @@ TEST(RateStreamElements, ADoubtThatALargerReadingRefutesIsTakenBack) {
       // equal readings would be a wall
       samples[kTop - 4 + i].angular_velocity_rad_s.y() = steps[i] + 0.002 * std::sin(37.0 * static_cast<double>(i));
     }
-    const RateStream method(with_lever_arm<RateStream::Params>());
+    auto params = with_lever_arm<RateStream::Params>();
+    params.learnt_errors = KnownSensorErrors{};  // as above: 200 rad/s^2 would show a gyro that may be 1 ms late
+    const RateStream method(params);
     RateStream::State state = method.start();
     std::optional<RateState> rate;
     std::vector<RateState> out;

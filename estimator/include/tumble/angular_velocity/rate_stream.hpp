@@ -8,56 +8,19 @@
 #include <vector>
 
 #include "tumble/angular_velocity/detail/arrow_solver.hpp"
+#include "tumble/angular_velocity/detail/device_doubt.hpp"
 #include "tumble/angular_velocity/detail/flight_sense.hpp"
 #include "tumble/angular_velocity/detail/frozen_axes.hpp"
 #include "tumble/angular_velocity/detail/rail_watch.hpp"
 #include "tumble/angular_velocity/detail/rate_model.hpp"
-#include "tumble/angular_velocity/detail/rate_stream_expert_params.hpp"
 #include "tumble/angular_velocity/detail/rate_stream_state.hpp"
-#include "tumble/angular_velocity/rail_detector.hpp"
-#include "tumble/angular_velocity/rate_model_params.hpp"
 #include "tumble/angular_velocity/rate_state.hpp"
+#include "tumble/angular_velocity/rate_stream_params.hpp"
 #include "tumble/angular_velocity/rest_detector.hpp"
 #include "tumble/common/imu.hpp"
-#include "tumble/common/parameters.hpp"
 #include "tumble/common/status.hpp"
 
 namespace tumble {
-
-/// Of RateStream.
-struct RateStreamParams {
-  /// Narrower than by default in two priors, since a stream answers before the data outweigh them: 2 mg of bias as
-  /// after a factory calibration, the inertia of a box (3 : 2 : 2 is one deviation off, a disc 1.8, a rod 3.6).
-  RateModelParams model = {.accel_bias_sigma_m_s2 = 0.02, .inertia_sigma = 0.15};
-  RailDetector::Params rails = {};
-  double period_s = 0.01;                    ///< nominal time between samples
-  double lag_s = 0.2;                        ///< length of the window; [2 period_s, 10], at most 4096 samples
-  double recovered_sigma_rad_s = 0.5;        ///< as in RateSmootherParams
-  double calibration_mahalanobis_max = 1.5;  ///< beyond this what was learnt of the rig is dropped
-  double gap_max_s = 1.0;                    ///< longest time between samples
-  double step_s = 0.005;                     ///< least time between Gauss-Newton steps; 0: with each sample
-
-  using Expert = RateStreamExpertParams;
-  Expert expert = {};  ///< what few need
-
-  /// Every number of it, stated once.
-  template <class Self, class Visitor>
-  static void fields(Self& p, Visitor& visit) {
-    visit.group("", p.model);
-    visit.group("rails_", p.rails);
-    visit(p.period_s, {"period_s", "s", 1e-5, 1.0, "nominal time between samples"});
-    visit(p.lag_s, {"lag_s", "s", 2e-5, 10.0, "how old a sample is when its estimate is given out", Rank::first});
-    visit(p.recovered_sigma_rad_s,
-          {"recovered_sigma_rad_s", "rad/s", 0.0, 1e4,
-           "a clipped axis known better than this is recovered, not only bounded", Rank::first});
-    visit(p.calibration_mahalanobis_max,
-          {"calibration_mahalanobis_max", "1", 0.1, 1e6,
-           "constants of the rig that move further from their prior are held to it", Rank::first});
-    visit(p.gap_max_s, {"gap_max_s", "s", 1e-6, 3600.0, "longest time between two samples before the run is refused"});
-    visit(p.step_s, {"step_s", "s", 0.0, 0.1, "least time between Gauss-Newton steps; 0: with each sample"});
-    visit.group("", p.expert);
-  }
-};
 
 /// The streaming form of RateSmoother: the same factors over a window of fixed length, one Gauss-Newton step per
 /// sample, or every 5 ms where samples come faster; what leaves the window is marginalised into a Gaussian prior on the
@@ -116,6 +79,10 @@ class RateStream {
  private:
   void forget_oldest(State& state) const;
   void marginalise(std::size_t first, State& state) const;
+  void remember_errors(const arrow::Block& block, arrow::ErrorMatrix& errors, State& state) const;
+  void forget_left(State& state) const;
+  void consider_errors(const arrow::BorderVector& rig_step, State& state) const;
+  Eigen::Matrix3d of_device(std::size_t k, const State& state) const;
   void predict_covariance(State& state) const;
   double jump_before(const Knot& oldest, const State& state) const;
   void append(const ImuSample& sample, std::span<const AuxiliaryReading> auxiliary_imus, State& state) const;
@@ -143,6 +110,7 @@ class RateStream {
   FrozenAxes frozen_;
   FlightSense sense_;
   RateModel model_;
+  DeviceDoubt device_;
   std::size_t capacity_;
   std::size_t every_;  ///< samples from one step to the next
 };

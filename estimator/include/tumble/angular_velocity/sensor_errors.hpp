@@ -36,6 +36,10 @@ struct KnownSensorErrors {
   SensorErrors::Matrix covariance = SensorErrors::Matrix::Zero();
 };
 
+/// Throws InvalidParams on errors beyond 0.2, or on what is no covariance: a negative eigenvalue would pass for perfect
+/// knowledge.
+void require_known(const KnownSensorErrors& learnt);
+
 /// What is assumed of a device's errors: standard deviations as a data sheet states them, and those of a device that
 /// nobody has calibrated. Which of the two a device is, the readings tell (SensorErrorFit); a second deviation that
 /// does not exceed the first takes the sheet's word for it. [0, 0.1] each, units as in SensorErrors.
@@ -63,6 +67,10 @@ struct SensorErrorSizes {
     visit(p.delay_unknown_s, {"delay_unknown_s", "s", 0.0, 0.1, "the same if they are not"});
   }
 };
+
+/// Deviations of all errors; `share` from 0, the sheet's, to 1, those of a device that nobody has calibrated. None is
+/// 0.
+SensorErrors::Vector error_deviations(const SensorErrorSizes& sizes, double share);
 
 /// What a run's readings say of the errors: of the cost, once all else is at its optimum for each value of the errors,
 /// half the second derivative's double and minus the first, about `about`.

@@ -50,9 +50,11 @@ class RateModel {
                   arrow::Block& block, arrow::Corner& corner, const RigConstants::Matrix* doubted = nullptr) const;
 
   /// What each of SensorErrors does to the gradient of a sample, and what the sample says of them. A clipped element
-  /// says no more than where its rail is, contact nothing: neither tells of errors.
+  /// says no more than where its rail is, contact nothing: neither tells of errors. `doubted`: of a sample that
+  /// add_sample() has let say nothing of the rig; its force is left out.
   void add_errors(const RateObservation& observation, const RateEstimate& estimate, const RigConstants& rig,
-                  arrow::ErrorMatrix& block, arrow::BorderErrors& border, SensorErrorEvidence& evidence) const;
+                  arrow::ErrorMatrix& block, arrow::BorderErrors& border, SensorErrorEvidence& evidence,
+                  bool doubted = false) const;
 
   /// Adds the motion prior between two samples, dt_s apart.
   void add_step(const RateEstimate& from, const RateEstimate& to, double dt_s, arrow::Block& block,

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "tumble/angular_velocity/detail/arrow_solver.hpp"
+#include "tumble/angular_velocity/detail/device_doubt.hpp"
 #include "tumble/angular_velocity/detail/flight_sense.hpp"
 #include "tumble/angular_velocity/detail/frozen_axes.hpp"
 #include "tumble/angular_velocity/detail/hold_watch.hpp"
@@ -18,6 +19,7 @@
 #include "tumble/angular_velocity/rate_state.hpp"
 #include "tumble/angular_velocity/rest_detector.hpp"
 #include "tumble/angular_velocity/rig_constants.hpp"
+#include "tumble/angular_velocity/sensor_errors.hpp"
 #include "tumble/common/time.hpp"
 
 /// State of RateStream.
@@ -36,6 +38,16 @@ struct RateStreamKnot {
   HeldReading held;      ///< of its gyro; as if none was held at rest
 };
 
+/// What all that left the window tells of the device's errors, and how it moves with them: rate_stream.md (R101).
+struct RateStreamDevice {
+  arrow::ErrorMatrix prior = arrow::ErrorMatrix::Zero();     ///< what each adds to the gradient of the oldest sample
+  arrow::BorderErrors corner = arrow::BorderErrors::Zero();  ///< of the rig
+  SensorErrorEvidence evidence;
+  DeviceDoubt::Open open;                ///< by the evidence, as asked last
+  TimeNs asked_ns = 0;                   ///< when
+  std::vector<arrow::ErrorMatrix> work;  ///< scratch space
+};
+
 /// All that evolves; made by RateStream::start(). Copyable; RateStream::equal() compares.
 struct RateStreamState {
   RailWatch::State rails;
@@ -49,6 +61,7 @@ struct RateStreamState {
   // what is known of the oldest sample and of the rig from all that left the window, about a point
   arrow::Block prior;
   arrow::Corner prior_corner;
+  RateStreamDevice device;
   std::array<Eigen::Vector3d, 2> extremes{Eigen::Vector3d::Zero(), Eigen::Vector3d::Zero()};  ///< of readings so far
   LeastRails least;  ///< by the readings so far
   /// Of a run of readings at a possible rail that left in part: RateStreamKnot::approach_rad_s before it, and how many

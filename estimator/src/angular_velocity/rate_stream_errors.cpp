@@ -1,0 +1,97 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// What a RateStream makes of errors of the device that it does not estimate: it gathers what readings tell of them, and
+// counts what is open of them in its covariances.
+#include <algorithm>
+#include <cmath>
+
+#include "tumble/angular_velocity/rate_stream.hpp"
+
+namespace tumble {
+
+namespace {
+
+using Eigen::Matrix3d;
+
+// Time between two questions of what is open: systems of 29 unknowns are dearer than a step.
+constexpr TimeNs kAskEvery_ns = 50'000'000;
+
+// rate_smoother.md (R41): no more than any rate
+Matrix3d considered(const arrow::ErrorMatrix& moved, const SensorErrors::Matrix& covariance, double rate_max_rad_s) {
+  const Eigen::Matrix<double, 3, SensorErrors::kSize> rates = moved.topRows<3>(),
+                                                      spread = rates.lazyProduct(covariance);
+  const Matrix3d out = spread.lazyProduct(rates.transpose());
+  return std::min(1.0, rate_max_rad_s * rate_max_rad_s / std::max(out.trace(), 1e-300)) * out;
+}
+
+bool moves(const RateStream::Knot& knot) {
+  return !knot.observation.at_rest;
+}
+
+}  // namespace
+
+// rate_stream.md (R101): the Schur complement of what leaves, errors being the last of the unknowns
+void RateStream::remember_errors(const arrow::Block& block, arrow::ErrorMatrix& errors, State& state) const {
+  RateStreamDevice& device = state.device;
+  device.prior.setZero();
+  arrow::eliminate_errors(block, errors, &device.prior, device.corner);
+  device.evidence.information.noalias() -= errors.transpose().lazyProduct(errors);
+  device.evidence.gradient.noalias() += errors.transpose().lazyProduct(block.gradient);
+}
+
+// All that is known of what left but the rig as it is.
+void RateStream::forget_left(State& state) const {
+  state.prior = {};
+  state.prior_corner = {};
+  model_.add_rig_prior(state.rig, state.prior_corner);
+  state.device.prior.setZero();
+  state.device.corner.setZero();
+  state.device.evidence = {};
+}
+
+// rate_stream.md (R102) over the window, whose blocks are eliminated; before its estimates and the rig are moved.
+void RateStream::consider_errors(const arrow::BorderVector& rig_step, State& state) const {
+  RateStreamDevice& device = state.device;
+  const std::size_t count = state.window.size();
+  if (std::none_of(state.window.begin(), state.window.end(), moves)) {
+    std::fill_n(device.work.begin(), count, arrow::ErrorMatrix::Zero());
+    return;
+  }
+  std::vector<arrow::ErrorMatrix>& errors = device.work;
+  arrow::BorderErrors border = device.corner;
+  SensorErrorEvidence told = device.evidence;
+  errors[0] = device.prior;
+  std::fill_n(errors.begin() + 1, count - 1, arrow::ErrorMatrix::Zero());
+  for (std::size_t k = 0; k < count; ++k) {
+    const Knot& knot = state.window[k];
+    model_.add_errors(knot.observation, knot.estimate, state.rig, errors[k], border, told);
+    arrow::eliminate_errors(state.work[k], errors[k], k + 1 == count ? nullptr : &errors[k + 1], border);
+    told.information.noalias() -= errors[k].transpose().lazyProduct(errors[k]);
+    told.gradient.noalias() += errors[k].transpose().lazyProduct(state.work[k].gradient);
+  }
+  const arrow::BorderErrors of_rig = state.rig_covariance.lazyProduct(border);
+  for (std::size_t k = count; k-- > 0;)
+    errors[k] =
+        arrow::back_substitute_errors(state.work[k], errors[k], k + 1 == count ? nullptr : &errors[k + 1], of_rig);
+
+  const TimeNs now_ns = state.window.back().observation.sample.time_ns;
+  if (params_.learnt_errors || now_ns - device.asked_ns < kAskEvery_ns) return;
+  device.asked_ns = now_ns;
+  told.information.noalias() -= border.transpose().lazyProduct(of_rig);
+  told.gradient.noalias() += border.transpose().lazyProduct(rig_step);
+  discount_untold(model_.said_once_share(), told);
+  device.open = device_.open(told);
+}
+
+// What is open of the device's errors, and of a delay that both triads share, in the rate of a sample.
+Matrix3d RateStream::of_device(std::size_t k, const State& state) const {
+  const Knot& knot = state.window[k];
+  if (!moves(knot)) return Matrix3d::Zero();
+  Matrix3d out = considered(state.device.work[k], state.device.open.covariance, params_.model.rate_max_rad_s);
+  const double shared_s2 = device_.shared_delay_s2(state.device.open);
+  const Eigen::Vector3d& alpha = knot.estimate.knot.acceleration_rad_s2;
+  const double struck = params_.model.expert.contact.gain_rad_m * knot.estimate.contact_m_s2.norm();
+  out += shared_s2 * (alpha * alpha.transpose() + struck * struck * Matrix3d::Identity());
+  return out;
+}
+
+}  // namespace tumble

@@ -1,0 +1,140 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// What a stream holds open of a device's errors: the mixture against closed forms, and a RateStream of a device whose
+// errors it does not correct for and may not be silent about.
+#include "tumble/angular_velocity/detail/device_doubt.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+#include <optional>
+#include <vector>
+
+#include "estimator/angular_velocity/tumble_recording.hpp"
+#include "tumble/angular_velocity/rate_stream.hpp"
+
+namespace tumble {
+namespace {
+
+constexpr int kDelay = SensorErrors::kDelay;
+
+SensorErrorEvidence delay_of(double delay_s, double sigma_s) {
+  SensorErrorEvidence out;
+  out.information(kDelay, kDelay) = 1.0 / (sigma_s * sigma_s);
+  out.gradient[kDelay] = delay_s / (sigma_s * sigma_s);
+  return out;
+}
+
+TEST(DeviceDoubt, WithoutEvidenceIsTheMixtureAssumed) {
+  const SensorErrorSizes sizes;
+  const DeviceDoubt::Open open = DeviceDoubt(sizes).open({});
+  EXPECT_NEAR(open.unlike, 0.3, 1e-12);
+  const SensorErrors::Vector sheet = error_deviations(sizes, 0.0), unknown = error_deviations(sizes, 1.0);
+  const SensorErrors::Vector expected = 0.7 * sheet.cwiseAbs2() + 0.3 * unknown.cwiseAbs2();
+  EXPECT_LT((open.covariance.diagonal() - expected).cwiseQuotient(expected).cwiseAbs().maxCoeff(), 1e-12);
+  EXPECT_EQ((open.covariance - SensorErrors::Matrix(open.covariance.diagonal().asDiagonal())).norm(), 0.0);
+}
+
+// One number alone: odds, mean and variance by hand. Of what samples say of the odds three tenths are believed, of
+// where the errors lie three hundredths.
+TEST(DeviceDoubt, IsBayesOverTwoDevices) {
+  const SensorErrorSizes sizes;
+  const double delay_s = 1.5e-4, sigma_s = 1e-4;
+  const DeviceDoubt::Open open = DeviceDoubt(sizes).open(delay_of(delay_s, sigma_s));
+  const double of_odds_s = sigma_s / std::sqrt(0.3), believed_s = sigma_s / std::sqrt(0.03);
+  const auto density = [&](double size) {
+    const double variance = size * size + of_odds_s * of_odds_s;
+    return std::exp(-0.5 * delay_s * delay_s / variance) / std::sqrt(variance);
+  };
+  const double of_sheet = 0.7 * density(sizes.delay_s), of_unknown = 0.3 * density(sizes.delay_unknown_s);
+  const double unlike = of_unknown / (of_sheet + of_unknown);
+  EXPECT_NEAR(open.unlike, unlike, 1e-9);
+  const auto about_nil = [&](double size) {
+    const double told = 1.0 / (believed_s * believed_s), mean = delay_s * told / (told + 1.0 / (size * size));
+    return 1.0 / (told + 1.0 / (size * size)) + mean * mean;
+  };
+  const double expected = (1.0 - unlike) * about_nil(sizes.delay_s) + unlike * about_nil(sizes.delay_unknown_s);
+  EXPECT_NEAR(open.covariance(kDelay, kDelay), expected, 1e-9 * expected);
+}
+
+TEST(DeviceDoubt, APlainDelayLeavesAllOpenAndNoneTakesTheSheetsWord) {
+  const DeviceDoubt doubt({});
+  const DeviceDoubt::Open late = doubt.open(delay_of(8e-3, 1e-4)), in_time = doubt.open(delay_of(0.0, 1e-5));
+  EXPECT_GT(late.unlike, 0.999);
+  EXPECT_GT(late.covariance(kDelay, kDelay), 8e-3 * 8e-3 * 0.9);
+  EXPECT_GT(late.covariance(0, 0), 0.9 * 0.01 * 0.01) << "who states one wrongly states all wrongly";
+  EXPECT_LT(in_time.unlike, 0.02);
+  EXPECT_GT(doubt.shared_delay_s2(late), 10.0 * doubt.shared_delay_s2(in_time));
+}
+
+TEST(DeviceDoubt, EvidenceThatIsNoNumberLeavesWhatWasOpen) {
+  const DeviceDoubt doubt({});
+  SensorErrorEvidence bad = delay_of(8e-3, 5e-4);
+  bad.gradient[0] = std::numeric_limits<double>::quiet_NaN();
+  EXPECT_EQ(doubt.open(bad).covariance, doubt.open({}).covariance);
+  EXPECT_EQ(doubt.open(bad).unlike, doubt.open({}).unlike);
+}
+
+struct Held {
+  std::size_t inside = 0, all = 0;
+  double share() const { return static_cast<double>(inside) / static_cast<double>(all); }
+};
+
+void add(const TumbleRecording& recording, const RateStream::Params& params, Held& held) {
+  const RateStream method(params);
+  RateStream::State state = method.start();
+  std::vector<RateState> out;
+  std::optional<RateState> one;
+  for (const ImuSample& sample : recording.samples) {
+    ASSERT_TRUE(method.push(sample, state, one).ok());
+    if (one) out.push_back(*one);
+  }
+  method.flush(state, out);
+  ASSERT_EQ(out.size(), recording.samples.size());
+  for (std::size_t k = 0; k < out.size(); ++k) {
+    if (recording.phase[k] == Phase::rest) continue;
+    for (int j = 0; j < 3; ++j) {
+      const double error = out[k].w_WI_I_rad_s[j] - recording.truth[k][j];
+      held.inside += error * error <= 9.0 * out[k].covariance_rad2_s2(j, j);
+      ++held.all;
+    }
+  }
+}
+
+// Scales 1 % off and an accelerometer that says what it said a sample before: none of it corrected for. A device of
+// which the sheet is believed states too little.
+TEST(RateStreamDevices, OneThatNobodyCalibratedIsNotSilent) {
+  Held consumer, believed, as_stated;
+  for (std::uint64_t seed = 1; seed <= 8; ++seed) {
+    TumbleOptions options;
+    options.seed = options.mounting_seed = seed;
+    const auto params = with_lever_arm<RateStream::Params>();
+    add(make_tumble(options), params, as_stated);
+    options.gyro_error.diagonal() = Eigen::Vector3d(0.01, -0.01, 0.01);
+    options.accel_error.diagonal() = Eigen::Vector3d(-0.01, 0.01, 0.01);
+    TumbleRecording recording = make_tumble(options);
+    for (std::size_t k = recording.samples.size(); k-- > 1;)
+      recording.samples[k].specific_force_m_s2 = recording.samples[k - 1].specific_force_m_s2;
+    add(recording, params, consumer);
+    auto sure = params;
+    sure.learnt_errors = KnownSensorErrors{};
+    add(recording, sure, believed);
+  }
+  ASSERT_GT(consumer.all, 5000u);
+  EXPECT_GT(consumer.share(), 0.985);                       // 0.994
+  EXPECT_GT(as_stated.share(), 0.985);                      // 0.996
+  EXPECT_LT(believed.share(), 0.75) << "negative control";  // 0.641
+}
+
+TEST(RateStreamDevices, WhatIsNoCovarianceIsRefused) {
+  auto params = with_lever_arm<RateStream::Params>();
+  params.learnt_errors = KnownSensorErrors{};
+  EXPECT_NO_THROW(RateStream{params});
+  params.learnt_errors->covariance(0, 0) = -0.01;
+  EXPECT_THROW(RateStream{params}, InvalidParams);
+  params.learnt_errors->covariance(0, 0) = std::numeric_limits<double>::quiet_NaN();
+  EXPECT_THROW(RateStream{params}, InvalidParams);
+}
+
+}  // namespace
+}  // namespace tumble
