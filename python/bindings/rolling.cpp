@@ -19,20 +19,20 @@ namespace tumble::python {
 
 namespace {
 
-/// A state of half a megabyte does not lie inside of an object of Python's.
-struct Smoothing {
-  RollingSmoother smoother;
-  std::unique_ptr<RollingSmoother::State> state = std::make_unique<RollingSmoother::State>();
+/// A filter of the sphere with its State, which is half a megabyte and does not lie inside of an object of Python's.
+template <class Filter>
+struct Rolling {
+  Filter filter;
+  std::unique_ptr<typename Filter::State> state = std::make_unique<typename Filter::State>();
 
-  explicit Smoothing(const RollingSmoother::Params& params) : smoother(params) {}
-  Smoothing(const Smoothing& other)
-      : smoother(other.smoother), state(std::make_unique<RollingSmoother::State>(*other.state)) {}
-  Smoothing& operator=(const Smoothing&) = delete;
-  ~Smoothing() = default;
+  explicit Rolling(const typename Filter::Params& params) : filter(params) {}
+  Rolling(const Rolling& other) : filter(other.filter), state(std::make_unique<typename Filter::State>(*other.state)) {}
+  Rolling& operator=(const Rolling&) = delete;
+  ~Rolling() = default;
 };
 
 void bind_smoother(nb::module_& m) {
-  using Object = Guarded<Smoothing>;
+  using Object = Guarded<Rolling<RollingSmoother>>;
   nb::class_<Object> bound(
       m, "RollingSmoother",
       "Pose of a rolling sphere from one IMU, smoothed with a fixed lag or, by default, over the whole run.\n\n"
@@ -48,14 +48,14 @@ void bind_smoother(nb::module_& m) {
             RollingSmoother::Params params;
             read_fields(keywords, params);
             keywords.done();
-            new (self) Object(Smoothing(params));
+            new (self) Object(Rolling<RollingSmoother>(params));
           },
           nb::arg("options"))
       .def(
           "add_imu",
           [](Object& self, nb::handle time_ns, nb::handle gyro, nb::handle accel, nb::handle clip_flags) {
-            const auto step = [](Smoothing& at, const ImuSample& sample, RollingPoses& out) {
-              return at.smoother.step(sample, *at.state, out.rows);
+            const auto step = [](Rolling<RollingSmoother>& at, const ImuSample& sample, RollingPoses& out) {
+              return at.filter.step(sample, *at.state, out.rows);
             };
             return feed<RollingPoses>(self, samples_of(time_ns, gyro, accel, clip_flags), step);
           },
@@ -65,7 +65,7 @@ void bind_smoother(nb::module_& m) {
           "finish",
           [](Object& self) {
             RollingPoses out;
-            self.run([&](Smoothing& at) { at.smoother.finish(*at.state, out.rows); });
+            self.run([&](Rolling<RollingSmoother>& at) { at.filter.finish(*at.state, out.rows); });
             return out;
           },
           "The poses that are still owed. The run has ended.")

@@ -58,8 +58,9 @@ from .estimates import Estimate, RateTable, Trajectory, read_estimate, read_tum,
 from .method import describe_method, serve
 from .placing import point_errors
 from .program import ProgramError, call, estimate, program, record, results, run, score, score_rows, sweep
-from .recordings import Imu, Lidar, Recording, Truth, read, write
+from .recordings import Imu, Lidar, Recording, read, write
 from .replay import Tumble, rate, rolling, sheet_of, tumbling, tumbling_options
+from .truth import Truth
 
 __version__ = "0.1.0"
 __all__ = [
