@@ -5,9 +5,9 @@ Arrays of numpy in and out; times are int64 nanoseconds, everything else SI; qua
 world (z up). What is wrong with input is TumbleError, with field, value and bound. `parameters()` of a class lists its keywords.
 
 The door        TumblingOdometry (an IMU that may clip and a lidar), RollingOdometry (IMUs in a sphere), sheets of sensors
-Rates           RegimeSmoother, RateSmoother, CarriedSmoother, Saave (whole recordings), RegimeStream, RateStream (live), find_rails
+Rates           RegimeSmoother, RateSmoother, CarriedSmoother, Saave (whole recordings), RegimeStream, RateStream, CarriedStream (live), find_rails
 Attitude        TumbleAttitude, Vqf, Strapdown
-Sphere          RollingSmoother
+Sphere          RollingSmoother, RollingFilter (live)
 Mapper          LidarInertialOdometry
 Recordings      read, write; rate, tumbling, rolling take them whole
 Estimates       read_tum, write_tum, read_estimate
@@ -18,6 +18,7 @@ from ._tumble import (
     Attitudes,
     CarriedReport,
     CarriedSmoother,
+    CarriedStream,
     ImuSheet,
     LidarInertialOdometry,
     LidarSheet,
@@ -36,6 +37,7 @@ from ._tumble import (
     RegimeSmoother,
     RegimeStream,
     RigCalibration,
+    RollingFilter,
     RollingMode,
     RollingOdometry,
     RollingPoses,
@@ -64,9 +66,9 @@ from .truth import Truth
 
 __version__ = "0.1.0"
 __all__ = [
-    "Attitudes", "CarriedReport", "CarriedSmoother", "Estimate", "Imu", "ImuSheet", "Lidar", "LidarInertialOdometry", "LidarSheet",
-    "MapPoints", "Parameter", "Pose", "Poses", "ProgramError", "RailPlane", "Rails", "RateReport", "RateSmoother", "RateSource",
-    "RateStream", "RateTable", "Rates", "Recording", "RegimeReport", "RegimeSmoother", "RegimeStream", "RigCalibration", "RollingMode", "RollingOdometry",
+    "Attitudes", "CarriedReport", "CarriedSmoother", "CarriedStream", "Estimate", "Imu", "ImuSheet", "Lidar",
+    "LidarInertialOdometry", "LidarSheet", "MapPoints", "Parameter", "Pose", "Poses", "ProgramError", "RailPlane", "Rails", "RateReport", "RateSmoother", "RateSource",
+    "RateStream", "RateTable", "Rates", "Recording", "RegimeReport", "RegimeSmoother", "RegimeStream", "RigCalibration", "RollingFilter", "RollingMode", "RollingOdometry",
     "RollingPoses", "RollingSmoother", "Saave", "Strapdown", "Sweep", "SweepCalibration", "SweepReport", "SweepVerdict", "Trajectory",
     "Truth", "Tumble", "TumbleAttitude", "TumbleError", "TumblingOdometry", "Vqf", "call", "describe_method", "estimate",
     "find_rails", "plot", "point_errors", "program", "rails_parameters", "rate", "read", "read_estimate", "read_tum", "record", "results", "rolling", "run",
