@@ -217,11 +217,78 @@ def test_program_reads_what_we_write(hill, recordings, estimates, tmp_path):
     slam = tumble.read_estimate(tumble.estimate(tmp_path / "own.h5", "slam/tumble_lag", tmp_path / "slam"))
     assert same(slam.sweep_poses.position, estimates("slam/tumble_lag").sweep_poses.position)
     back = tumble.read(tmp_path / "own.h5")
-    assert back.truth is None and tumble.read(recordings["hill"], truth=False).truth is None
+    assert tumble.read(recordings["hill"], truth=False).truth is None
     for own, first in zip(back.imus, hill.imus, strict=True):
         assert same(own.gyro, first.gyro) and own.name == first.name and own.gyro_range_rad_s == first.gyro_range_rad_s
         assert np.array_equal(own.clip_flags, first.clip_flags) and np.array_equal(own.T_BI, first.T_BI)
     assert same(back.sweeps.position, hill.sweeps.position) and np.array_equal(back.sweeps[3].offset_ns, hill.sweeps[3].offset_ns)
+
+
+def contents(path):
+    """Every dataset and attribute of a file, as the program and we write them."""
+    h5py = importlib.import_module("h5py")
+    found = {}
+
+    def see(name, thing):
+        for key, value in thing.attrs.items():
+            found[f"{name}@{key}"] = value.decode() if isinstance(value, bytes) else value
+        if isinstance(thing, h5py.Dataset):
+            rows = thing[()]
+            found[name] = thing.dtype, rows.shape, rows.tobytes()
+
+    with h5py.File(path) as file:
+        see("", file)
+        file.visititems(see)
+    return {name: value for name, value in found.items() if not name.endswith("@digest")}
+
+
+@pytest.mark.parametrize("name", ["hill", "slip", "twirl"])
+def test_what_the_program_wrote_is_written_again(recordings, name, tmp_path):
+    """All that is in the file, but for the digests: also what is added to the format one day."""
+    own = tmp_path / "own.h5"
+    tumble.write(own, tumble.read(recordings[name]))
+    first, again = contents(recordings[name]), contents(own)
+    assert first.keys() == again.keys() and len(first) > 100
+    assert [place for place, value in first.items() if again[place] != value] == []
+    with importlib.import_module("h5py").File(own, "r+") as file:
+        file["truth/label"][7] += 1
+    assert [place for place, value in first.items() if contents(own)[place] != value] == ["truth/label"], "the negative control"
+
+
+@pytest.mark.parametrize(("name", "method"), [("hill", "slam/tumble_lag"), ("hill", "rate/tumble_lag"), ("twirl", "attitude/vqf"),
+                                              ("slip", "position/tumble_live")])
+def test_program_scores_against_the_truth_that_we_write(recordings, name, method, tmp_path):
+    """The same figures, map and clipped samples among them, whichever of the two files was estimated and scored."""
+    tumble.write(tmp_path / "own.h5", tumble.read(recordings[name]))
+    files = {"first": recordings[name], "again": tmp_path / "own.h5"}
+    folders = [tumble.estimate(path, method, tmp_path / key) for key, path in files.items()]
+    scores = [tumble.score(folder, path) for folder in folders for path in files.values()]
+    assert len(scores[0]) > 3 and any(value is not None for value in scores[0].values())
+    assert scores == [scores[0]] * 4
+    if method == "slam/tumble_lag":
+        assert scores[0]["map_overlap"] > 0.5
+
+
+def test_a_recording_that_was_changed_is_scored(hill, recordings, tmp_path):
+    """A gyro of half the range, and a scenario of its own making: the truth says what the rail took."""
+    changed = tumble.read(recordings["hill"])
+    for imu, true in zip(changed.imus, changed.truth.imus, strict=True):
+        rail = 0.5 * np.abs(imu.gyro).max()
+        imu.gyro = np.clip(imu.gyro, -rail, rail)
+        imu.clip_flags = ((np.abs(imu.gyro) >= rail) @ [1, 2, 4]).astype(np.uint8)
+        imu.gyro_range_rad_s = rail
+        assert len(true.gyro_unclipped) == len(imu)
+    changed.scenario = "hill_of_half_the_range"
+    tumble.write(tmp_path / "changed.h5", changed)
+    scores = tumble.score(tumble.estimate(tmp_path / "changed.h5", "rate/raw", tmp_path / "changed"), tmp_path / "changed.h5")
+    imu, true = changed.imus[0], changed.truth.imus[0]
+    clipped = (imu.gyro != true.gyro_unclipped).any(axis=1)
+    assert np.count_nonzero(clipped) > 1.2 * np.count_nonzero((hill.imus[0].gyro != true.gyro_unclipped).any(axis=1)) > 0
+    error = np.linalg.norm(imu.gyro - true.rate, axis=1)[clipped]
+    assert scores["rate_error_clipped_median_rad_s"] == pytest.approx(np.median(error), rel=1e-2)
+    tumble.write(tmp_path / "blind.h5", changed, truth=False)
+    with pytest.raises(tumble.TumbleError, match="holds no truth"):
+        tumble.score(tmp_path / "changed", tmp_path / "blind.h5")
 
 
 def test_program_scores_our_poses(hill, recordings, tmp_path):

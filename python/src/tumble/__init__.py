@@ -9,7 +9,7 @@ Rates           RegimeSmoother, RateSmoother, CarriedSmoother, Saave (whole reco
 Attitude        TumbleAttitude, Vqf, Strapdown
 Sphere          RollingSmoother, RollingFilter (live)
 Mapper          LidarInertialOdometry
-Recordings      read, write; rate, tumbling, rolling take them whole
+Recordings      read, write, their truth with them; rate, tumbling, rolling take them whole
 Estimates       read_tum, write_tum, read_estimate
 Figures         plot (Matplotlib); point_errors: where returns lie by poses, and how far from where they were
 The program     record, run, estimate, score, sweep, results; serve and describe_method make a function a method of it
@@ -62,12 +62,12 @@ from .placing import point_errors
 from .program import ProgramError, call, estimate, program, record, results, run, score, score_rows, sweep
 from .recordings import Imu, Lidar, Recording, read, write
 from .replay import Tumble, rate, rolling, sheet_of, tumbling, tumbling_options
-from .truth import Truth
+from .truth import Contacts, ImuTruth, LidarTruth, Truth
 
 __version__ = "0.1.0"
 __all__ = [
-    "Attitudes", "CarriedReport", "CarriedSmoother", "CarriedStream", "Estimate", "Imu", "ImuSheet", "Lidar",
-    "LidarInertialOdometry", "LidarSheet", "MapPoints", "Parameter", "Pose", "Poses", "ProgramError", "RailPlane", "Rails", "RateReport", "RateSmoother", "RateSource",
+    "Attitudes", "CarriedReport", "CarriedSmoother", "CarriedStream", "Contacts", "Estimate", "Imu", "ImuSheet", "ImuTruth", "Lidar",
+    "LidarInertialOdometry", "LidarSheet", "LidarTruth", "MapPoints", "Parameter", "Pose", "Poses", "ProgramError", "RailPlane", "Rails", "RateReport", "RateSmoother", "RateSource",
     "RateStream", "RateTable", "Rates", "Recording", "RegimeReport", "RegimeSmoother", "RegimeStream", "RigCalibration", "RollingFilter", "RollingMode", "RollingOdometry",
     "RollingPoses", "RollingSmoother", "Saave", "Strapdown", "Sweep", "SweepCalibration", "SweepReport", "SweepVerdict", "Trajectory",
     "Truth", "Tumble", "TumbleAttitude", "TumbleError", "TumblingOdometry", "Vqf", "call", "describe_method", "estimate",

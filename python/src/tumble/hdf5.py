@@ -2,12 +2,14 @@
 """Groups of a file of HDF5: what is missing or of another type or shape is said by its place."""
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
 import numpy.typing as npt
 
 from .errors import TumbleError
+from .files import optional
 
 Array = npt.NDArray[Any]
 XYZ = "x y z"
@@ -42,6 +44,22 @@ class Group:
             raise TumbleError(f"{self.place}/{name} is {shape}, must be {bound}", "file", f"{self.place}/{name}", shape, bound)
         return data[()]
 
+    def texts(self, name: str) -> list[str]:
+        """A dataset of texts."""
+        place = f"{self.place}/{name}"
+        if name not in self.group:
+            raise missing(place)
+        try:
+            return [str(text) for text in self.group[name].asstr()[()]]
+        except (AttributeError, TypeError, UnicodeDecodeError) as error:
+            raise TumbleError(f"{place} is no list of texts, must be", "file", place, None, "texts") from error
+
+    def member(self, name: str) -> Group:
+        """The group within it."""
+        if not hasattr(self.group.get(name), "keys"):
+            raise missing(f"{self.place}/{name}")
+        return Group(self.group[name], self.place.split(": ")[0])
+
     def members(self, name: str) -> list[Group]:
         if name not in self.group:
             return []
@@ -65,7 +83,10 @@ def same_length(place: str, first: Array, **others: Array | None) -> None:
 
 
 def put(group: Any, name: str, rows: Any, dtype: str, unit: str, shape: tuple[int, ...], columns: str = "") -> None:
-    """Writes a dataset with its unit and the names of its columns. TumbleError `shape`, `type` where numbers that are whole are none."""
+    """Writes a dataset with its unit and the names of its columns.
+
+    TumbleError `shape`; `type` of numbers that are to be whole and are not, `out_of_range` of those that the file's type does not hold.
+    """
     given = np.asarray(rows)
     if np.dtype(dtype).kind in "iu" and given.dtype.kind not in "iu":
         raise TumbleError(f"{group.name}/{name} is {given.dtype}, must be {np.dtype(dtype)}", "type", f"{group.name}/{name}",
@@ -73,7 +94,20 @@ def put(group: Any, name: str, rows: Any, dtype: str, unit: str, shape: tuple[in
     if given.shape != shape:
         raise TumbleError(f"{group.name}/{name} is {given.shape}, must be {shape}", "shape", f"{group.name}/{name}", given.shape,
                           shape)
+    if np.dtype(dtype).kind in "iu" and given.size > 0:
+        held = np.iinfo(dtype)
+        for number in (int(given.min()), int(given.max())):
+            if not held.min <= number <= held.max:
+                raise TumbleError(f"{group.name}/{name} is {number}, must be within [{held.min}, {held.max}]", "out_of_range",
+                                  f"{group.name}/{name}", number, (held.min, held.max))
     data = group.create_dataset(name, data=given.astype(dtype))
     data.attrs["unit"] = unit
     if columns:
         data.attrs["columns"] = columns
+
+
+def put_texts(group: Any, name: str, texts: Sequence[str]) -> None:
+    """Writes a dataset of texts, as long as the longest one."""
+    rows = [text.encode() for text in texts]
+    utf8 = optional("h5py", "files").string_dtype("utf-8", max([1, *map(len, rows)]))
+    group.create_dataset(name, data=np.array(rows, dtype=utf8))

@@ -14,7 +14,7 @@ import numpy.typing as npt
 from .errors import TumbleError
 from .files import beside, optional
 from .hdf5 import XYZ, Group, missing, put, same_length
-from .truth import Truth, read_truth
+from .truth import Truth, read_truth, write_truth
 
 Array = npt.NDArray[Any]
 
@@ -122,6 +122,9 @@ class Recording:
     seed: int = 0
     situation_yaml: str = ""
     attribution: str = ""  #: of a real recording: who made it, under which licence
+    origin_ns: int = 0  #: of a real recording: stamp of time 0 in its source's clock, nanoseconds since 1970; 0: not known
+    tumble_version: str = ""  #: of the program that made it
+    engine_version: str = ""  #: of MuJoCo
     truth: Truth | None = None
 
     @property
@@ -199,25 +202,33 @@ def read(path: str | os.PathLike[str], truth: bool = True) -> Recording:
                 sphere_radius_m=sensors.attribute("sphere_radius_m", float), gravity_m_s2=sensors.attribute("gravity_m_s2", float),
                 scenario=top.attribute("scenario", str), seed=top.attribute("seed", int) % 2**64,
                 situation_yaml=top.attribute("situation_yaml", str), attribution=top.attribute("attribution", str, ""),
+                origin_ns=top.attribute("origin_ns", int, 0), tumble_version=top.attribute("tumble_version", str, ""),
+                engine_version=top.attribute("engine_version", str, ""),
                 truth=read_truth(Group(file["truth"], name)) if seen else None)
         except (OSError, RuntimeError, KeyError) as error:  # damaged inside
             raise TumbleError(f"{name} cannot be read: {error}", "file", name, None, "HDF5") from error
 
 
-def write(path: str | os.PathLike[str], recording: Recording) -> None:
-    """Writes the sensors of a recording as HDF5, which the program takes wherever it takes one. The truth is not written.
+def write(path: str | os.PathLike[str], recording: Recording, truth: bool = True) -> None:
+    """Writes a recording as HDF5, which the program takes wherever it takes one: what was read and not changed is in the file again,
+    and estimates have the same scores against its truth. truth=False: what an estimator may see alone.
 
-    Written beside its place and renamed. TumbleError `shape` where arrays do not fit together, `type` for times that are no
-    integers.
+    Sensors that were changed have to keep as many samples and points as their truth, or it has no rows. The digests that the program
+    writes, which would show damage, are left out. Written beside its place and renamed. TumbleError `shape` where arrays do not fit
+    together, `type` for times that are no integers, `out_of_range` for whole numbers that the file's type does not hold.
     """
     h5py = optional("h5py", "files")
     with beside(path) as part, h5py.File(part, "w", libver=("v110", "v110")) as file:
         texts = {"format": "tumble recording", "scenario": recording.scenario, "situation_yaml": recording.situation_yaml,
-                 "tumble_version": "", "engine_version": "", "attribution": recording.attribution, "digest": ""}
+                 "tumble_version": recording.tumble_version, "engine_version": recording.engine_version,
+                 "attribution": recording.attribution, "digest": ""}
         for key, text in texts.items():
             file.attrs[key] = text
-        for key, number in {"format_version": 1, "seed": recording.seed, "has_truth": 0}.items():
+        known = recording.truth if truth else None
+        for key, number in {"format_version": 1, "seed": recording.seed, "has_truth": known is not None}.items():
             file.attrs[key] = np.int64(np.uint64(number).astype(np.int64))
+        if recording.origin_ns != 0:
+            file.attrs["origin_ns"] = np.int64(recording.origin_ns)
         sensors = file.create_group("sensors")
         sensors.attrs["robot"] = recording.robot
         sensors.attrs["sphere_radius_m"] = float(recording.sphere_radius_m)
@@ -227,6 +238,9 @@ def write(path: str | os.PathLike[str], recording: Recording) -> None:
             _write_imu(imus.create_group(str(k)), imu)
         for k, lidar in enumerate(recording.lidars):
             _write_lidar(lidars.create_group(str(k)), lidar)
+        if known is not None:
+            write_truth(file.create_group("truth"), known, [len(imu) for imu in recording.imus],
+                        [len(lidar.position) for lidar in recording.lidars])
 
 
 def _write_imu(group: Any, imu: Imu) -> None:
@@ -249,7 +263,9 @@ def _write_imu(group: Any, imu: Imu) -> None:
 
 def _write_lidar(group: Any, lidar: Lidar) -> None:
     points, sweeps = len(lidar.position), len(lidar.sweep_start_ns)
-    group.attrs["name"], group.attrs["device"], group.attrs["point_times"] = lidar.name, lidar.device, lidar.point_times
+    group.attrs["name"], group.attrs["device"] = lidar.name, lidar.device
+    if lidar.point_times != "measured":
+        group.attrs["point_times"] = lidar.point_times
     group.attrs["sweep_period_ns"] = np.int64(lidar.sweep_period_ns)
     put(group, "T_BL", lidar.T_BL, "<f8", "1, last column m", (4, 4))
     put(group, "sweep_start_ns", lidar.sweep_start_ns, "<i8", "ns", (sweeps,))
