@@ -65,7 +65,7 @@ class Group:
             return []
         within = self.group[name]
         path = self.place.split(": ")[0]
-        out = []
+        out: list[Group] = []
         while str(len(out)) in within:
             out.append(Group(within[str(len(out))], path))
         return out

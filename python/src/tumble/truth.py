@@ -169,7 +169,9 @@ def _write_rows(group: Any, listed: Sequence[_Rows], record: Any, sensor: int | 
         if rows is None and each.left_out:
             continue
         rows = np.asarray(rows)[None] if each.like == "one" else np.atleast_1d(rows)
-        put(group, each.name, rows, each.dtype, each.unit, (each.count(record, sensor), *each.shape), each.columns)
+        count = each.count(record, sensor)
+        assert count is not None, "of a list with rows like the sensor's, whose number is given"
+        put(group, each.name, rows, each.dtype, each.unit, (count, *each.shape), each.columns)
 
 
 def read_truth(group: Group) -> Truth:
@@ -178,8 +180,9 @@ def read_truth(group: Group) -> Truth:
             for each in group.members("imus")]
     lidars = [_read_rows(each, _LIDAR, LidarTruth, name=each.attribute("name", str), T_BL=each.rows("T_BL", "f8", (4,)))
               for each in group.members("lidars")]
-    return _read_rows(group, _BODY, Truth, period_ns=group.attribute("period_ns", int), imus=imus, lidars=lidars,
-                      contacts=_read_rows(group.member("contacts"), _CONTACTS, Contacts), surfaces=group.texts("surfaces"))
+    out: Truth = _read_rows(group, _BODY, Truth, period_ns=group.attribute("period_ns", int), imus=imus, lidars=lidars,
+                             contacts=_read_rows(group.member("contacts"), _CONTACTS, Contacts), surfaces=group.texts("surfaces"))
+    return out
 
 
 def write_truth(group: Any, truth: Truth, samples: Sequence[int], points: Sequence[int]) -> None:
