@@ -8,6 +8,7 @@ namespace tumble::python {
 
 void bind_rails(nanobind::module_& m);
 void bind_attitudes(nanobind::module_& m);
+void bind_carried(nanobind::module_& m);
 void bind_rates(nanobind::module_& m);
 void bind_rolling(nanobind::module_& m);
 void bind_mapping(nanobind::module_& m);

@@ -13,6 +13,7 @@ NB_MODULE(_tumble, m) {
   tumble::python::bind_results(m);
   tumble::python::bind_rails(m);
   tumble::python::bind_attitudes(m);
+  tumble::python::bind_carried(m);
   tumble::python::bind_rates(m);
   tumble::python::bind_rolling(m);
   tumble::python::bind_mapping(m);

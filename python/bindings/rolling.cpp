@@ -13,26 +13,27 @@
 #include "results.hpp"
 #include "streams.hpp"
 #include "tumble/odometry/rolling_odometry.hpp"
+#include "tumble/rolling/rolling_filter.hpp"
 #include "tumble/rolling/rolling_smoother.hpp"
 
 namespace tumble::python {
 
 namespace {
 
-/// A state of half a megabyte does not lie inside of an object of Python's.
-struct Smoothing {
-  RollingSmoother smoother;
-  std::unique_ptr<RollingSmoother::State> state = std::make_unique<RollingSmoother::State>();
+/// A filter of the sphere with its State, which is half a megabyte and does not lie inside of an object of Python's.
+template <class Filter>
+struct Rolling {
+  Filter filter;
+  std::unique_ptr<typename Filter::State> state = std::make_unique<typename Filter::State>();
 
-  explicit Smoothing(const RollingSmoother::Params& params) : smoother(params) {}
-  Smoothing(const Smoothing& other)
-      : smoother(other.smoother), state(std::make_unique<RollingSmoother::State>(*other.state)) {}
-  Smoothing& operator=(const Smoothing&) = delete;
-  ~Smoothing() = default;
+  explicit Rolling(const typename Filter::Params& params) : filter(params) {}
+  Rolling(const Rolling& other) : filter(other.filter), state(std::make_unique<typename Filter::State>(*other.state)) {}
+  Rolling& operator=(const Rolling&) = delete;
+  ~Rolling() = default;
 };
 
 void bind_smoother(nb::module_& m) {
-  using Object = Guarded<Smoothing>;
+  using Object = Guarded<Rolling<RollingSmoother>>;
   nb::class_<Object> bound(
       m, "RollingSmoother",
       "Pose of a rolling sphere from one IMU, smoothed with a fixed lag or, by default, over the whole run.\n\n"
@@ -48,14 +49,14 @@ void bind_smoother(nb::module_& m) {
             RollingSmoother::Params params;
             read_fields(keywords, params);
             keywords.done();
-            new (self) Object(Smoothing(params));
+            new (self) Object(Rolling<RollingSmoother>(params));
           },
           nb::arg("options"))
       .def(
           "add_imu",
           [](Object& self, nb::handle time_ns, nb::handle gyro, nb::handle accel, nb::handle clip_flags) {
-            const auto step = [](Smoothing& at, const ImuSample& sample, RollingPoses& out) {
-              return at.smoother.step(sample, *at.state, out.rows);
+            const auto step = [](Rolling<RollingSmoother>& at, const ImuSample& sample, RollingPoses& out) {
+              return at.filter.step(sample, *at.state, out.rows);
             };
             return feed<RollingPoses>(self, samples_of(time_ns, gyro, accel, clip_flags), step);
           },
@@ -65,11 +66,84 @@ void bind_smoother(nb::module_& m) {
           "finish",
           [](Object& self) {
             RollingPoses out;
-            self.run([&](Smoothing& at) { at.smoother.finish(*at.state, out.rows); });
+            self.run([&](Rolling<RollingSmoother>& at) { at.filter.finish(*at.state, out.rows); });
             return out;
           },
           "The poses that are still owed. The run has ended.")
       .def_static("parameters", [] { return list_fields(RollingSmoother::Params{}); });
+  bind_copy<Object>(bound);
+}
+
+/// What the live filter says at its last sample.
+RollingEstimate live_estimate(const RollingFilter::State& live) {
+  RollingEstimate out;
+  out.time_ns = live.last_time_ns;
+  out.p_WG_m = live.p_WG_m;
+  out.q_WI = live.q_WI;
+  out.v_WG_m_s = live.v_WG_m_s;
+  out.covariance.topLeftCorner<3, 3>() = live.position_covariance_m2;
+  out.mode = live.mode;
+  out.at_rest = live.at_rest;
+  out.uncertain = live.uncertain;
+  return out;
+}
+
+void bind_filter(nb::module_& m) {
+  using Live = Rolling<RollingFilter>;
+  using Object = Guarded<Live>;
+  nb::class_<Object> bound(
+      m, "RollingFilter",
+      "Pose of a rolling sphere from one IMU, live: each by what came before it. RollingSmoother also hears what "
+      "follows.\n\n"
+      "RollingFilter(radius_m=..., lever_arm_m=(x, y, z), **options): as RollingSmoother; options: parameters().");
+  bound
+      .def(
+          "__init__",
+          [](Object* self, const nb::kwargs& options) {
+            Keywords keywords("RollingFilter", options);
+            keywords.need("radius_m");
+            RollingFilter::Params params;
+            read_fields(keywords, params);
+            keywords.done();
+            new (self) Object(Live(params));
+          },
+          nb::arg("options"))
+      .def(
+          "add_imu",
+          [](Object& self, nb::handle time_ns, nb::handle gyro, nb::handle accel, nb::handle clip_flags) {
+            const auto step = [](Live& at, const ImuSample& sample, RollingPoses& out) {
+              const Status status = at.filter.step(sample, *at.state);
+              if (status.ok()) out.rows.push_back(live_estimate(*at.state));
+              return status;
+            };
+            return feed<RollingPoses>(self, samples_of(time_ns, gyro, accel, clip_flags), step);
+          },
+          nb::arg("time_ns"), nb::arg("gyro"), nb::arg("accel"), nb::arg("clip_flags") = nb::none(),
+          "Takes one sample or many; returns the pose at each. Of the covariance the place alone is known; zero: the "
+          "rest.")
+      .def_prop_ro(
+          "slip_probability",
+          [](Object& self) { return self.run([](Live& at) { return at.state->slip_probability; }); },
+          "that the contact moves, over all hypotheses")
+      .def_prop_ro(
+          "bump_probability",
+          [](Object& self) { return self.run([](Live& at) { return at.state->bump_probability; }); },
+          "the part of slip_probability in which the sphere hops")
+      .def_prop_ro(
+          "contact_velocity",
+          [](Object& self) {
+            const Eigen::Vector3d v = self.run([](Live& at) { return at.state->contact_velocity_m_s; });
+            return owned(std::vector<double>(v.begin(), v.end()));
+          },
+          nb::rv_policy::automatic, "(3,), m/s, W: of the sphere's material point that touches the floor")
+      .def_prop_ro(
+          "gaps", [](Object& self) { return self.run([](Live& at) { return at.state->gaps; }); },
+          "between samples, that were bridged")
+      .def_prop_ro(
+          "started_in_motion",
+          [](Object& self) { return self.run([](Live& at) { return at.state->started_in_motion; }); },
+          "its attitude is believed less then")
+      .def_static("parameters", [] { return list_fields(RollingFilter::Params{}); });
   bind_copy<Object>(bound);
 }
 
@@ -215,6 +289,7 @@ void bind_rolling(nb::module_& m) {
       .value("bump", RollingMode::bump, "it also rises or falls")
       .value("incline", RollingMode::incline, "it stands still on a slope")
       .value("rough", RollingMode::rough, "it stands still, the floor goes up and down");
+  bind_filter(m);
   bind_smoother(m);
   bind_door(m);
 }

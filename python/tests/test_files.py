@@ -1,5 +1,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Recordings and estimates as files: there and back to the bit, and what is wrong with a file said by place."""
+import dataclasses
+
 import numpy as np
 import pytest
 from conftest import spinning
@@ -21,20 +23,70 @@ def small():
                      earth_field_t=np.array([2e-5, 0.0, -4e-5]))
     lidar = tumble.Lidar(np.array([0, 10**8]), np.array([0, 3, 7], np.uint64), random.normal(size=(7, 3)).astype(np.float32),
                          np.arange(7, dtype=np.uint32), 10**8, T_BL=pose)
-    return tumble.Recording([imu], [lidar], robot="rig", gravity_m_s2=9.8, attribution="nobody")
+    rows = lambda n, *columns: random.normal(size=(n, *columns))
+    imu_truth = tumble.ImuTruth("first", pose, *(rows(count, 3) for _ in range(6)), gyro_elements=rows(3, 3),
+                                gyro_element_offset_rad_s=rows(3), accel_elements=rows(3, 3), accel_element_offset_m_s2=rows(3),
+                                magnetic_field_t=rows(count, 3))
+    lidar_truth = tumble.LidarTruth("lidar", pose, rows(7, 3).astype(np.float32), np.array([-2, -1, 0, 1, 0, 1, 0], np.int32))
+    contacts = tumble.Contacts(np.array([0, 5, 5], np.int64), rows(3, 3), rows(3, 3), rows(3, 3), rows(3), np.array([0, 1, -1], np.int32))
+    quaternion = rows(9, 4)
+    quaternion /= np.linalg.norm(quaternion, axis=1, keepdims=True)
+    truth = tumble.Truth(500_000, rows(9, 3), quaternion, rows(9, 3), rows(9, 3), (np.arange(9) % 4).astype(np.uint8), rows(3), [imu_truth],
+                         [lidar_truth], rows(9, 3), contacts, ["terrain", "Fels_Ä"])
+    return tumble.Recording([imu], [lidar], robot="rig", gravity_m_s2=9.8, scenario="hill", seed=2**64 - 1, situation_yaml="a: 1",
+                            attribution="nobody", origin_ns=1_234_567_890_123_456_789, tumble_version="0.1", engine_version="3", truth=truth)
+
+
+def same(a, b, place="recording"):
+    """All members of two recordings, type and bits."""
+    if dataclasses.is_dataclass(a):
+        assert type(a) is type(b), place
+        for each in dataclasses.fields(a):
+            same(getattr(a, each.name), getattr(b, each.name), f"{place}.{each.name}")
+    elif isinstance(a, list):
+        assert len(a) == len(b), place
+        for k, (own, other) in enumerate(zip(a, b, strict=True)):
+            same(own, other, f"{place}[{k}]")
+    elif isinstance(a, np.ndarray):
+        assert a.dtype == b.dtype and a.shape == b.shape and a.tobytes() == b.tobytes(), place
+    else:
+        assert a == b, place
 
 
 def test_there_and_back(tmp_path):
     first = small()
+    assert all(getattr(first.truth.imus[0], each.name) is not None for each in dataclasses.fields(tumble.ImuTruth)), "everything is in it"
     tumble.write(tmp_path / "a.h5", first)
     back = tumble.read(tmp_path / "a.h5")
     assert list(tmp_path.iterdir()) == [tmp_path / "a.h5"]
-    for name in ("time_ns", "gyro", "accel", "T_BI", "clip_flags", "magnetic_field_t", "earth_field_t"):
-        assert np.array_equal(getattr(back.imus[0], name), getattr(first.imus[0], name)), name
-    for name in ("sweep_start_ns", "sweep_first", "position", "offset_ns", "range_m", "ring", "intensity", "T_BL"):
-        assert np.array_equal(getattr(back.lidars[0], name), getattr(first.lidars[0], name)), name
-    assert (back.robot, back.gravity_m_s2, back.attribution, back.truth) == ("rig", 9.8, "nobody", None)
-    assert back.imus[0].device == "mti30" and back.imus[0].gyro_range_rad_s == 7.85
+    same(back, first)
+    back.truth.contacts.normal_force_n[1] += 1e-9
+    with pytest.raises(AssertionError, match="normal_force_n"):
+        same(back, first)
+
+
+def test_what_an_estimator_may_see_alone(tmp_path):
+    first = small()
+    tumble.write(tmp_path / "a.h5", first, truth=False)
+    with h5py.File(tmp_path / "a.h5") as file:
+        assert "truth" not in file and file.attrs["has_truth"] == 0
+    back = tumble.read(tmp_path / "a.h5")
+    assert back.truth is None
+    same(back, dataclasses.replace(first, truth=None))
+
+
+def test_a_reference_that_knows_poses_alone(tmp_path):
+    """Of a real recording: no row of what the instrument does not know, not a number where it saw nothing."""
+    first = small()
+    known = first.truth
+    known.position[3], known.quaternion[3] = np.nan, np.nan
+    first.truth = tumble.Truth(known.period_ns, known.position, known.quaternion, known.velocity, known.rate,
+                               imus=[tumble.ImuTruth(rate=known.imus[0].rate)], lidars=[tumble.LidarTruth()])
+    tumble.write(tmp_path / "a.h5", first)
+    back = tumble.read(tmp_path / "a.h5")
+    same(back, first)
+    assert len(back.truth.label) == len(back.truth.contacts) == len(back.truth.imus[0].gyro_bias) == 0
+    assert back.truth.imus[0].gyro_elements is None and np.array_equal(back.truth.imu_T_BI[0], np.eye(4))
 
 
 def test_sweeps_are_views():
@@ -118,7 +170,17 @@ IMU, LIDAR = "sensors/imus/0", "sensors/lidars/0"
     (broken(replace(f"{LIDAR}/sweep_first", np.array([0, 3, 2**63], np.uint64))), "sweep_first"),
     (broken(replace(f"{LIDAR}/ring", np.zeros(3, np.uint16))), "ring"),
     (broken(lambda file: (file.__delitem__(f"{IMU}/T_BI"), file.create_group(f"{IMU}/T_BI"))), "T_BI"),
-    (broken(lambda file: file.attrs.__setitem__("has_truth", 1)), "truth"),
+    (broken(drop("truth")), "truth"),
+    (broken(drop("truth/f_B_m_s2")), "f_B_m_s2"),
+    (broken(drop("truth/contacts")), "contacts"),
+    (broken(drop("truth/surfaces")), "surfaces"),
+    (broken(replace("truth/surfaces", np.zeros(2))), "surfaces"),
+    (broken(replace("truth/label", np.zeros(5, np.uint8))), "label"),
+    (broken(replace("truth/p_BG_m", np.zeros((2, 3)))), "p_BG_m"),
+    (broken(replace("truth/contacts/normal_W", np.zeros((2, 3)))), "normal_W"),
+    (broken(retype("truth/lidars/0/hit_W_m", "f8")), "hit_W_m"),
+    (broken(replace("truth/imus/0/gyro_elements_I", np.eye(3)[:2])), "gyro_elements_I"),
+    (broken(drop_attribute("truth/imus/0", "name")), "name"),
 ])
 def test_refuses_by_place(tmp_path, damage, place):
     damage(tmp_path / "a.h5")
@@ -148,6 +210,19 @@ def test_no_such_file(tmp_path):
     (lambda r: setattr(r.imus[0], "time_ns", r.imus[0].time_ns * 1e-9), "type"),
     (lambda r: setattr(r.imus[0], "gyro", r.imus[0].gyro[:-1]), "shape"),
     (lambda r: setattr(r.lidars[0], "offset_ns", r.lidars[0].offset_ns * 0.5), "type"),
+    (lambda r: setattr(r.lidars[0], "offset_ns", -1 - r.lidars[0].offset_ns.astype(np.int64)), "out_of_range"),
+    (lambda r: r.truth.imus.append(tumble.ImuTruth()), "shape"),
+    (lambda r: r.truth.lidars.clear(), "shape"),
+    (lambda r: setattr(r.truth, "label", r.truth.label[:-1]), "shape"),
+    (lambda r: setattr(r.truth, "label", r.truth.label + np.float64(0.5)), "type"),
+    (lambda r: setattr(r.truth, "label", r.truth.label + np.int64(300)), "out_of_range"),
+    (lambda r: setattr(r.truth, "quaternion", r.truth.quaternion[:, :3]), "shape"),
+    (lambda r: setattr(r.truth, "p_BG_m", np.zeros(2)), "shape"),
+    (lambda r: setattr(r.truth.imus[0], "rate", r.truth.imus[0].rate[1:]), "shape"),
+    (lambda r: setattr(r.truth.imus[0], "gyro_bias", r.truth.imus[0].gyro_bias[1:]), "shape"),
+    (lambda r: setattr(r.truth.imus[0], "gyro_elements", np.eye(2)), "shape"),
+    (lambda r: setattr(r.truth.lidars[0], "hit", r.truth.lidars[0].hit[1:]), "shape"),
+    (lambda r: setattr(r.truth.contacts, "surface_id", r.truth.contacts.surface_id * 0.5), "type"),
 ])
 def test_nothing_is_left_half_written(tmp_path, change, trouble):
     tumble.write(tmp_path / "a.h5", small())

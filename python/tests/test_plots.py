@@ -49,7 +49,7 @@ def carousel(rate_rad_s=3.0):
     first = np.append(np.searchsorted(at, starts), len(at)).astype(np.uint64)
     offset = (at - starts[np.searchsorted(starts, at, side="right") - 1]).astype(np.uint32)
     lidar = tumble.Lidar(starts, first, returns.astype(np.float32), offset, 100_000_000)
-    truth = tumble.Truth(1_000_000, position, quaternion, 0 * position, 0 * position, np.zeros(0, np.uint8), np.zeros(3), [], [np.eye(4)])
+    truth = tumble.Truth(1_000_000, position, quaternion, 0 * position, 0 * position, imus=[tumble.ImuTruth()])
     imu = tumble.Imu(truth_ns[::10], np.zeros((201, 3)), np.zeros((201, 3)))
     recording = tumble.Recording(imus=[imu], lidars=[lidar], truth=truth)
     return recording, marks, tumble.Trajectory(truth_ns[::10], position[::10], quaternion[::10])

@@ -130,11 +130,13 @@ bool RailWatch::observe(const ImuSample& sample, State& state) const {
   return changed;
 }
 
-Clipping RailWatch::judge(const ImuSample* before, const ImuSample& sample, const State& state) const {
+Clipping RailWatch::judge(const ImuSample* before, const ImuSample& sample, const State& state,
+                          const ImuSample* after) const {
   RailDetector::State walls = state.known.walls;
   Clipping out = walls_.classify(sample, walls);
+  if (after != nullptr) walls_.add_edge(sample, *after, walls_.classify(*after, walls), walls, out);
   for (const Triad triad : {Triad::gyro, Triad::accelerometer})
-    out = clip_by_planes(state.known.planes_in_use(triad), triad, out, before, sample, nullptr);
+    out = clip_by_planes(state.known.planes_in_use(triad), triad, out, before, sample, after);
   return out;
 }
 

@@ -5,11 +5,11 @@ Arrays of numpy in and out; times are int64 nanoseconds, everything else SI; qua
 world (z up). What is wrong with input is TumbleError, with field, value and bound. `parameters()` of a class lists its keywords.
 
 The door        TumblingOdometry (an IMU that may clip and a lidar), RollingOdometry (IMUs in a sphere), sheets of sensors
-Rates           RegimeSmoother, RateSmoother, CarriedSmoother, Saave (whole recordings), RegimeStream, RateStream (live), find_rails
+Rates           RegimeSmoother, RateSmoother, CarriedSmoother, Saave (whole recordings), RegimeStream, RateStream, CarriedStream (live), find_rails
 Attitude        TumbleAttitude, Vqf, Strapdown
-Sphere          RollingSmoother
+Sphere          RollingSmoother, RollingFilter (live)
 Mapper          LidarInertialOdometry
-Recordings      read, write; rate, tumbling, rolling take them whole
+Recordings      read, write, their truth with them; rate, tumbling, rolling take them whole
 Estimates       read_tum, write_tum, read_estimate
 Figures         plot (Matplotlib); point_errors: where returns lie by poses, and how far from where they were
 The program     record, run, estimate, score, sweep, results; serve and describe_method make a function a method of it
@@ -18,6 +18,7 @@ from ._tumble import (
     Attitudes,
     CarriedReport,
     CarriedSmoother,
+    CarriedStream,
     ImuSheet,
     LidarInertialOdometry,
     LidarSheet,
@@ -36,6 +37,7 @@ from ._tumble import (
     RegimeSmoother,
     RegimeStream,
     RigCalibration,
+    RollingFilter,
     RollingMode,
     RollingOdometry,
     RollingPoses,
@@ -58,14 +60,15 @@ from .estimates import Estimate, RateTable, Trajectory, read_estimate, read_tum,
 from .method import describe_method, serve
 from .placing import point_errors
 from .program import ProgramError, call, estimate, program, record, results, run, score, score_rows, sweep
-from .recordings import Imu, Lidar, Recording, Truth, read, write
+from .recordings import Imu, Lidar, Recording, read, write
 from .replay import Tumble, rate, rolling, sheet_of, tumbling, tumbling_options
+from .truth import Contacts, ImuTruth, LidarTruth, Truth
 
 __version__ = "0.1.0"
 __all__ = [
-    "Attitudes", "CarriedReport", "CarriedSmoother", "Estimate", "Imu", "ImuSheet", "Lidar", "LidarInertialOdometry", "LidarSheet",
-    "MapPoints", "Parameter", "Pose", "Poses", "ProgramError", "RailPlane", "Rails", "RateReport", "RateSmoother", "RateSource",
-    "RateStream", "RateTable", "Rates", "Recording", "RegimeReport", "RegimeSmoother", "RegimeStream", "RigCalibration", "RollingMode", "RollingOdometry",
+    "Attitudes", "CarriedReport", "CarriedSmoother", "CarriedStream", "Contacts", "Estimate", "Imu", "ImuSheet", "ImuTruth", "Lidar",
+    "LidarInertialOdometry", "LidarSheet", "LidarTruth", "MapPoints", "Parameter", "Pose", "Poses", "ProgramError", "RailPlane", "Rails", "RateReport", "RateSmoother", "RateSource",
+    "RateStream", "RateTable", "Rates", "Recording", "RegimeReport", "RegimeSmoother", "RegimeStream", "RigCalibration", "RollingFilter", "RollingMode", "RollingOdometry",
     "RollingPoses", "RollingSmoother", "Saave", "Strapdown", "Sweep", "SweepCalibration", "SweepReport", "SweepVerdict", "Trajectory",
     "Truth", "Tumble", "TumbleAttitude", "TumbleError", "TumblingOdometry", "Vqf", "call", "describe_method", "estimate",
     "find_rails", "plot", "point_errors", "program", "rails_parameters", "rate", "read", "read_estimate", "read_tum", "record", "results", "rolling", "run",

@@ -13,6 +13,8 @@ import numpy.typing as npt
 
 from .errors import TumbleError
 from .files import beside, optional
+from .hdf5 import XYZ, Group, missing, put, same_length
+from .truth import Truth, read_truth, write_truth
 
 Array = npt.NDArray[Any]
 
@@ -108,26 +110,6 @@ class Lidar:
 
 
 @dataclass
-class Truth:
-    """What truly happened, at equal steps of period_ns from time 0; of a real recording what another instrument saw."""
-
-    period_ns: int
-    position: Array  #: (N, 3), m: centre of mass in W
-    quaternion: Array  #: (N, 4), x y z w, body to world
-    velocity: Array  #: (N, 3), m/s
-    rate: Array  #: (N, 3), rad/s, of the body in W, body axes
-    label: Array  #: (N,) uint8: 0 air, 1 grip, 2 slip, 3 slide; no row where it is not known
-    p_BG_m: Array  #: (3,), geometric centre in the body
-    imu_rate: list[Array]  #: per IMU: (M, 3), rad/s, the exact mean rate over each sample's window, IMU axes
-    imu_T_BI: list[Array]
-
-    @property
-    def time_ns(self) -> Array:
-        """(N,) int64."""
-        return np.arange(len(self.position), dtype=np.int64) * self.period_ns
-
-
-@dataclass
 class Recording:
     """A recording: what the sensors said, and what truly happened where that is known."""
 
@@ -140,6 +122,9 @@ class Recording:
     seed: int = 0
     situation_yaml: str = ""
     attribution: str = ""  #: of a real recording: who made it, under which licence
+    origin_ns: int = 0  #: of a real recording: stamp of time 0 in its source's clock, nanoseconds since 1970; 0: not known
+    tumble_version: str = ""  #: of the program that made it
+    engine_version: str = ""  #: of MuJoCo
     truth: Truth | None = None
 
     @property
@@ -162,61 +147,7 @@ class Recording:
 
 _IMU_NUMBERS = {"stated_gyro_range_rad_s": "gyro_range_rad_s", "stated_accel_range_m_s2": "accel_range_m_s2",
                 "gyro_noise_rad_s_sqrt_hz": "gyro_noise_rad_s_sqrt_hz", "accel_noise_m_s2_sqrt_hz": "accel_noise_m_s2_sqrt_hz"}
-_XYZ = "x y z"
-
-
-class _Group:
-    """A group of a file that says where it is when something is missing or of another type."""
-
-    def __init__(self, group: Any, path: str) -> None:
-        self.group, self.place = group, f"{path}: {group.name}"
-
-    def attribute(self, name: str, kind: type, default: Any = None) -> Any:
-        value = self.group.attrs.get(name, default)
-        if value is None:
-            raise _missing(f"{self.place} attribute {name}")
-        if kind is str:
-            return value.decode() if isinstance(value, bytes) else str(value)
-        return kind(value)
-
-    def rows(self, name: str, dtype: str, columns: tuple[int, ...] = (), optional: bool = False) -> Any:
-        if name not in self.group:
-            if optional:
-                return None
-            raise _missing(f"{self.place}/{name}")
-        data = self.group[name]
-        shape = getattr(data, "shape", None)
-        if shape is None or getattr(data, "dtype", None) != np.dtype(dtype):
-            found = getattr(data, "dtype", "a group")
-            raise TumbleError(f"{self.place}/{name} is {found}, must be {dtype}", "file", f"{self.place}/{name}", str(found), dtype)
-        if shape[1:] != columns:
-            bound = "x".join(["N", *map(str, columns)])
-            raise TumbleError(f"{self.place}/{name} is {shape}, must be {bound}", "file", f"{self.place}/{name}", shape, bound)
-        return data[()]
-
-    def members(self, name: str) -> list[_Group]:
-        if name not in self.group:
-            return []
-        within = self.group[name]
-        path = self.place.split(": ")[0]
-        out = []
-        while str(len(out)) in within:
-            out.append(_Group(within[str(len(out))], path))
-        return out
-
-
-def _missing(place: str) -> TumbleError:
-    return TumbleError(f"{place} is missing", "file", place, None, "there")
-
-
-def _same_length(place: str, first: Array, **others: Array | None) -> None:
-    for name, rows in others.items():
-        if rows is not None and len(rows) != len(first):
-            raise TumbleError(f"{place}/{name} has {len(rows)} rows, must have {len(first)}", "file", f"{place}/{name}",
-                              len(rows), len(first))
-
-
-def _read_imu(group: _Group) -> Imu:
+def _read_imu(group: Group) -> Imu:
     numbers = {to: group.attribute(name, float) for name, to in _IMU_NUMBERS.items()}
     earth = group.rows("earth_field_W_t", "f8", (3,), optional=True)
     imu = Imu(time_ns=group.rows("time_ns", "i8"), gyro=group.rows("gyro_I_rad_s", "f8", (3,)),
@@ -224,18 +155,18 @@ def _read_imu(group: _Group) -> Imu:
               clip_flags=group.rows("clip_flags", "u1"), name=group.attribute("name", str), device=group.attribute("device", str),
               period_ns=group.attribute("period_ns", int), magnetic_field_t=group.rows("magnetic_field_I_t", "f8", (3,), True),
               earth_field_t=None if earth is None else earth[0], **numbers)
-    _same_length(group.place, imu.time_ns, gyro_I_rad_s=imu.gyro, accel_I_m_s2=imu.accel, clip_flags=imu.clip_flags)
+    same_length(group.place, imu.time_ns, gyro_I_rad_s=imu.gyro, accel_I_m_s2=imu.accel, clip_flags=imu.clip_flags)
     return imu
 
 
-def _read_lidar(group: _Group) -> Lidar:
+def _read_lidar(group: Group) -> Lidar:
     lidar = Lidar(sweep_start_ns=group.rows("sweep_start_ns", "i8"), sweep_first=group.rows("sweep_first", "u8"),
                   position=group.rows("position_L_m", "f4", (3,)), offset_ns=group.rows("offset_ns", "u4"),
                   sweep_period_ns=group.attribute("sweep_period_ns", int), T_BL=group.rows("T_BL", "f8", (4,)),
                   range_m=group.rows("range_m", "f4"), intensity=group.rows("intensity", "f4"), ring=group.rows("ring", "u2"),
                   name=group.attribute("name", str), device=group.attribute("device", str),
                   point_times=group.attribute("point_times", str, "measured"))
-    _same_length(group.place, lidar.position, range_m=lidar.range_m, intensity=lidar.intensity, offset_ns=lidar.offset_ns,
+    same_length(group.place, lidar.position, range_m=lidar.range_m, intensity=lidar.intensity, offset_ns=lidar.offset_ns,
                  ring=lidar.ring)
     first = lidar.sweep_first
     fits = len(first) == len(lidar) + 1 and first[0] == 0 and first[-1] == len(lidar.position) and np.all(first[1:] >= first[:-1])
@@ -243,15 +174,6 @@ def _read_lidar(group: _Group) -> Lidar:
         raise TumbleError(f"{group.place}/sweep_first does not rise from 0 to {len(lidar.position)} over {len(lidar)} sweeps", "file",
                           f"{group.place}/sweep_first", first, len(lidar.position))
     return lidar
-
-
-def _read_truth(group: _Group) -> Truth:
-    imus = group.members("imus")
-    return Truth(period_ns=group.attribute("period_ns", int), position=group.rows("p_WB_m", "f8", (3,)),
-                 quaternion=group.rows("q_WB", "f8", (4,)), velocity=group.rows("v_WB_m_s", "f8", (3,)),
-                 rate=group.rows("w_WB_B_rad_s", "f8", (3,)), label=group.rows("label", "u1"),
-                 p_BG_m=group.rows("p_BG_m", "f8", (3,))[0], imu_rate=[each.rows("rate_I_rad_s", "f8", (3,)) for each in imus],
-                 imu_T_BI=[each.rows("T_BI", "f8", (4,)) for each in imus])
 
 
 def read(path: str | os.PathLike[str], truth: bool = True) -> Recording:
@@ -267,12 +189,12 @@ def read(path: str | os.PathLike[str], truth: bool = True) -> Recording:
         raise TumbleError(f"{name} is no file of HDF5 that can be read: {error}", "file", name, None, "HDF5") from error
     with file:
         try:
-            top = _Group(file, name)
+            top = Group(file, name)
             if top.attribute("format", str) != "tumble recording":
                 raise TumbleError(f"{name} is a '{top.attribute('format', str)}', must be a 'tumble recording'", "file", name)
-            sensors = _Group(file["sensors"], name) if "sensors" in file else None
+            sensors = Group(file["sensors"], name) if "sensors" in file else None
             if sensors is None:
-                raise _missing(f"{name}: /sensors")
+                raise missing(f"{name}: /sensors")
             seen = truth and bool(top.attribute("has_truth", int, 0))
             return Recording(
                 imus=[_read_imu(each) for each in sensors.members("imus")],
@@ -280,25 +202,33 @@ def read(path: str | os.PathLike[str], truth: bool = True) -> Recording:
                 sphere_radius_m=sensors.attribute("sphere_radius_m", float), gravity_m_s2=sensors.attribute("gravity_m_s2", float),
                 scenario=top.attribute("scenario", str), seed=top.attribute("seed", int) % 2**64,
                 situation_yaml=top.attribute("situation_yaml", str), attribution=top.attribute("attribution", str, ""),
-                truth=_read_truth(_Group(file["truth"], name)) if seen else None)
+                origin_ns=top.attribute("origin_ns", int, 0), tumble_version=top.attribute("tumble_version", str, ""),
+                engine_version=top.attribute("engine_version", str, ""),
+                truth=read_truth(Group(file["truth"], name)) if seen else None)
         except (OSError, RuntimeError, KeyError) as error:  # damaged inside
             raise TumbleError(f"{name} cannot be read: {error}", "file", name, None, "HDF5") from error
 
 
-def write(path: str | os.PathLike[str], recording: Recording) -> None:
-    """Writes the sensors of a recording as HDF5, which the program takes wherever it takes one. The truth is not written.
+def write(path: str | os.PathLike[str], recording: Recording, truth: bool = True) -> None:
+    """Writes a recording as HDF5, which the program takes wherever it takes one: what was read and not changed is in the file again,
+    and estimates have the same scores against its truth. truth=False: what an estimator may see alone.
 
-    Written beside its place and renamed. TumbleError `shape` where arrays do not fit together, `type` for times that are no
-    integers.
+    Sensors that were changed have to keep as many samples and points as their truth, or it has no rows. The digests that the program
+    writes, which would show damage, are left out. Written beside its place and renamed. TumbleError `shape` where arrays do not fit
+    together, `type` for times that are no integers, `out_of_range` for whole numbers that the file's type does not hold.
     """
     h5py = optional("h5py", "files")
     with beside(path) as part, h5py.File(part, "w", libver=("v110", "v110")) as file:
         texts = {"format": "tumble recording", "scenario": recording.scenario, "situation_yaml": recording.situation_yaml,
-                 "tumble_version": "", "engine_version": "", "attribution": recording.attribution, "digest": ""}
+                 "tumble_version": recording.tumble_version, "engine_version": recording.engine_version,
+                 "attribution": recording.attribution, "digest": ""}
         for key, text in texts.items():
             file.attrs[key] = text
-        for key, number in {"format_version": 1, "seed": recording.seed, "has_truth": 0}.items():
+        known = recording.truth if truth else None
+        for key, number in {"format_version": 1, "seed": recording.seed, "has_truth": known is not None}.items():
             file.attrs[key] = np.int64(np.uint64(number).astype(np.int64))
+        if recording.origin_ns != 0:
+            file.attrs["origin_ns"] = np.int64(recording.origin_ns)
         sensors = file.create_group("sensors")
         sensors.attrs["robot"] = recording.robot
         sensors.attrs["sphere_radius_m"] = float(recording.sphere_radius_m)
@@ -308,20 +238,9 @@ def write(path: str | os.PathLike[str], recording: Recording) -> None:
             _write_imu(imus.create_group(str(k)), imu)
         for k, lidar in enumerate(recording.lidars):
             _write_lidar(lidars.create_group(str(k)), lidar)
-
-
-def _put(group: Any, name: str, rows: Any, dtype: str, unit: str, shape: tuple[int, ...], columns: str = "") -> None:
-    given = np.asarray(rows)
-    if np.dtype(dtype).kind in "iu" and given.dtype.kind not in "iu":
-        raise TumbleError(f"{group.name}/{name} is {given.dtype}, must be {np.dtype(dtype)}", "type", f"{group.name}/{name}",
-                          given.dtype, np.dtype(dtype))
-    if given.shape != shape:
-        raise TumbleError(f"{group.name}/{name} is {given.shape}, must be {shape}", "shape", f"{group.name}/{name}", given.shape,
-                          shape)
-    data = group.create_dataset(name, data=given.astype(dtype))
-    data.attrs["unit"] = unit
-    if columns:
-        data.attrs["columns"] = columns
+        if known is not None:
+            write_truth(file.create_group("truth"), known, [len(imu) for imu in recording.imus],
+                        [len(lidar.position) for lidar in recording.lidars])
 
 
 def _write_imu(group: Any, imu: Imu) -> None:
@@ -330,27 +249,29 @@ def _write_imu(group: Any, imu: Imu) -> None:
     group.attrs["name"], group.attrs["device"], group.attrs["period_ns"] = imu.name, imu.device, np.int64(period)
     for name, own in _IMU_NUMBERS.items():
         group.attrs[name] = float(getattr(imu, own))
-    _put(group, "T_BI", imu.T_BI, "<f8", "1, last column m", (4, 4))
-    _put(group, "time_ns", imu.time_ns, "<i8", "ns", (count,))
-    _put(group, "gyro_I_rad_s", imu.gyro, "<f8", "rad/s", (count, 3), _XYZ)
-    _put(group, "accel_I_m_s2", imu.accel, "<f8", "m/s^2", (count, 3), _XYZ)
+    put(group, "T_BI", imu.T_BI, "<f8", "1, last column m", (4, 4))
+    put(group, "time_ns", imu.time_ns, "<i8", "ns", (count,))
+    put(group, "gyro_I_rad_s", imu.gyro, "<f8", "rad/s", (count, 3), XYZ)
+    put(group, "accel_I_m_s2", imu.accel, "<f8", "m/s^2", (count, 3), XYZ)
     flags = np.zeros(count, np.uint8) if imu.clip_flags is None else imu.clip_flags
-    _put(group, "clip_flags", flags, "u1", "1", (count,))
+    put(group, "clip_flags", flags, "u1", "1", (count,))
     if imu.magnetic_field_t is not None:
-        _put(group, "magnetic_field_I_t", imu.magnetic_field_t, "<f8", "T", (count, 3), _XYZ)
+        put(group, "magnetic_field_I_t", imu.magnetic_field_t, "<f8", "T", (count, 3), XYZ)
     if imu.earth_field_t is not None:
-        _put(group, "earth_field_W_t", np.reshape(imu.earth_field_t, (1, 3)), "<f8", "T", (1, 3), _XYZ)
+        put(group, "earth_field_W_t", np.reshape(imu.earth_field_t, (1, 3)), "<f8", "T", (1, 3), XYZ)
 
 
 def _write_lidar(group: Any, lidar: Lidar) -> None:
     points, sweeps = len(lidar.position), len(lidar.sweep_start_ns)
-    group.attrs["name"], group.attrs["device"], group.attrs["point_times"] = lidar.name, lidar.device, lidar.point_times
+    group.attrs["name"], group.attrs["device"] = lidar.name, lidar.device
+    if lidar.point_times != "measured":
+        group.attrs["point_times"] = lidar.point_times
     group.attrs["sweep_period_ns"] = np.int64(lidar.sweep_period_ns)
-    _put(group, "T_BL", lidar.T_BL, "<f8", "1, last column m", (4, 4))
-    _put(group, "sweep_start_ns", lidar.sweep_start_ns, "<i8", "ns", (sweeps,))
-    _put(group, "sweep_first", lidar.sweep_first, "<u8", "1", (sweeps + 1,))
-    _put(group, "position_L_m", lidar.position, "<f4", "m", (points, 3), _XYZ)
-    _put(group, "range_m", lidar.range_m, "<f4", "m", (points,))
-    _put(group, "intensity", lidar.intensity, "<f4", "1", (points,))
-    _put(group, "offset_ns", lidar.offset_ns, "<u4", "ns", (points,))
-    _put(group, "ring", lidar.ring, "<u2", "1", (points,))
+    put(group, "T_BL", lidar.T_BL, "<f8", "1, last column m", (4, 4))
+    put(group, "sweep_start_ns", lidar.sweep_start_ns, "<i8", "ns", (sweeps,))
+    put(group, "sweep_first", lidar.sweep_first, "<u8", "1", (sweeps + 1,))
+    put(group, "position_L_m", lidar.position, "<f4", "m", (points, 3), XYZ)
+    put(group, "range_m", lidar.range_m, "<f4", "m", (points,))
+    put(group, "intensity", lidar.intensity, "<f4", "1", (points,))
+    put(group, "offset_ns", lidar.offset_ns, "<u4", "ns", (points,))
+    put(group, "ring", lidar.ring, "<u2", "1", (points,))

@@ -5,6 +5,7 @@
 #include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
 #include <numeric>
 #include <optional>
 #include <type_traits>
@@ -285,6 +286,28 @@ TEST(RailJudgement, TheWatchKeepsTheFirstReadingsAndTheLatest) {
       EXPECT_EQ(kept[kept.size() - 1 - static_cast<std::size_t>(k)], reading(kSamples - 1 - k)) << k;
     }
   }
+}
+
+// What stands before a stretch at a rail, and met the rail in a part of its window, is told by the sample after it.
+// With the rails learnt the stream judges as the batch does.
+TEST(RailJudgement, TheWatchJudgesByWhatComesAfterToo) {
+  const TumbleRecording tumble = tilted_gyro();
+  const ClippingFinder::Found batch = ClippingFinder({}).find(tumble.samples);
+  const RailWatch watch({});
+  RailWatch::State state = watch.start();
+  for (const ImuSample& sample : tumble.samples) watch.observe(sample, state);
+  int clipped = 0, apart = 0, apart_by_before = 0;
+  for (std::size_t k = 1; k + 1 < tumble.samples.size(); ++k) {
+    const ImuSample *const before = &tumble.samples[k - 1], &now = tumble.samples[k], *const after = before + 2;
+    clipped += batch.clippings[k].gyro != 0;
+    apart += watch.judge(before, now, state, after).gyro != batch.clippings[k].gyro;
+    apart_by_before += watch.judge(before, now, state).gyro != batch.clippings[k].gyro;
+    watch.walls().classify(now, state.known.walls);
+  }
+  std::printf("%d clipped, apart %d, without the sample after %d\n", clipped, apart, apart_by_before);
+  ASSERT_GT(clipped, 50);
+  EXPECT_EQ(apart, 0);
+  EXPECT_GT(apart_by_before, 3);
 }
 
 TEST(RailJudgement, TellsWhatAReadingIsWorth) {

@@ -55,9 +55,10 @@ class RailWatch {
   /// Learns from one finite sample; true when what is known of the rails has changed. O(1), and a search now and then.
   bool observe(const ImuSample& sample, State& state) const;
 
-  /// What a finite sample says by the rails that those observed before it showed; flags of the device count. `before`:
-  /// the one before it, null where there is none. O(1).
-  Clipping judge(const ImuSample* before, const ImuSample& sample, const State& state) const;
+  /// What a finite sample says by the rails that those observed before showed; flags of the device count. `before` and
+  /// `after`: those beside it, null where there is none; what met a rail in a part of its window is told by them. O(1).
+  Clipping judge(const ImuSample* before, const ImuSample& sample, const State& state,
+                 const ImuSample* after = nullptr) const;
 
   const RailDetector& walls() const { return walls_; }
 

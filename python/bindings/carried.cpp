@@ -1,0 +1,210 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <nanobind/nanobind.h>
+#include <nanobind/stl/string.h>
+#include <nanobind/stl/tuple.h>
+#include <nanobind/stl/vector.h>
+
+#include <cstddef>
+#include <optional>
+#include <tuple>
+#include <vector>
+
+#include "arrays.hpp"
+#include "bindings.hpp"
+#include "parameters.hpp"
+#include "rails.hpp"
+#include "results.hpp"
+#include "streams.hpp"
+#include "tumble/angular_velocity/detail/hold_watch.hpp"
+#include "tumble/angular_velocity/detail/rail_watch.hpp"
+#include "tumble/angular_velocity/detail/recording_check.hpp"
+#include "tumble/attitude/carried_elements.hpp"
+#include "tumble/attitude/carried_smoother.hpp"
+#include "tumble/attitude/carried_stream.hpp"
+
+namespace tumble::python {
+
+namespace {
+
+/// CarriedSmoother with what its data sheet says of the rails.
+struct Carried {
+  CarriedSmoother smoother;
+  RailDetector::Params walls;
+};
+
+std::tuple<Rates, Attitudes, CarriedSmoother::Report> carried(const Carried& self, nb::handle time_ns, nb::handle gyro,
+                                                              nb::handle accel, nb::handle clip_flags) {
+  const std::vector<ImuSample> samples = samples_of(time_ns, gyro, accel, clip_flags);
+  std::tuple<Rates, Attitudes, CarriedSmoother::Report> out;
+  std::vector<RateState>& rates = std::get<0>(out).rows;
+  Status status;
+  {
+    const nb::gil_scoped_release released;
+    status = check_recording(samples, 2, 1.0);
+    if (status.ok()) {
+      ClippingFinder::Params finding;
+      finding.walls = self.walls;
+      const CarriedElements known = carried_elements(samples, ClippingFinder(finding).find(samples));
+      status = self.smoother.estimate(samples, known.clipped(), rates, std::get<1>(out).rows, std::get<2>(out));
+      if (status.ok()) known.mark_near(rates);
+    }
+  }
+  require(status);
+  return out;
+}
+
+void bind_smoother(nb::module_& m) {
+  using Report = CarriedSmoother::Report;
+  nb::class_<Report>(m, "CarriedReport", "What a run of CarriedSmoother tells about itself.")
+      .def_ro("iterations", &Report::iterations)
+      .def_ro("converged", &Report::converged)
+      .def_ro("cost", &Report::cost)
+      .def_ro("hand_surprise", &Report::hand_surprise, "2 and more: thrown, or a rough hand")
+      .def_ro("turns_asked", &Report::turns_asked)
+      .def_ro("turns_taken", &Report::turns_taken)
+      .def_ro("turns_open", &Report::turns_open, "clipped stretches in which another number of turns stays possible");
+  nb::class_<Carried>(
+      m, "CarriedSmoother",
+      "Attitude and angular velocity of a body that is carried (held, swung, twirled), also where its gyro\n"
+      "clips, over a whole recording.\n\n"
+      "CarriedSmoother(gyro_range_rad_s=None, accel_range_m_s2=None, **options): parameters().")
+      .def(
+          "__init__",
+          [](Carried* self, const nb::kwargs& options) {
+            Keywords keywords("CarriedSmoother", options);
+            CarriedSmoother::Params params;
+            RailDetector::Params walls;
+            read_ranges(keywords, walls);
+            read_fields(keywords, params);
+            keywords.done();
+            new (self) Carried{CarriedSmoother(params), walls};
+          },
+          nb::arg("options"))
+      .def("estimate", &carried, nb::arg("time_ns"), nb::arg("gyro"), nb::arg("accel"),
+           nb::arg("clip_flags") = nb::none(),
+           "Rates, attitudes (heading 0 at the start), one of each per sample, and what the run tells of itself.")
+      .def_static("parameters", [] { return list_fields(CarriedSmoother::Params{}); });
+}
+
+/// CarriedStream, which has to be told what is at a rail, with what its samples have shown of the rails.
+class Telling {
+ public:
+  Telling(const CarriedStream::Params& params, const RailWatch::Params& rails)
+      : stream_(params), watch_(rails), state_(stream_.start()), rails_(watch_.start()) {}
+
+  /// Of the rails no more is learnt from a sample that is refused.
+  Status push(const ImuSample& sample, std::optional<RateState>& out) {
+    out.reset();
+    if (const Status status = check_sample(sample); !status.ok()) return status;
+    signs_.clear();
+    judge_window(sample);
+    const ImuSample* const latest = state_.readings.empty() ? nullptr : &state_.readings.back().sample;
+    const Clipping judged = watch_.judge(latest, sample, rails_);
+    signs_.push_back(clip_signs(sample, judged));
+    HoldWatch::State holds = holds_;
+    HoldWatch().observe(sample, (judged.gyro | judged.void_gyro) != 0, holds);
+    const Status status = stream_.push(sample, {rows(), signs_}, state_, out, true, holds);
+    if (!status.ok()) return status;
+    holds_ = holds;
+    news_ = watch_.observe(sample, rails_);
+    watch_.walls().classify(sample, rails_.known.walls);  // carries what is clipped just now
+    return status;
+  }
+
+  void flush(std::vector<RateState>& out) const { stream_.flush(state_, out); }
+  std::size_t failures() const { return state_.failures; }
+
+ private:
+  /// The newest sample of the window is judged by `next` too, and all of them where the rails are known better now.
+  void judge_window(const ImuSample& next) {
+    const std::vector<CarriedStream::Reading>& window = state_.readings;
+    RailDetector::State& walls = rails_.known.walls;
+    if (news_) {
+      for (RailDetector::Channel& channel : walls.channels) channel.clipped = false;
+    }
+    for (std::size_t k = news_ || window.empty() ? 0 : window.size() - 1; k < window.size(); ++k) {
+      const ImuSample* const before = k > 0 ? &window[k - 1].sample : nullptr;
+      const ImuSample& after = k + 1 < window.size() ? window[k + 1].sample : next;
+      signs_.push_back(clip_signs(window[k].sample, watch_.judge(before, window[k].sample, rails_, &after)));
+      if (news_) watch_.walls().classify(window[k].sample, walls);
+    }
+  }
+
+  /// What the gyro's elements sense along, where their planes were seen.
+  Eigen::Matrix3d rows() const {
+    Eigen::Matrix3d out = Eigen::Matrix3d::Identity();
+    for (int j = 0; j < 3; ++j) {
+      const std::optional<RailPlane>& plane = rails_.known.planes.element[static_cast<std::size_t>(j)];
+      if (plane) out.row(j) = plane->row.transpose();
+    }
+    return out;
+  }
+
+  CarriedStream stream_;
+  RailWatch watch_;
+  CarriedStream::State state_;
+  RailWatch::State rails_;
+  HoldWatch::State holds_;
+  std::vector<ClipSigns> signs_;
+  bool news_ = false;  ///< of the rails, by the last sample
+};
+
+/// The stream makes one step for a node, whatever this says.
+const std::vector<const char*> kWithoutMeaning = {"iterations_max"};
+
+void bind_stream(nb::module_& m) {
+  using Object = Guarded<Telling>;
+  nb::class_<Object> bound(m, "CarriedStream",
+                           "The streaming form of CarriedSmoother: each rate is given out when its sample is lag_s "
+                           "old. Rails are those that\n"
+                           "the readings have shown so far.\n\n"
+                           "CarriedStream(gyro_range_rad_s=None, accel_range_m_s2=None, **options): parameters().");
+  bound
+      .def(
+          "__init__",
+          [](Object* self, const nb::kwargs& options) {
+            Keywords keywords("CarriedStream", options);
+            CarriedStream::Params params;
+            RailWatch::Params rails;
+            read_ranges(keywords, rails.clipping.walls);
+            read_fields(keywords, params, kWithoutMeaning);
+            keywords.done();
+            new (self) Object(Telling(params, rails));
+          },
+          nb::arg("options"))
+      .def(
+          "add_imu",
+          [](Object& self, nb::handle time_ns, nb::handle gyro, nb::handle accel, nb::handle clip_flags) {
+            std::optional<RateState> settled;
+            const auto step = [&settled](Telling& at, const ImuSample& sample, Rates& out) {
+              const Status status = at.push(sample, settled);
+              if (settled) out.rows.push_back(*settled);
+              return status;
+            };
+            return feed<Rates>(self, samples_of(time_ns, gyro, accel, clip_flags), step);
+          },
+          nb::arg("time_ns"), nb::arg("gyro"), nb::arg("accel"), nb::arg("clip_flags") = nb::none(),
+          "Takes one sample or many; returns the rates that are settled with them, lag_s old each.")
+      .def(
+          "flush",
+          [](Object& self) {
+            Rates out;
+            self.run([&](Telling& at) { at.flush(out.rows); });
+            return out;
+          },
+          "Rates of the samples still in the window, as they stand. The stream stays as it is.")
+      .def_prop_ro(
+          "failures", [](Object& self) { return self.run([](Telling& at) { return at.failures(); }); },
+          "steps that were left out, since their equations were not positive definite")
+      .def_static("parameters", [] { return list_fields(CarriedStream::Params{}, kWithoutMeaning); });
+  bind_copy<Object>(bound);
+}
+
+}  // namespace
+
+void bind_carried(nb::module_& m) {
+  bind_smoother(m);
+  bind_stream(m);
+}
+
+}  // namespace tumble::python

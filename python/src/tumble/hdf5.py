@@ -1,0 +1,113 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Groups of a file of HDF5: what is missing or of another type or shape is said by its place."""
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+
+from .errors import TumbleError
+from .files import optional
+
+Array = npt.NDArray[Any]
+XYZ = "x y z"
+
+
+class Group:
+    """A group of a file that says where it is when something is missing or of another type."""
+
+    def __init__(self, group: Any, path: str) -> None:
+        self.group, self.place = group, f"{path}: {group.name}"
+
+    def attribute(self, name: str, kind: type, default: Any = None) -> Any:
+        value = self.group.attrs.get(name, default)
+        if value is None:
+            raise missing(f"{self.place} attribute {name}")
+        if kind is str:
+            return value.decode() if isinstance(value, bytes) else str(value)
+        return kind(value)
+
+    def rows(self, name: str, dtype: str, columns: tuple[int, ...] = (), optional: bool = False) -> Any:
+        if name not in self.group:
+            if optional:
+                return None
+            raise missing(f"{self.place}/{name}")
+        data = self.group[name]
+        shape = getattr(data, "shape", None)
+        if shape is None or getattr(data, "dtype", None) != np.dtype(dtype):
+            found = getattr(data, "dtype", "a group")
+            raise TumbleError(f"{self.place}/{name} is {found}, must be {dtype}", "file", f"{self.place}/{name}", str(found), dtype)
+        if shape[1:] != columns:
+            bound = "x".join(["N", *map(str, columns)])
+            raise TumbleError(f"{self.place}/{name} is {shape}, must be {bound}", "file", f"{self.place}/{name}", shape, bound)
+        return data[()]
+
+    def texts(self, name: str) -> list[str]:
+        """A dataset of texts."""
+        place = f"{self.place}/{name}"
+        if name not in self.group:
+            raise missing(place)
+        try:
+            return [str(text) for text in self.group[name].asstr()[()]]
+        except (AttributeError, TypeError, UnicodeDecodeError) as error:
+            raise TumbleError(f"{place} is no list of texts, must be", "file", place, None, "texts") from error
+
+    def member(self, name: str) -> Group:
+        """The group within it."""
+        if not hasattr(self.group.get(name), "keys"):
+            raise missing(f"{self.place}/{name}")
+        return Group(self.group[name], self.place.split(": ")[0])
+
+    def members(self, name: str) -> list[Group]:
+        if name not in self.group:
+            return []
+        within = self.group[name]
+        path = self.place.split(": ")[0]
+        out: list[Group] = []
+        while str(len(out)) in within:
+            out.append(Group(within[str(len(out))], path))
+        return out
+
+
+def missing(place: str) -> TumbleError:
+    return TumbleError(f"{place} is missing", "file", place, None, "there")
+
+
+def same_length(place: str, first: Array, **others: Array | None) -> None:
+    for name, rows in others.items():
+        if rows is not None and len(rows) != len(first):
+            raise TumbleError(f"{place}/{name} has {len(rows)} rows, must have {len(first)}", "file", f"{place}/{name}",
+                              len(rows), len(first))
+
+
+def put(group: Any, name: str, rows: Any, dtype: str, unit: str, shape: tuple[int, ...], columns: str = "") -> None:
+    """Writes a dataset with its unit and the names of its columns.
+
+    TumbleError `shape`; `type` of numbers that are to be whole and are not, `out_of_range` of those that the file's type does not hold.
+    """
+    given = np.asarray(rows)
+    if np.dtype(dtype).kind in "iu" and given.dtype.kind not in "iu":
+        raise TumbleError(f"{group.name}/{name} is {given.dtype}, must be {np.dtype(dtype)}", "type", f"{group.name}/{name}",
+                          given.dtype, np.dtype(dtype))
+    if given.shape != shape:
+        raise TumbleError(f"{group.name}/{name} is {given.shape}, must be {shape}", "shape", f"{group.name}/{name}", given.shape,
+                          shape)
+    if np.dtype(dtype).kind in "iu" and given.size > 0:
+        held = np.iinfo(dtype)
+        for number in (int(given.min()), int(given.max())):
+            if not held.min <= number <= held.max:
+                raise TumbleError(f"{group.name}/{name} is {number}, must be within [{held.min}, {held.max}]", "out_of_range",
+                                  f"{group.name}/{name}", number, (held.min, held.max))
+    data = group.create_dataset(name, data=given.astype(dtype))
+    data.attrs["unit"] = unit
+    if columns:
+        data.attrs["columns"] = columns
+
+
+def put_texts(group: Any, name: str, texts: Sequence[str]) -> None:
+    """Writes a dataset of texts, as long as the longest one."""
+    rows = [text.encode() for text in texts]
+    utf8 = optional("h5py", "files").string_dtype("utf-8", max([1, *map(len, rows)]))
+    group.create_dataset(name, data=np.array(rows, dtype=utf8))

@@ -1,0 +1,209 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""What truly happened in a recording: the group `truth` of its file (scenarios/recordings/FORMAT.md), whole."""
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+
+from .errors import TumbleError
+from .hdf5 import XYZ, Group, put, put_texts
+
+Array = npt.NDArray[Any]
+
+
+def _none(dtype: str, *columns: int) -> Any:
+    """A member that has no rows unless some are given."""
+    return field(default_factory=lambda: np.zeros((0, *columns), dtype))
+
+
+@dataclass
+class ImuTruth:
+    """What one IMU would have said, N as it has samples or 0 where it is not known; a reading that differs from the unclipped one is
+    what a rail took. Of a real recording the rates alone may be there."""
+
+    name: str = ""
+    T_BI: Array = field(default_factory=lambda: np.eye(4))  #: (4, 4), true mounting
+    rate: Array = _none("f8", 3)  #: (N, 3), rad/s: the exact mean over each sample's window, IMU axes
+    specific_force: Array = _none("f8", 3)  #: (N, 3), m/s^2: likewise
+    gyro_unclipped: Array = _none("f8", 3)  #: (N, 3), rad/s: the reading with all errors but the rail
+    accel_unclipped: Array = _none("f8", 3)  #: (N, 3), m/s^2
+    gyro_bias: Array = _none("f8", 3)  #: (N, 3), rad/s, in force at each sample
+    accel_bias: Array = _none("f8", 3)  #: (N, 3), m/s^2
+    gyro_elements: Array | None = None  #: (3, 3), row i: what element i makes of the reading's axes; None: upright
+    gyro_element_offset_rad_s: Array | None = None  #: (3,), taken off after the rail
+    accel_elements: Array | None = None
+    accel_element_offset_m_s2: Array | None = None  #: (3,)
+    magnetic_field_t: Array | None = None  #: (N, 3), T: true mean over the window
+
+
+@dataclass
+class LidarTruth:
+    """Where the returns of a lidar truly lie; P as it has points, or 0 where it is not known."""
+
+    name: str = ""
+    T_BL: Array = field(default_factory=lambda: np.eye(4))  #: (4, 4), true mounting
+    hit: Array = _none("f4", 3)  #: (P, 3) float32, m, W
+    surface_id: Array = _none("i4")  #: (P,) int32, into Truth.surfaces; -1 unknown, -2 the robot's own cage
+
+
+@dataclass
+class Contacts:
+    """Contacts in order of time, several or none per step of the physics."""
+
+    time_ns: Array = _none("i8")  #: (C,) int64
+    point: Array = _none("f8", 3)  #: (C, 3), m, W
+    normal: Array = _none("f8", 3)  #: (C, 3), W, into the robot
+    slip_velocity: Array = _none("f8", 3)  #: (C, 3), m/s, W, of the robot's material point, tangential
+    normal_force_n: Array = _none("f8")  #: (C,)
+    surface_id: Array = _none("i4")  #: (C,) int32, into Truth.surfaces; -1 unknown
+
+    def __len__(self) -> int:
+        return len(self.time_ns)
+
+
+@dataclass
+class Truth:
+    """What truly happened, at equal steps of period_ns from time 0; of a real recording what another instrument saw: not a number
+    where it saw nothing."""
+
+    period_ns: int
+    position: Array  #: (N, 3), m: centre of mass in W
+    quaternion: Array  #: (N, 4), x y z w, body to world
+    velocity: Array  #: (N, 3), m/s
+    rate: Array  #: (N, 3), rad/s, of the body in W, body axes
+    label: Array = _none("u1")  #: (N,) uint8: 0 air, 1 grip, 2 slip, 3 slide; no row where it is not known
+    p_BG_m: Array = field(default_factory=lambda: np.zeros(3))  #: (3,), geometric centre in the body
+    imus: list[ImuTruth] = field(default_factory=list)  #: one for each IMU of the recording
+    lidars: list[LidarTruth] = field(default_factory=list)  #: one for each lidar
+    specific_force: Array = _none("f8", 3)  #: (N, 3), m/s^2, at the centre of mass, body axes; no row where it is not known
+    contacts: Contacts = field(default_factory=Contacts)
+    surfaces: list[str] = field(default_factory=list)  #: names by surface_id
+
+    @property
+    def time_ns(self) -> Array:
+        """(N,) int64."""
+        return np.arange(len(self.position), dtype=np.int64) * self.period_ns
+
+    @property
+    def imu_rate(self) -> list[Array]:
+        """Per IMU: (M, 3), rad/s, the exact mean rate over each sample's window, IMU axes."""
+        return [imu.rate for imu in self.imus]
+
+    @property
+    def imu_T_BI(self) -> list[Array]:
+        """Per IMU: (4, 4), its true mounting."""
+        return [imu.T_BI for imu in self.imus]
+
+
+@dataclass(frozen=True)
+class _Rows:
+    """A dataset of the file and the member that holds it: all that reading and writing know of it, so that neither forgets one."""
+
+    name: str
+    member: str
+    dtype: str
+    unit: str
+    columns: str = XYZ
+    like: str = ""  #: the member, or `sensor`, that has as many rows; `one` (a vector), `three`; "": any number
+    or_none: bool = False  #: or no row at all, where it is not known
+    left_out: bool = False  #: where the member is None
+
+    @property
+    def shape(self) -> tuple[int, ...]:
+        """Of a row."""
+        return (len(self.columns.split()),) if self.columns else ()
+
+    def count(self, record: Any, sensor: int | None) -> int | None:
+        """How many rows there must be; None: any number. sensor: how many samples or points it has, where that is known."""
+        if not self.like or (self.or_none and len(getattr(record, self.member)) == 0):
+            return len(getattr(record, self.member))
+        fixed = {"one": 1, "three": 3, "sensor": sensor}
+        return fixed[self.like] if self.like in fixed else len(getattr(record, self.like))
+
+
+_BODY = (
+    _Rows("p_WB_m", "position", "f8", "m"), _Rows("q_WB", "quaternion", "f8", "1", "x y z w", "position"),
+    _Rows("v_WB_m_s", "velocity", "f8", "m/s", XYZ, "position"), _Rows("w_WB_B_rad_s", "rate", "f8", "rad/s", XYZ, "position"),
+    _Rows("f_B_m_s2", "specific_force", "f8", "m/s^2", XYZ, "position", or_none=True),
+    _Rows("label", "label", "u1", "1", "", "position", or_none=True), _Rows("p_BG_m", "p_BG_m", "f8", "m", XYZ, "one"))
+_CONTACTS = (
+    _Rows("time_ns", "time_ns", "i8", "ns", ""), _Rows("point_W_m", "point", "f8", "m", XYZ, "time_ns"),
+    _Rows("normal_W", "normal", "f8", "1", XYZ, "time_ns"), _Rows("slip_velocity_W_m_s", "slip_velocity", "f8", "m/s", XYZ, "time_ns"),
+    _Rows("normal_force_n", "normal_force_n", "f8", "N", "", "time_ns"), _Rows("surface_id", "surface_id", "i4", "1", "", "time_ns"))
+_IMU = (
+    _Rows("rate_I_rad_s", "rate", "f8", "rad/s", XYZ, "sensor", or_none=True),
+    _Rows("specific_force_I_m_s2", "specific_force", "f8", "m/s^2", XYZ, "rate", or_none=True),
+    _Rows("gyro_unclipped_I_rad_s", "gyro_unclipped", "f8", "rad/s", XYZ, "specific_force"),
+    _Rows("accel_unclipped_I_m_s2", "accel_unclipped", "f8", "m/s^2", XYZ, "specific_force"),
+    _Rows("gyro_bias_I_rad_s", "gyro_bias", "f8", "rad/s", XYZ, "specific_force"),
+    _Rows("accel_bias_I_m_s2", "accel_bias", "f8", "m/s^2", XYZ, "specific_force"),
+    _Rows("gyro_elements_I", "gyro_elements", "f8", "1", XYZ, "three", left_out=True),
+    _Rows("gyro_element_offset_rad_s", "gyro_element_offset_rad_s", "f8", "rad/s", XYZ, "one", left_out=True),
+    _Rows("accel_elements_I", "accel_elements", "f8", "1", XYZ, "three", left_out=True),
+    _Rows("accel_element_offset_m_s2", "accel_element_offset_m_s2", "f8", "m/s^2", XYZ, "one", left_out=True),
+    _Rows("magnetic_field_I_t", "magnetic_field_t", "f8", "T", XYZ, "rate", left_out=True))
+_LIDAR = (_Rows("hit_W_m", "hit", "f4", "m", XYZ, "sensor", or_none=True), _Rows("surface_id", "surface_id", "i4", "1", "", "hit"))
+
+
+def _read_rows(group: Group, listed: Sequence[_Rows], kind: type, **members: Any) -> Any:
+    for each in listed:
+        rows = group.rows(each.name, each.dtype, each.shape, each.left_out)
+        members[each.member] = rows[0] if each.like == "one" and rows is not None and len(rows) == 1 else rows
+    record = kind(**members)
+    for each in listed:
+        rows, count = members[each.member], each.count(record, None)
+        found = None if rows is None else 1 if each.like == "one" and rows.ndim == 1 else len(rows)
+        if None not in (found, count) and found != count:
+            place = f"{group.place}/{each.name}"
+            raise TumbleError(f"{place} has {found} rows, must have {count}", "file", place, found, count)
+    return record
+
+
+def _write_rows(group: Any, listed: Sequence[_Rows], record: Any, sensor: int | None = None) -> None:
+    for each in listed:
+        rows = getattr(record, each.member)
+        if rows is None and each.left_out:
+            continue
+        rows = np.asarray(rows)[None] if each.like == "one" else np.atleast_1d(rows)
+        count = each.count(record, sensor)
+        assert count is not None, "of a list with rows like the sensor's, whose number is given"
+        put(group, each.name, rows, each.dtype, each.unit, (count, *each.shape), each.columns)
+
+
+def read_truth(group: Group) -> Truth:
+    """Of the group `truth`."""
+    imus = [_read_rows(each, _IMU, ImuTruth, name=each.attribute("name", str), T_BI=each.rows("T_BI", "f8", (4,)))
+            for each in group.members("imus")]
+    lidars = [_read_rows(each, _LIDAR, LidarTruth, name=each.attribute("name", str), T_BL=each.rows("T_BL", "f8", (4,)))
+              for each in group.members("lidars")]
+    out: Truth = _read_rows(group, _BODY, Truth, period_ns=group.attribute("period_ns", int), imus=imus, lidars=lidars,
+                             contacts=_read_rows(group.member("contacts"), _CONTACTS, Contacts), surfaces=group.texts("surfaces"))
+    return out
+
+
+def write_truth(group: Any, truth: Truth, samples: Sequence[int], points: Sequence[int]) -> None:
+    """Into the group `truth`. samples, points: how many each IMU and each lidar of the recording has. TumbleError `shape`, `type`,
+    `out_of_range` as of the sensors."""
+    for name, records, counts in (("imus", truth.imus, samples), ("lidars", truth.lidars, points)):
+        if len(records) != len(counts):
+            raise TumbleError(f"truth.{name} is {len(records)}, must be {len(counts)}: one for each that the recording has", "shape",
+                              f"truth.{name}", len(records), len(counts))
+    group.attrs["period_ns"] = np.int64(truth.period_ns)
+    _write_rows(group, _BODY, truth)
+    put_texts(group, "surfaces", truth.surfaces)
+    _write_rows(group.create_group("contacts"), _CONTACTS, truth.contacts)
+    imus, lidars = group.create_group("imus"), group.create_group("lidars")
+    for k, imu in enumerate(truth.imus):
+        own = imus.create_group(str(k))
+        own.attrs["name"] = imu.name
+        put(own, "T_BI", imu.T_BI, "<f8", "1, last column m", (4, 4))
+        _write_rows(own, _IMU, imu, samples[k])
+    for k, lidar in enumerate(truth.lidars):
+        own = lidars.create_group(str(k))
+        own.attrs["name"] = lidar.name
+        put(own, "T_BL", lidar.T_BL, "<f8", "1, last column m", (4, 4))
+        _write_rows(own, _LIDAR, lidar, points[k])
