@@ -101,8 +101,7 @@ void RollingFilter::close_node(const Eigen::Vector3d& next_rate_rad_s, State& st
   Hypothesis& best = state.hypotheses[0];
   if (rolling::reset_tilt(params_, state.sums, state.at_rest, state.nominal, best.P)) {
     best.x.setZero();
-    for (int k = 1; k < state.count; ++k) state.hypotheses[static_cast<std::size_t>(k)] = Hypothesis{};
-    state.count = 1;
+    keep_first(1, state);
   }
   if (state.at_rest) {
     correct_at_rest(state);

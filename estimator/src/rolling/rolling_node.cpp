@@ -212,7 +212,7 @@ void predict(const RollingParams& params, const RollingSums& sums, const Moving&
   x.head<9>() += (B * x).eval();
   P.topRows<9>() += (B * P).eval();
   P.leftCols<9>() += (P * B.transpose()).eval();
-  P = (0.5 * (P + P.transpose())).eval();
+  make_symmetric(P);
   const double attitude =
       squared(params.expert.noise.attitude_walk_rad_sqrts) * h +
       squared(params.expert.noise.rate_error_sqrts) * sums.turned_rad2_s + sums.gap_rad2 +
@@ -323,6 +323,12 @@ bool reset_tilt(const RollingParams& params, const RollingSums& sums, bool at_re
   P.diagonal().segment<3>(kVelocity).setConstant(
       squared(at_rest ? params.expert.contact.rest_velocity_sigma_m_s : kLostSpeed_m_s));
   return true;
+}
+
+void make_symmetric(Covariance& P) {
+  for (int j = 0; j < kStates; ++j) {
+    for (int i = 0; i < j; ++i) P(i, j) = P(j, i) = 0.5 * (P(i, j) + P(j, i));
+  }
 }
 
 void update(const Row& row, double measured, double variance, Vector& x, Covariance& P) {

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <memory>
 
 #include "last_pass.hpp"
 #include "tumble/attitude/strapdown.hpp"
@@ -274,7 +275,8 @@ void RollingSmoother::run_window(const Path& path, std::size_t emitted, State& s
   if (emitted > path.nodes.size() && params_.known_distance_m > 0.0) {
     distance = {params_.known_distance_m, params_.known_distance_sigma_m};
   }
-  rolling::LastPass pass(path_params_, state.samples, path.nodes, distance);
+  const auto held = std::make_unique<rolling::LastPass>(path_params_, state.samples, path.nodes, distance);
+  rolling::LastPass& pass = *held;
   pass.run(window_start(params_.filter, path_params_, state), emitted);
   state.learnt = pass.end().nominal;
   state.radius_sigma_m = std::sqrt(std::max(0.0, pass.end().P(rolling::kRadius, rolling::kRadius)));

@@ -126,6 +126,7 @@ class RollingOdometry {
   RollingSmoother smoother_;
   UnitRails rails_;
   std::unique_ptr<ImuMerge::State> merge_state_;
+  std::unique_ptr<ImuMerge::State> merged_state_;  ///< memory for the next one
   std::unique_ptr<RollingSmoother::State> state_;
   UnitRails::State rails_state_;
   std::vector<FrozenAxes> watches_;  ///< of the units
