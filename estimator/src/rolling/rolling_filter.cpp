@@ -51,7 +51,7 @@ Status RollingFilter::step_with(const ImuSample& sample, State& state, Listener 
 void RollingFilter::start(const ImuSample& sample, const Eigen::Quaterniond& q_WI, State& state) const {
   const Eigen::Vector3d& rate = sample.angular_velocity_rad_s;
   state.nominal = rolling::start_nominal(params_, q_WI, rate);
-  state.hypotheses[0].P = rolling::prior_covariance(params_, rate);
+  rolling::set_prior(params_, rate, state.hypotheses[0].P);
   state.started_in_motion = rolling::starts_in_motion(params_, rate);
   state.last_rate_rad_s = rate;
   state.count = 1;

@@ -76,8 +76,8 @@ RollingNominal start_nominal(const RollingParams& params, const Eigen::Quaternio
 }
 
 /// Of the states in the order of rolling.md (R1).
-Covariance prior_covariance(const RollingParams& params, const Eigen::Vector3d& rate_I_rad_s) {
-  Covariance P = Covariance::Zero();
+void set_prior(const RollingParams& params, const Eigen::Vector3d& rate_I_rad_s, Covariance& P) {
+  P.setZero();
   auto prior = P.diagonal();
   // the force of a sphere that is pushed is not gravity, and one that turns may slip by as much as it turns
   const bool moves = starts_in_motion(params, rate_I_rad_s);
@@ -93,7 +93,6 @@ Covariance prior_covariance(const RollingParams& params, const Eigen::Vector3d& 
   prior.segment<3>(kLeverArm).setConstant(squared(params.lever_arm_sigma_m));
   prior.segment<2>(kSlope).setConstant(squared(kLevelSlopeSigma));
   prior[kRadius] = squared(params.radius_sigma_m);
-  return P;
 }
 
 /// rolling.md (R2) to (R8).

@@ -50,7 +50,7 @@ bool starts_in_motion(const RollingParams& params, const Eigen::Vector3d& rate_I
 /// Levelled (or given) attitude, centre at the origin, at rest; in motion it rolls.
 RollingNominal start_nominal(const RollingParams& params, const Eigen::Quaterniond& q_WI,
                              const Eigen::Vector3d& rate_I_rad_s);
-Covariance prior_covariance(const RollingParams& params, const Eigen::Vector3d& rate_I_rad_s);
+void set_prior(const RollingParams& params, const Eigen::Vector3d& rate_I_rad_s, Covariance& P);
 
 /// Takes averaged readings into the nominal trajectory and the sums.
 void integrate(const RollingParams& params, const ImuAverage& reading, RollingNominal& nominal, RollingSums& sums);
