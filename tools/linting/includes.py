@@ -44,7 +44,7 @@ _HEADERS = {
     "limits": "numeric_limits",
     "list": "list",
     "map": "map multimap",
-    "memory": "make_shared make_unique shared_ptr unique_ptr",
+    "memory": "construct_at destroy_at make_shared make_unique shared_ptr unique_ptr",
     "mutex": "lock_guard mutex",
     "new": "bad_alloc",
     "numbers": "numbers",

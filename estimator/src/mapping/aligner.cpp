@@ -2,6 +2,7 @@
 #include "aligner.hpp"
 
 #include <algorithm>
+#include <memory>
 
 namespace tumble::mapping {
 
@@ -70,19 +71,20 @@ void Aligner::to_convergence(const Registration::Prior& prior, const Scene& scen
   align(patient_, prior, scene, thinned_, trajectory, found);
   if (found.verdict != RegistrationVerdict::converged) return;
   const int iterations = found.iterations;
-  in_full(from(found, prior), scene, trajectory, found);
+  const std::unique_ptr<const Registration::Prior> here(new Registration::Prior(from(found, prior)));
+  in_full(*here, scene, trajectory, found);
   found.iterations += iterations;
 }
 
 void Aligner::from_afar(const Registration::Prior& start, const Registration::Prior& prior, const Scene& scene,
                         SweepTrajectory& trajectory, Registration::Result& found) {
   thin(scene.points, coarse_points_, thinned_);
-  Registration::Result rough;
-  align(coarse_, start, scene, thinned_, trajectory, rough);
-  found.verdict = rough.verdict;
-  if (rough.verdict == RegistrationVerdict::converged) {
-    to_convergence(from(rough, prior), scene, trajectory, found);
-  }
+  const auto rough = std::make_unique<Registration::Result>();
+  align(coarse_, start, scene, thinned_, trajectory, *rough);
+  found.verdict = rough->verdict;
+  if (rough->verdict != RegistrationVerdict::converged) return;
+  const std::unique_ptr<const Registration::Prior> near(new Registration::Prior(from(*rough, prior)));
+  to_convergence(*near, scene, trajectory, found);
 }
 
 Registration::Params registration_params(const LidarInertialOdometry::Params& params) {

@@ -71,14 +71,26 @@ Matrix pose_and_mounting(const Matrix& F, const Matrix& errors) {
 }
 
 /// mapping.md (R42).
-Belief at_end(const Belief& at_start, const SweepTrajectory& trajectory, const Matrix& end_by_start, TimeNs end_ns) {
-  const Matrix weight = end_by_start * at_start.weight * end_by_start.transpose();
-  const Matrix error = end_by_start * at_start.error * end_by_start.transpose();
-  Belief end{at_start.mean, symmetric(weight), symmetric(error)};
+void at_end(const Belief& at_start, const SweepTrajectory& trajectory, const Matrix& end_by_start, TimeNs end_ns,
+            Belief& end) {
+  end.mean = at_start.mean;
+  sandwich(end_by_start, at_start.weight, end.weight);
+  sandwich(end_by_start, at_start.error, end.error);
+  make_symmetric(end.weight);
+  make_symmetric(end.error);
   end.mean.state = trajectory.state(trajectory.duration_s());
   end.mean.state.time_ns = end_ns;
   end.mean.state.covariance = unknowns::block(end.weight, unknowns::motion);
-  return end;
+}
+
+[[gnu::noinline]] void sandwich(const Matrix& F, const Matrix& P, Matrix& out) {
+  out.noalias() = F * P * F.transpose();
+}
+
+void make_symmetric(Matrix& P) {
+  for (int j = 0; j < P.cols(); ++j) {
+    for (int i = 0; i < j; ++i) P(i, j) = P(j, i) = 0.5 * (P(i, j) + P(j, i));
+  }
 }
 
 Eigen::Matrix<double, 6, 6> pose_by_mounting(const Eigen::Quaterniond& q_WI, const Eigen::Vector3d& p_IL_m) {

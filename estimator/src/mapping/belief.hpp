@@ -23,13 +23,16 @@ Belief belief_at_start(const LidarInertialOdometry::Params& params, const Motion
 /// Effect, to first order, on the unknowns with their motion taken `t_s` after the start, of the unknowns at the start.
 Registration::Matrix unknowns_at(const SweepTrajectory& trajectory, double t_s);
 
+/// F P F^T, which needs 32 KiB of stack for itself: nobody who calls it should hold matrices there. `out` is neither.
+void sandwich(const Registration::Matrix& F, const Registration::Matrix& P, Registration::Matrix& out);
+
 /// Of F errors F^T, F of unknowns_at, what has to do with the pose or the mounting; zero where neither has. To the bit
 /// what the whole product has there, for a third of it: each pose of a recording asks.
 Registration::Matrix pose_and_mounting(const Registration::Matrix& F, const Registration::Matrix& errors);
 
 /// Of the unknowns at the end of the stretch, which is at `end_ns`; the trajectory is that of the mean.
-Belief at_end(const Belief& at_start, const SweepTrajectory& trajectory, const Registration::Matrix& end_by_start,
-              TimeNs end_ns);
+void at_end(const Belief& at_start, const SweepTrajectory& trajectory, const Registration::Matrix& end_by_start,
+            TimeNs end_ns, Belief& end);
 
 /// Pose errors of the IMU by errors of the mounting, at this attitude of it, while the lidar's pose is certain: K of
 /// mapping.md (R43).
@@ -38,10 +41,7 @@ Eigen::Matrix<double, 6, 6> pose_by_mounting(const Eigen::Quaterniond& q_WI, con
 /// The matrix with what can be inverted in the place of variances of 0.
 Registration::Matrix invertible(const Registration::Matrix& covariance);
 
-/// (P + P^T) / 2, against what rounding adds from product to product.
-template <class Matrix>
-Matrix symmetric(const Matrix& P) {
-  return 0.5 * (P + P.transpose());
-}
+/// P <- (P + P^T) / 2, against what rounding adds from product to product.
+void make_symmetric(Registration::Matrix& P);
 
 }  // namespace tumble::mapping

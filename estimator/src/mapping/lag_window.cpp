@@ -2,7 +2,8 @@
 #include "lag_window.hpp"
 
 #include <Eigen/Cholesky>
-#include <utility>
+#include <array>
+#include <memory>
 
 #include "../common/dense.hpp"
 #include "belief.hpp"
@@ -14,9 +15,9 @@ Status WindowSweep::motion(SweepTrajectory& trajectory) const {
   return trajectory.build(now.state, samples, end_ns, now.calibration.gravity_W_m_s2, now.excess_rad_s);
 }
 
-void LagWindow::enter(WindowSweep sweep) {
+WindowSweep& LagWindow::enter() {
   if (is_full()) sweeps_.pop_front();
-  sweeps_.push_back(std::move(sweep));
+  return sweeps_.emplace_back();
 }
 
 /// mapping.md (R52).
@@ -27,17 +28,20 @@ void LagWindow::enter(WindowSweep sweep) {
 void LagWindow::smooth() {
   if (sweeps_.empty()) return;
   sweeps_.back().smoothed = sweeps_.back().filtered;
+  const auto held = std::make_unique<std::array<Registration::Matrix, 2>>();
+  auto& [solved, gain] = *held;
   for (std::size_t k = sweeps_.size() - 1; k-- > 0;) {
     WindowSweep& sweep = sweeps_[k];
     const WindowSweep& next = sweeps_[k + 1];
-    Registration::Matrix solved = next.by_before * sweep.filtered.errors;
+    solved.noalias() = next.by_before * sweep.filtered.errors;
     dense::solve_semidefinite(invertible(next.predicted.errors), solved);
-    const Registration::Matrix gain = solved.transpose();
+    gain = solved.transpose();
     sweep.smoothed.mean = sweep.filtered.mean;
     sweep.smoothed.mean.add(gain * next.smoothed.mean.minus(next.predicted.mean));
-    const Registration::Matrix P =
-        sweep.filtered.errors + gain * (next.smoothed.errors - next.predicted.errors) * gain.transpose();
-    sweep.smoothed.errors = symmetric(P);
+    solved = next.smoothed.errors - next.predicted.errors;
+    sandwich(gain, solved, sweep.smoothed.errors);
+    sweep.smoothed.errors += sweep.filtered.errors;
+    make_symmetric(sweep.smoothed.errors);
   }
 }
 

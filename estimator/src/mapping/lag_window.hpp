@@ -33,8 +33,8 @@ class LagWindow {
  public:
   explicit LagWindow(int sweeps) : length_(static_cast<std::size_t>(sweeps)) {}
 
-  /// The oldest leaves when the window is full already.
-  void enter(WindowSweep sweep);
+  /// A new one, blank. The oldest leaves when the window is full already.
+  WindowSweep& enter();
   /// Whether the oldest sweep has been refined by all that ever will.
   bool is_full() const { return sweeps_.size() == length_; }
   /// Each sweep but the newest by those after it: mapping.md (R52).

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <memory>
 
 #include "odometry_impl.hpp"
 #include "unknowns.hpp"
@@ -88,13 +89,14 @@ Status LidarInertialOdometry::predict(std::span<const ImuSample> samples, std::s
     return status;
   const int resting_sweeps = my.rests(track, trajectory, end_ns) ? my.resting_sweeps + 1 : 0;
   const mapping::MotionWindow motion{track.samples(), end_ns, resting_sweeps};
-  const mapping::Prediction at_start = mapping::predict(my.params, my.border, motion, trajectory, my.known);
-  const Registration::Estimate& mean = at_start.prior.mean;  // what is known beside the last sweep is in it
+  const std::unique_ptr<const mapping::Prediction> at_start(
+      new mapping::Prediction(mapping::predict(my.params, my.border, motion, trajectory, my.known)));
+  const Registration::Estimate& mean = at_start->prior.mean;  // what is known beside the last sweep is in it
   if (Status status =
           trajectory.build(mean.state, track.samples(), end_ns, mean.calibration.gravity_W_m_s2, mean.excess_rad_s);
       !status.ok())
     return status;
-  pose = my.pose_along(trajectory, trajectory.duration_s(), at_start.errors);
+  pose = my.pose_along(trajectory, trajectory.duration_s(), at_start->errors);
   pose.time_ns = end_ns;
   return {};
 }

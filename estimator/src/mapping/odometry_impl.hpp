@@ -20,8 +20,8 @@ void check_params(const LidarInertialOdometry::Params& params);
 
 /// A sweep's unknowns at its start: as predicted, and what stands.
 struct UpdatedSweep {
-  Prediction prediction;
-  Belief start;
+  const Prediction& prediction;
+  const Belief& start;
 };
 
 }  // namespace mapping
@@ -37,11 +37,11 @@ struct LidarInertialOdometry::Impl {
   /// Where nothing has been seen yet: the belief at the start, by the IMU at rest.
   Status level_at_first();
   bool rests(const mapping::InertialTrack& heard, const SweepTrajectory& motion, TimeNs end_ns) const;
-  mapping::Placed place(const mapping::Prediction& prediction, const mapping::MotionWindow& motion,
-                        SweepReport& report);
-  /// Leaves the trajectory as that of what stands.
-  Status update(mapping::Prediction prediction, const mapping::Placed& placed, const mapping::MotionWindow& motion,
-                mapping::UpdatedSweep& updated);
+  void place(const mapping::Prediction& prediction, const mapping::MotionWindow& motion, SweepReport& report,
+             mapping::Placed& placed);
+  /// What stands; of a lost sensor at rest the prediction is that of the rest from here on.
+  mapping::Belief update(const mapping::MotionWindow& motion, const mapping::Placed& placed,
+                         mapping::Prediction& prediction) const;
   std::vector<mapping::InsertedPoint> insert(const mapping::Belief& start, bool rings_differ, SweepReport& report);
   void carry_on(const mapping::UpdatedSweep& sweep, const mapping::Placed& placed, const mapping::MotionWindow& motion,
                 std::vector<mapping::InsertedPoint> inserted, SweepReport& report);

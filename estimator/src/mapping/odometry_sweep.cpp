@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <algorithm>
+#include <memory>
 #include <utility>
 
 #include "odometry_impl.hpp"
@@ -22,7 +23,8 @@ Status LidarInertialOdometry::Impl::add_sweep(TimeNs start_ns, TimeNs end_ns, st
     return status;
   resting_sweeps = rests(track, trajectory, end_ns) ? resting_sweeps + 1 : 0;
   const MotionWindow motion{track.samples(), end_ns, resting_sweeps};
-  Prediction prediction = mapping::predict(params, border, motion, trajectory, known);
+  const std::unique_ptr<Prediction> prediction(
+      new Prediction(mapping::predict(params, border, motion, trajectory, known)));  // 27 KiB: not on the stack
 
   // where the lidar finds itself in the map; a sweep of which no return is of use is placed by inertia
   mapping::SweepPoints::Counts counts;
@@ -30,17 +32,23 @@ Status LidarInertialOdometry::Impl::add_sweep(TimeNs start_ns, TimeNs end_ns, st
       points.select(params, returns, end_ns - start_ns, calibration, seconds(start_ns - border.time_ns()), counts);
   report.points_used = counts.used;
   report.points_alone = counts.alone;
-  const Placed placed = points_status.ok() ? place(prediction, motion, report) : Placed{};
-  report.verdict = placed.verdict;
+  const auto placed = std::make_unique<Placed>();
+  if (points_status.ok()) place(*prediction, motion, report, *placed);
+  report.verdict = placed->verdict;
 
   // what stands, what it adds to the map, and what the next sweep begins from
-  UpdatedSweep sweep;
-  if (Status status = update(std::move(prediction), placed, motion, sweep); !status.ok()) return status;
+  const std::unique_ptr<const Belief> start(new Belief(update(motion, *placed, *prediction)));
+  if (!placed->alignment) {
+    const Registration::Estimate& mean = start->mean;
+    const Status status =
+        trajectory.build(mean.state, motion.samples, motion.end_ns, mean.calibration.gravity_W_m_s2, mean.excess_rad_s);
+    if (!status.ok()) return status;
+  }
   // where the map had nothing to say the prior draws on: points that it leaves too uncertain stay out by themselves
   std::vector<InsertedPoint> inserted;
-  if (placed.verdict != SweepVerdict::rejected || placed.map_says_nothing)
-    inserted = insert(sweep.start, counts.rings_differ, report);
-  carry_on(sweep, placed, motion, std::move(inserted), report);
+  if (placed->verdict != SweepVerdict::rejected || placed->map_says_nothing)
+    inserted = insert(*start, counts.rings_differ, report);
+  carry_on({*prediction, *start}, *placed, motion, std::move(inserted), report);
   return points_status;
 }
 
@@ -81,47 +89,39 @@ bool LidarInertialOdometry::Impl::rests(const mapping::InertialTrack& heard, con
   return !(gained_m_s.norm() > params.expert.rest.force_m_s2 * motion.duration_s());
 }
 
-Placed LidarInertialOdometry::Impl::place(const Prediction& prediction, const MotionWindow& motion,
-                                          SweepReport& report) {
+void LidarInertialOdometry::Impl::place(const Prediction& prediction, const MotionWindow& motion, SweepReport& report,
+                                        Placed& placed) {
   if (map.empty()) {
-    Placed first;
-    if (points.all().size() >= params.expert.matching.least) first.verdict = SweepVerdict::first;
-    return first;
+    if (points.all().size() >= params.expert.matching.least) placed.verdict = SweepVerdict::first;
+    return;
   }
   const bool prior_trusted = mapping::prior_is_trusted(params, border, motion, trajectory);
   points.choose(params, trajectory);
   const mapping::Scene scene{motion.samples, motion.end_ns, points.chosen(), map.voxels()};
-  mapping::Attempt attempt = mapping::attempt(params, tracking, prediction.prior, scene, aligner, trajectory);
+  const mapping::Attempt attempt =
+      mapping::attempt(params, tracking, prediction.prior, scene, aligner, trajectory, placed.alignment);
   report.points_registered = scene.points.size();
   report.iterations = attempt.iterations;
   report.inlier_share = attempt.inlier_share;
-  if (attempt.alignment) {
-    const Registration::Result& aligned = *attempt.alignment;
+  if (placed.alignment) {
+    const Registration::Result& aligned = *placed.alignment;
     report.innovation = mapping::innovation(prediction, aligned.mean);
     report.conditioning = aligned.eigenvalues[5] > 0.0 ? aligned.eigenvalues[0] / aligned.eigenvalues[5] : 0.0;
     report.weakest_direction = aligned.directions.col(0);
     report.weakest_sigma_m = aligned.weakest_sigma_m;
     report.saturation_deficit_rad_s = aligned.mean.excess_rad_s.rowwise().mean();
   }
-  return mapping::judge(params, tracking, scene.points.size(), prior_trusted, std::move(attempt));
+  mapping::judge(params, tracking, scene.points.size(), prior_trusted, attempt, placed);
 }
 
-Status LidarInertialOdometry::Impl::update(Prediction prediction, const Placed& placed, const MotionWindow& motion,
-                                           UpdatedSweep& updated) {
-  if (placed.alignment) {
-    updated.start = mapping::posterior(prediction, *placed.alignment);
-    updated.prediction = std::move(prediction);
-    return {};
-  }
+Belief LidarInertialOdometry::Impl::update(const MotionWindow& motion, const Placed& placed,
+                                           Prediction& prediction) const {
+  if (placed.alignment) return mapping::posterior(prediction, *placed.alignment);
   // the inertial prior stands; an IMU at rest stops the drift of its velocity
   const bool by_inertia = std::holds_alternative<mapping::InertialPrior>(known);
   if (mapping::is_lost(tracking) && by_inertia && track.rests_until(motion.end_ns))
-    prediction = mapping::predict_rest(params, border, std::move(prediction));
-  updated.start = mapping::posterior(prediction);
-  updated.prediction = std::move(prediction);
-  const Registration::Estimate& mean = updated.start.mean;
-  return trajectory.build(mean.state, motion.samples, motion.end_ns, mean.calibration.gravity_W_m_s2,
-                          mean.excess_rad_s);
+    mapping::predict_rest(params, border, prediction);
+  return mapping::posterior(prediction);
 }
 
 std::vector<InsertedPoint> LidarInertialOdometry::Impl::insert(const Belief& start, bool rings_differ,
@@ -149,7 +149,7 @@ void LidarInertialOdometry::Impl::carry_on(const UpdatedSweep& sweep, const Plac
   enter_window(sweep, motion, std::move(inserted), aligned != nullptr);
   // no later sweep refines it: it leaves with the next one
   if (window.is_full()) report.smoothed = poses_of(window.sweeps().front());
-  border = mapping::border_after(params, sweep.start, motion, trajectory, aligned);
+  mapping::border_after(params, sweep.start, motion, trajectory, aligned, border);
   report.pose = border.belief.mean.state.pose();
   report.pose.covariance = report.trajectory.back().covariance;
   if (placed.verdict != SweepVerdict::first) part_from_world(sweep.start, report);
@@ -172,14 +172,16 @@ void LidarInertialOdometry::Impl::forget_until(TimeNs end_ns) {
 
 void LidarInertialOdometry::Impl::enter_window(const UpdatedSweep& sweep, const MotionWindow& motion,
                                                std::vector<InsertedPoint> inserted, bool aligned) {
-  WindowSweep newest;
-  newest.predicted = {sweep.prediction.prior.mean, sweep.prediction.errors};
-  newest.by_before = sweep.prediction.by_last * border.end_by_start;
-  newest.filtered = newest.smoothed = {sweep.start.mean, sweep.start.error};
+  WindowSweep& newest = window.enter();
+  newest.predicted.mean = sweep.prediction.prior.mean;
+  newest.predicted.errors = sweep.prediction.errors;
+  newest.by_before.noalias() = sweep.prediction.by_last * border.end_by_start;
+  newest.filtered.mean = sweep.start.mean;
+  newest.filtered.errors = sweep.start.error;
+  newest.smoothed = newest.filtered;
   newest.samples.assign(motion.samples.begin(), motion.samples.end());
   newest.end_ns = motion.end_ns;
   newest.inserted = std::move(inserted);
-  window.enter(std::move(newest));
   if (!aligned) return;
   window.smooth();
   window.move_inserted(map);

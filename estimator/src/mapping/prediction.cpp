@@ -4,6 +4,7 @@
 #include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
+#include <memory>
 
 #include "../common/dense.hpp"
 #include "inertial_prior.hpp"
@@ -79,8 +80,10 @@ double knot_correlation(const Params& params, const SweepTrajectory& trajectory)
 
 /// mapping.md (R29).
 void Prediction::compose(const Belief& at_border) {
-  prior.covariance = by_last * at_border.weight * by_last.transpose() + noise;
-  errors = by_last * at_border.error * by_last.transpose() + noise;
+  sandwich(by_last, at_border.weight, prior.covariance);
+  sandwich(by_last, at_border.error, errors);
+  prior.covariance += noise;
+  errors += noise;
 }
 
 void Prediction::hold_still(double sigma_m_s) {
@@ -125,10 +128,9 @@ Prediction predict(const Params& params, const Border& border, const MotionWindo
   return next;
 }
 
-Prediction predict_rest(const Params& params, const Border& border, Prediction prediction) {
+void predict_rest(const Params& params, const Border& border, Prediction& prediction) {
   prediction.hold_still(params.expert.standstill.sigma_m_s);
   prediction.compose(border.belief);
-  return prediction;
 }
 
 bool prior_is_trusted(const Params& params, const Border& border, const MotionWindow& window,
@@ -147,18 +149,32 @@ Belief posterior(const Prediction& prediction) {
   return start;
 }
 
-/// What the unknowns are off by after the registration, which weighed prior and surfaces by what it made of them: the
-/// errors of the prior and the pull of the surfaces, whose score_covariance is measured, through the same normal
-/// equations: mapping.md (R41).
-Belief posterior(const Prediction& prediction, const Registration::Result& aligned) {
+namespace {
+
+/// The share of the prior's errors that the registration keeps: of mapping.md (R41). Its stack is not its caller's.
+[[gnu::noinline]] void weigh_prior(const Prediction& prediction, const Registration::Result& aligned,
+                                   Registration::Matrix& out) {
   // what is no information corrects nothing
   Registration::Matrix kept = Registration::Matrix::Identity();
   dense::solve_semidefinite(invertible(prediction.prior.covariance), kept);
   kept += aligned.errors_in_variables_information;
-  const Registration::Matrix from_prior = aligned.covariance * kept;
-  const Registration::Matrix sum = from_prior * prediction.errors * from_prior.transpose() +
-                                   aligned.covariance * aligned.score_covariance * aligned.covariance;
-  return {aligned.mean, aligned.covariance, symmetric(sum)};
+  out.noalias() = aligned.covariance * kept;
+}
+
+}  // namespace
+
+/// What the unknowns are off by after the registration, which weighed prior and surfaces by what it made of them: the
+/// errors of the prior and the pull of the surfaces, whose score_covariance is measured, through the same normal
+/// equations: mapping.md (R41).
+Belief posterior(const Prediction& prediction, const Registration::Result& aligned) {
+  Belief start{aligned.mean, aligned.covariance, Registration::Matrix::Zero()};
+  const auto from_prior = std::make_unique<Registration::Matrix>();
+  weigh_prior(prediction, aligned, *from_prior);
+  sandwich(*from_prior, prediction.errors, start.error);
+  sandwich(aligned.covariance, aligned.score_covariance, *from_prior);
+  start.error += *from_prior;
+  make_symmetric(start.error);
+  return start;
 }
 
 double innovation(const Prediction& prediction, const Registration::Estimate& aligned) {
@@ -169,17 +185,15 @@ double innovation(const Prediction& prediction, const Registration::Estimate& al
   return std::sqrt(std::max(0.0, moved.dot(P.ldlt().solve(moved))) / kMotion);
 }
 
-Border border_after(const Params& params, const Belief& start, const MotionWindow& window,
-                    const SweepTrajectory& trajectory, const Registration::Result* alignment) {
-  Border border;
+void border_after(const Params& params, const Belief& start, const MotionWindow& window,
+                  const SweepTrajectory& trajectory, const Registration::Result* alignment, Border& border) {
   border.end_by_start = unknowns_at(trajectory, trajectory.duration_s());
-  border.belief = at_end(start, trajectory, border.end_by_start, window.end_ns);
+  at_end(start, trajectory, border.end_by_start, window.end_ns, border.belief);
   border.railed_velocity_m2_s2 = railed_velocity_variance(params, trajectory, window.samples);
-  if (alignment != nullptr) {
-    border.excess_share = trajectory.excess_share_at_end();
-    border.held = alignment->weakest_sigma_m <= params.expert.matching.degenerate_sigma_m;
-  }
-  return border;
+  const bool aligned = alignment != nullptr;
+  border.excess_share = Eigen::Vector3d::Zero();
+  if (aligned) border.excess_share = trajectory.excess_share_at_end();
+  border.held = aligned && alignment->weakest_sigma_m <= params.expert.matching.degenerate_sigma_m;
 }
 
 }  // namespace tumble::mapping

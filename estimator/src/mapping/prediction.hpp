@@ -45,7 +45,7 @@ Prediction predict(const LidarInertialOdometry::Params& params, const Border& bo
                    const SweepTrajectory& trajectory, const MotionPrior& known);
 
 /// Of a lost sensor whose IMU rests: that it has not moved, which stops the drift of its velocity.
-Prediction predict_rest(const LidarInertialOdometry::Params& params, const Border& border, Prediction prediction);
+void predict_rest(const LidarInertialOdometry::Params& params, const Border& border, Prediction& prediction);
 
 /// Whether the prior alone is sure enough to draw by; clipped axes count in full, also where their excess is estimated.
 bool prior_is_trusted(const LidarInertialOdometry::Params& params, const Border& border, const MotionWindow& window,
@@ -61,8 +61,8 @@ double innovation(const Prediction& prediction, const Registration::Estimate& al
 
 /// The border at the end of a sweep that moved along `trajectory`, by what stands for it at its start. `alignment`
 /// is null where there is none.
-Border border_after(const LidarInertialOdometry::Params& params, const Belief& start, const MotionWindow& window,
-                    const SweepTrajectory& trajectory, const Registration::Result* alignment);
+void border_after(const LidarInertialOdometry::Params& params, const Belief& start, const MotionWindow& window,
+                  const SweepTrajectory& trajectory, const Registration::Result* alignment, Border& border);
 
 /// Of the saturation deficit from knot to knot: mapping.md (R36).
 double knot_correlation(const LidarInertialOdometry::Params& params, const SweepTrajectory& trajectory);

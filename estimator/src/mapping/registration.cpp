@@ -5,8 +5,10 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <memory>
 
 #include "../common/dense.hpp"
+#include "belief.hpp"
 #include "registration_sums.hpp"
 #include "tumble/common/so3.hpp"
 #include "unknowns.hpp"
@@ -28,10 +30,14 @@ Matrix information_of(const Matrix& covariance) {
 /// terms of mapping.md (R20), (R21) that hold the prior.
 void add_prior(const Registration::Prior& prior, const Matrix& information, const Registration::Estimate& now,
                Matrix& H, Vector& g) {
-  Matrix J = Matrix::Identity();
+  const auto held = std::make_unique<std::array<Matrix, 3>>();
+  auto& [J, Jt, pull] = *held;
+  J.setIdentity();
   const Vector away = now.minus(prior.mean);
   J.block<3, 3>(3, 3) = so3::left_jacobian_inverse(away.segment<3>(3));
-  H += J.transpose() * information * J;
+  Jt = J.transpose();
+  mapping::sandwich(Jt, information, pull);
+  H += pull;
   g += J.transpose() * (information * away);
 }
 
@@ -110,14 +116,18 @@ struct Registration::Descent {
 Status Registration::align(const Prior& prior, std::span<const MotionSample> samples, TimeNs end_ns,
                            std::span<const SweepPoint> points, const VoxelMap& map, SweepTrajectory& trajectory,
                            Result& result) {
-  Problem problem{prior, samples, end_ns, points, map};
+  const std::unique_ptr<Problem> posed(new Problem{prior, samples, end_ns, points, map});
+  Problem& problem = *posed;
   problem.matches_needed = std::max(params_.matches_min, static_cast<std::size_t>(params_.expert.matched_share_min *
                                                                                   static_cast<double>(points.size())));
-  result = Result{};
+  std::destroy_at(&result);  // made anew where it lies: it is 22 KiB
+  std::construct_at(&result);
   result.mean = prior.mean;
   result.covariance = prior.covariance;
   result.points = points.size();
-  Descent at{.now = prior.mean, .points = points, .sum = {}, .kernel_m = params_.expert.kernel_min_m};
+  const std::unique_ptr<Descent> descent(
+      new Descent{.now = prior.mean, .points = points, .sum = {}, .kernel_m = params_.expert.kernel_min_m});
+  Descent& at = *descent;
   at.now.excess_rad_s = prior.excess_start_rad_s;
   if (prior.start) at.now.state = *prior.start;
   if (Status status = problem.build(at.now, trajectory); !status.ok()) return status;

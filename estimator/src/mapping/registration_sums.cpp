@@ -4,7 +4,10 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <memory>
+#include <utility>
 
+#include "outer_products.hpp"
 #include "point_motion.hpp"
 
 namespace tumble {
@@ -12,12 +15,10 @@ namespace tumble {
 namespace {
 
 constexpr int kRigid = Registration::kMotion;
-constexpr std::size_t kBlock = 128;  // points whose sums are formed together; however many threads there are
-
 constexpr float kRounding = 1.0001f;
 
-std::size_t block_count(std::size_t points) {
-  return (points + kBlock - 1) / kBlock;
+constexpr std::size_t block_count(std::size_t points, std::size_t block) {
+  return (points + block - 1) / block;
 }
 
 }  // namespace
@@ -129,7 +130,7 @@ void Registration::place(const SweepTrajectory& trajectory, std::span<const Swee
   levers_.resize(points.size());
   positions_.resize(points.size());
   distances_.resize(points.size());
-  run_parallel(params_.parallel_for, block_count(points.size()), [&](std::size_t block) {
+  run_parallel(params_.parallel_for, block_count(points.size(), kBlock), [&](std::size_t block) {
     Neighbours found;
     const std::size_t begin = block * kBlock, end = std::min(points.size(), (block + 1) * kBlock);
     trajectory.levers(points.subspan(begin, end - begin), std::span(levers_).subspan(begin, end - begin));
@@ -157,9 +158,9 @@ double Registration::kernel_width_m() {
 /// Sums over the points of mapping.md (R21).
 void Registration::accumulate_block(std::span<const SweepPoint> points, std::size_t block,
                                     const SweepTrajectory& trajectory, const SweepCalibration& calibration,
-                                    const Unknowns& unknowns, double kernel_m, Sums& sum) {
-  // a column per match: derivatives by the free unknowns, then the distance, all times the square root of the weight
-  Eigen::Matrix<double, kUnknowns, static_cast<int>(kBlock)> rows;
+                                    const Unknowns& unknowns, double kernel_m, Products& products, Sums& sum) {
+  // a column per match: derivatives by the free unknowns, times the square root of the weight; and the distance, so too
+  auto& rows = products.columns;
   Eigen::Matrix<double, static_cast<int>(kBlock), 1> weighted;
   const bool rigid = !unknowns.excess && !unknowns.calibration;
   std::size_t hint = 0;
@@ -189,16 +190,19 @@ void Registration::accumulate_block(std::span<const SweepPoint> points, std::siz
     if (r * r <= 9.0 * weight.variance_m2) ++sum.inliers;
   }
   const int n = unknowns.count;
-  sum.H.topLeftCorner(n, n).selfadjointView<Eigen::Lower>().rankUpdate(rows.topLeftCorner(n, count));
+  products.add_to(n, count, sum.H);
   sum.g.head(n) = rows.topLeftCorner(n, count) * weighted.head(count);
 }
 
 void Registration::accumulate(std::span<const SweepPoint> points, const SweepTrajectory& trajectory,
                               const SweepCalibration& calibration, const Unknowns& unknowns, double kernel_m,
                               Sums& sum) {
-  parts_.assign(block_count(points.size()), Sums{});
+  parts_.assign(block_count(points.size(), kBlock), Sums{});
+  mapping::Spare<Products> spare;
   run_parallel(params_.parallel_for, parts_.size(), [&](std::size_t block) {
-    accumulate_block(points, block, trajectory, calibration, unknowns, kernel_m, parts_[block]);
+    std::unique_ptr<Products> products = spare.take();
+    accumulate_block(points, block, trajectory, calibration, unknowns, kernel_m, *products, parts_[block]);
+    spare.give(std::move(products));
   });
   sum = Sums{};
   for (const Sums& part : parts_) sum.add(part);
@@ -210,7 +214,8 @@ void Registration::accumulate(std::span<const SweepPoint> points, const SweepTra
 /// together leave open, as an attitude that a turned mounting makes up for, and (R41) would grow there without bound.
 struct Registration::NoiseOfNormals {
   const Unknowns& unknowns;
-  Eigen::Matrix<double, kUnknowns, 2 * static_cast<int>(kBlock)> columns;
+  using Products = mapping::OuterProducts<kUnknowns, 2 * static_cast<int>(kBlock)>;
+  std::unique_ptr<Products> products = Products::make();
   int count = 0;
   Matrix lower = Matrix::Zero();
 
@@ -221,15 +226,14 @@ struct Registration::NoiseOfNormals {
       Vector derivative;
       motion.along(plane.tilt_W.col(axis).cast<double>(), derivative);
       for (int k = 0; k < unknowns.count; ++k)
-        columns(k, count) = root * derivative[unknowns.free[static_cast<std::size_t>(k)]];
+        products->columns(k, count) = root * derivative[unknowns.free[static_cast<std::size_t>(k)]];
       ++count;
     }
-    if (count == columns.cols()) sum_up();
+    if (count == products->columns.cols()) sum_up();
   }
 
   void sum_up() {
-    const int n = unknowns.count;
-    lower.topLeftCorner(n, n).selfadjointView<Eigen::Lower>().rankUpdate(columns.topLeftCorner(n, count));
+    products->add_to(unknowns.count, count, lower);
     count = 0;
   }
 

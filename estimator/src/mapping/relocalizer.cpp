@@ -3,7 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
-#include <utility>
+#include <memory>
 
 #include "tumble/common/so3.hpp"
 #include "unknowns.hpp"
@@ -40,9 +40,9 @@ void track(const Params& params, const Registration::Prior& prior, const Scene& 
       if (converged(found) || tries == params.expert.search.excess_tries_max) break;
       const int first = unknowns::excess_at(axis, 0);
       if (std::sqrt(prior.covariance(first, first)) < more / 5.0) continue;
-      Registration::Prior start = prior;
-      start.excess_start_rad_s.row(axis).array() += more;
-      aligner.from_afar(start, prior, scene, trajectory, found);
+      const auto start = std::make_unique<Registration::Prior>(prior);
+      start->excess_start_rad_s.row(axis).array() += more;
+      aligner.from_afar(*start, prior, scene, trajectory, found);
       iterations += found.iterations;
       ++tries;
     }
@@ -59,15 +59,17 @@ void search(const RelocalizationParams& params, const Registration::Prior& prior
   const int moved = params.starts_per_sweep - 1;
   for (int k = 0; k < moved && !converged(found); ++k) {
     const int index = 1 + (failed_before * moved + k) % (kStartsPerRound * params.rounds);
-    aligner.from_afar(moved_start(params, prior, index), prior, scene, trajectory, found);
+    const auto start = std::make_unique<Registration::Prior>(prior);
+    move_start(params, index, *start);
+    aligner.from_afar(*start, prior, scene, trajectory, found);
   }
   if (!converged(found)) found.verdict = verdict;
 }
 
 }  // namespace
 
-Registration::Prior moved_start(const RelocalizationParams& params, Registration::Prior prior, int index) {
-  if (index == 0) return prior;
+void move_start(const RelocalizationParams& params, int index, Registration::Prior& prior) {
+  if (index == 0) return;
   const int round = 1 + (index - 1) / kStartsPerRound;
   const int axis = (index - 1) / 2 % 6;
   const double sign = (index - 1) % 2 == 0 ? 1.0 : -1.0;
@@ -79,12 +81,12 @@ Registration::Prior moved_start(const RelocalizationParams& params, Registration
     const double angle = sign * std::clamp(1.5 * sigma, 0.1, round * params.turn_rad);
     state.q_WI = so3::exp(angle * Eigen::Vector3d::Unit(axis - 3)) * state.q_WI;
   }
-  return prior;
 }
 
 Attempt attempt(const Params& params, const TrackingState& tracking, const Registration::Prior& prior,
-                const Scene& scene, Aligner& aligner, SweepTrajectory& trajectory) {
-  Registration::Result found;
+                const Scene& scene, Aligner& aligner, SweepTrajectory& trajectory,
+                std::optional<Registration::Result>& alignment) {
+  Registration::Result& found = alignment.emplace();
   found.points = scene.points.size();
   if (is_lost(tracking)) {
     search(params.expert.search, prior, scene, failed_searches(tracking), aligner, trajectory, found);
@@ -95,26 +97,23 @@ Attempt attempt(const Params& params, const TrackingState& tracking, const Regis
   out.iterations = found.iterations;
   out.inlier_share = found.points == 0 ? 0.0 : double(found.inliers) / double(found.points);
   out.too_few_matches = found.verdict == RegistrationVerdict::too_few;
-  if (converged(found)) out.alignment = std::move(found);
+  if (!converged(found)) alignment.reset();
   return out;
 }
 
-Placed judge(const Params& params, const TrackingState& before, std::size_t points, bool prior_trusted,
-             Attempt attempt) {
-  Placed out;
-  if (attempt.alignment) {
-    const bool holds = attempt.alignment->weakest_sigma_m <= params.expert.matching.degenerate_sigma_m;
+void judge(const Params& params, const TrackingState& before, std::size_t points, bool prior_trusted,
+           const Attempt& attempt, Placed& out) {
+  if (out.alignment) {
+    const bool holds = out.alignment->weakest_sigma_m <= params.expert.matching.degenerate_sigma_m;
     out.verdict = holds ? SweepVerdict::registered : SweepVerdict::degenerate;
     out.placement = Placement::found;
-    out.alignment = std::move(attempt.alignment);
-    return out;
+    return;
   }
   const bool enough = points >= params.expert.matching.least;
   const bool given_up = failed_searches(before) + 1 >= params.expert.tracking.lost_sweeps_max;
   out.placement = Placement::failed;
   out.map_says_nothing = enough && attempt.too_few_matches;
   if (enough && ((attempt.too_few_matches && prior_trusted) || given_up)) out.verdict = SweepVerdict::degenerate;
-  return out;
 }
 
 }  // namespace tumble::mapping

@@ -10,15 +10,16 @@
 namespace tumble::mapping {
 
 struct Attempt {
-  std::optional<Registration::Result> alignment;  ///< of the sweep's start; empty: none was found
-  bool too_few_matches = false;                   ///< why there is none: the map had nothing to say
+  bool too_few_matches = false;  ///< why there is none: the map had nothing to say
   int iterations = 0;
   double inlier_share = 0.0;  ///< of the points of the last registration
 };
 
-/// Aligns a sweep by all means that its tracking state allows. `trajectory` is the alignment's, or one that was tried.
+/// Aligns a sweep by all means that its tracking state allows. `trajectory` is the alignment's, or one that was tried;
+/// `alignment` is that of the sweep's start, empty where none was found.
 Attempt attempt(const LidarInertialOdometry::Params& params, const TrackingState& tracking,
-                const Registration::Prior& prior, const Scene& scene, Aligner& aligner, SweepTrajectory& trajectory);
+                const Registration::Prior& prior, const Scene& scene, Aligner& aligner, SweepTrajectory& trajectory,
+                std::optional<Registration::Result>& alignment);
 
 /// How a sweep lies in the map.
 struct Placed {
@@ -28,13 +29,13 @@ struct Placed {
   std::optional<Registration::Result> alignment;  ///< of its start
 };
 
-/// What an attempt with so many points comes to. Where the map had nothing to say, or after enough searches in vain,
-/// the motion goes on by inertia as `degenerate`.
-Placed judge(const LidarInertialOdometry::Params& params, const TrackingState& before, std::size_t points,
-             bool prior_trusted, Attempt attempt);
+/// What an attempt with so many points comes to, whose alignment `placed` has already. Where the map had nothing to
+/// say, or after enough searches in vain, the motion goes on by inertia as `degenerate`.
+void judge(const LidarInertialOdometry::Params& params, const TrackingState& before, std::size_t points,
+           bool prior_trusted, const Attempt& attempt, Placed& placed);
 
 /// Start number `index` of a search: the prior itself, then moved along each axis by what it may be off by, nearer ones
 /// first, mapping.md (R54).
-Registration::Prior moved_start(const RelocalizationParams& params, Registration::Prior prior, int index);
+void move_start(const RelocalizationParams& params, int index, Registration::Prior& prior);
 
 }  // namespace tumble::mapping

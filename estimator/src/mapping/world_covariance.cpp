@@ -18,7 +18,7 @@ Pose less_mounting(const Registration::Matrix& joint, const Pose& by_mounting) {
   unknowns::columns(G, unknowns::pose).setIdentity();
   unknowns::columns(G, unknowns::mounting) = -by_mounting;
   const Pose P = G * joint * G.transpose();
-  return symmetric(P);
+  return 0.5 * (P + P.transpose());
 }
 
 }  // namespace

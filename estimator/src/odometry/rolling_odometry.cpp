@@ -119,6 +119,7 @@ RollingOdometry::RollingOdometry(const Params& params, const ImuMerge::Params& m
       smoother_(rolling_params(params, merged, merge_)),
       rails_(sheets_of(params)),
       merge_state_(std::make_unique<ImuMerge::State>()),
+      merged_state_(std::make_unique<ImuMerge::State>()),
       state_(std::make_unique<RollingSmoother::State>()),
       rails_state_(rails_.start()),
       watches_(watches_of(params)),
@@ -130,6 +131,7 @@ RollingOdometry::RollingOdometry(const RollingOdometry& other)
       smoother_(other.smoother_),
       rails_(other.rails_),
       merge_state_(std::make_unique<ImuMerge::State>(*other.merge_state_)),
+      merged_state_(std::make_unique<ImuMerge::State>()),
       state_(std::make_unique<RollingSmoother::State>(*other.state_)),
       rails_state_(other.rails_state_),
       watches_(other.watches_),
@@ -150,16 +152,16 @@ Status RollingOdometry::add_imus(std::span<const ImuSample> samples) {
     return {Trouble::too_few, "samples", double(samples.size()), double(params_.units.size())};
   UnitRails::Samples flagged;
   rails_.flag(samples, rails_state_, flagged);
-  ImuMerge::State next = *merge_state_;  // all take the sample, or none
+  *merged_state_ = *merge_state_;  // all take the sample, or none
   Frozen frozen = frozen_;
   for (std::size_t k = 0; k < samples.size(); ++k) watches_[k].step(samples[k], frozen[k]);
   const std::span<ImuSample> judged = std::span(flagged).first(samples.size());
   if (Status status = leave_out_frozen(frozen, judged); !status.ok()) return status;
-  if (Status status = merge_.step(judged, next, merged); !status.ok()) return status;
+  if (Status status = merge_.step(judged, *merged_state_, merged); !status.ok()) return status;
   if (merged) {
     if (Status status = take_in(*merged); !status.ok()) return status;
   }
-  *merge_state_ = next;
+  merge_state_.swap(merged_state_);
   frozen_ = frozen;
   rails_.observe(samples, rails_state_);
   return {};
@@ -211,8 +213,8 @@ void RollingOdometry::finish() {
 }
 
 void RollingOdometry::reset() {
-  *merge_state_ = {};
-  *state_ = {};
+  merge_state_ = std::make_unique<ImuMerge::State>();
+  state_ = std::make_unique<RollingSmoother::State>();
   rails_state_ = rails_.start();
   frozen_ = {};
   finished_ = false;

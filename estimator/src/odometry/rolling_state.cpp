@@ -35,6 +35,7 @@ void RollingOdometry::members(Self& s, Visitor& visit) {
   visit.scratch(s.smoother_);
   visit.scratch(s.rails_);
   visit("merge", *s.merge_state_);
+  visit.scratch(s.merged_state_);
   visit("rolling", *s.state_);
   visit("rails", s.rails_state_);
   visit.scratch(s.watches_);  // of the parameters

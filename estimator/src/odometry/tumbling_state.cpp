@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // TumblingOdometry as bytes.
+#include <memory>
+
 #include "odometry_members.hpp"
 #include "saved_state.hpp"
 
@@ -50,10 +52,11 @@ std::vector<std::byte> TumblingOdometry::save() const {
 }
 
 Status TumblingOdometry::load(std::span<const std::byte> bytes) {
-  TumblingOdometry fresh(params_);
-  if (Status status = odometry::load(odometry::SavedKind::tumbling, bytes, params_, fresh); !status.ok()) return status;
-  if (Status status = fresh.check_state(); !status.ok()) return status;
-  *this = std::move(fresh);
+  const auto fresh = std::make_unique<TumblingOdometry>(params_);
+  if (Status status = odometry::load(odometry::SavedKind::tumbling, bytes, params_, *fresh); !status.ok())
+    return status;
+  if (Status status = fresh->check_state(); !status.ok()) return status;
+  *this = std::move(*fresh);
   return {};
 }
 

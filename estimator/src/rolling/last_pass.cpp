@@ -19,16 +19,15 @@ void LastPass::run(const Place& start, std::size_t cut) {
   std::size_t nodes = 0;
   for (std::size_t stretch = 0; stretch < kept_.size(); ++stretch) {
     kept_[stretch].start = end_;
-    end_ = forward(stretch, end_);
+    forward(stretch, end_);
     nodes += records_.size();
   }
   horizontal_m2_.resize(nodes);
-  Adjoint adjoint;
   for (std::size_t stretch = kept_.size(); stretch-- > 0;) {
-    if (loaded_ != stretch) forward(stretch, kept_[stretch].start);
-    kept_[stretch].end = adjoint;
-    adjoint = smooth_back(adjoint, records_);
-    smoothed_start_ = -reported_rows(kept_[stretch].start.filter.P) * adjoint.lambda;
+    if (loaded_ != stretch) go_again(stretch);
+    kept_[stretch].end = adjoint_;
+    smooth_back(adjoint_, records_);
+    smoothed_start_ = -reported_rows(kept_[stretch].start.filter.P) * adjoint_.lambda;
     for (std::size_t k = 0; k < records_.size(); ++k) {
       const auto& P = records_[k].smoothed_P;
       horizontal_m2_[first_of(stretch) + k] = P(kPosition, kPosition) + P(kPosition + 1, kPosition + 1);
@@ -36,14 +35,14 @@ void LastPass::run(const Place& start, std::size_t cut) {
   }
 }
 
-/// Leaves the stretch loaded, without the way back, and returns where the next one begins.
-LastPass::Place LastPass::forward(std::size_t stretch, const Place& from) {
+/// Leaves the stretch loaded, without the way back, and `at` where the next one begins.
+void LastPass::forward(std::size_t stretch, Place& at) {
   const std::size_t first = first_of(stretch), end = std::min(first + length_, path_.size());
   loaded_ = stretch;
   records_.clear();
   points_.clear();
   moved_at_end_.setZero();
-  auto [filter, place] = from;
+  auto& [filter, place] = at;
   if (stretch == 0 && place.next == 1) remember(place.time_ns, filter.nominal, place.last_rate_rad_s, 0);
   RollingSums sums;
   Readings readings(params_, samples_, place);
@@ -54,11 +53,12 @@ LastPass::Place LastPass::forward(std::size_t stretch, const Place& from) {
     if (reading.whole && sums.node_s >= params_.expert.node_s - 0.5 * average.length_s &&
         first + records_.size() < end) {
       const PathNode& decided = path_[first + records_.size()];
-      records_.push_back(close_node(params_, sums, 0.5 * (place.last_rate_rad_s + rate), decided, filter));
-      records_.back().time_ns = place.time_ns;
+      NodeRecord& record = records_.emplace_back();
+      close_node(params_, sums, 0.5 * (place.last_rate_rad_s + rate), decided, filter, record);
+      record.time_ns = place.time_ns;
       sums = {};
-      if (first + records_.size() == cut_after_) cut_ = {filter, place};
-      if (first + records_.size() == end && end < path_.size()) return {filter, place};
+      if (first + records_.size() == cut_after_) cut_ = at;
+      if (first + records_.size() == end && end < path_.size()) return;
     }
     const std::size_t node = first + records_.size();
     if (reading.in_gap) {
@@ -80,7 +80,11 @@ LastPass::Place LastPass::forward(std::size_t stretch, const Place& from) {
   if (distance_ && !records_.empty()) {
     moved_at_end_ = measure_distance(params_, distance_->distance_m, distance_->sigma_m, records_.back(), filter);
   }
-  return {filter, place};
+}
+
+void LastPass::go_again(std::size_t stretch) {
+  again_ = kept_[stretch].start;
+  forward(stretch, again_);
 }
 
 void LastPass::remember(TimeNs time_ns, const RollingNominal& nominal, const Eigen::Vector3d& rate_I_rad_s,
@@ -91,9 +95,10 @@ void LastPass::remember(TimeNs time_ns, const RollingNominal& nominal, const Eig
 void LastPass::load(std::size_t stretch) {
   if (loaded_ == stretch) return;
   const Kept& kept = kept_[stretch];
-  forward(stretch, kept.start);
-  const Adjoint adjoint = smooth_back(kept.end, records_);
-  smoothed_start_ = -reported_rows(kept.start.filter.P) * adjoint.lambda;
+  go_again(stretch);
+  adjoint_ = kept.end;
+  smooth_back(adjoint_, records_);
+  smoothed_start_ = -reported_rows(kept.start.filter.P) * adjoint_.lambda;
 }
 
 void LastPass::give(std::size_t until, const std::function<void(const Smoothed&)>& take) {

@@ -15,7 +15,8 @@ namespace tumble::rolling {
 ///
 /// What the way back needs of a node is more than 10 KiB, so it is not kept: nodes are cut into stretches, the filter
 /// at the beginning of each and the adjoint at its end are kept, and the records of one stretch are computed anew when
-/// they are needed, to the same bits. A window of one stretch is gone over once, a longer one three times.
+/// they are needed, to the same bits. A window of one stretch is gone over once, a longer one three times. It holds
+/// four filters of 13 KiB by value: it is no object for the stack.
 class LastPass {
  public:
   static constexpr std::size_t kStretch = 128;  ///< nodes; 1.6 MiB of records, 0.2 KiB of kept states for each node
@@ -61,7 +62,8 @@ class LastPass {
   };
 
   std::size_t first_of(std::size_t stretch) const { return stretch * length_; }
-  Place forward(std::size_t stretch, const Place& from);
+  void forward(std::size_t stretch, Place& at);
+  void go_again(std::size_t stretch);
   void load(std::size_t stretch);
   void remember(TimeNs time_ns, const RollingNominal& nominal, const Eigen::Vector3d& rate_I_rad_s, std::size_t node);
   void give_stretch(std::size_t stretch, std::size_t until, const std::function<void(const Smoothed&)>& take) const;
@@ -75,6 +77,8 @@ class LastPass {
   std::vector<double> horizontal_m2_;
   std::size_t cut_after_ = 0;
   Place cut_, end_;
+  Place again_;      ///< in a stretch that is gone over again
+  Adjoint adjoint_;  ///< on the way back
   // of the stretch that is loaded
   std::size_t loaded_ = 0;
   std::vector<NodeRecord> records_;

@@ -51,7 +51,7 @@ Status RollingFilter::step_with(const ImuSample& sample, State& state, Listener 
 void RollingFilter::start(const ImuSample& sample, const Eigen::Quaterniond& q_WI, State& state) const {
   const Eigen::Vector3d& rate = sample.angular_velocity_rad_s;
   state.nominal = rolling::start_nominal(params_, q_WI, rate);
-  state.hypotheses[0].P = rolling::prior_covariance(params_, rate);
+  rolling::set_prior(params_, rate, state.hypotheses[0].P);
   state.started_in_motion = rolling::starts_in_motion(params_, rate);
   state.last_rate_rad_s = rate;
   state.count = 1;
@@ -101,8 +101,7 @@ void RollingFilter::close_node(const Eigen::Vector3d& next_rate_rad_s, State& st
   Hypothesis& best = state.hypotheses[0];
   if (rolling::reset_tilt(params_, state.sums, state.at_rest, state.nominal, best.P)) {
     best.x.setZero();
-    for (int k = 1; k < state.count; ++k) state.hypotheses[static_cast<std::size_t>(k)] = Hypothesis{};
-    state.count = 1;
+    keep_first(1, state);
   }
   if (state.at_rest) {
     correct_at_rest(state);

@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <numbers>
+#include <numeric>
 #include <span>
 #include <tuple>
 #include <utility>
@@ -207,6 +208,38 @@ Kept keep(std::span<const Candidate> candidates, std::int64_t node, double node_
   return kept;
 }
 
+using Origins = std::array<std::size_t, RollingFilter::kHypotheses>;
+
+/// The first `count` become copies of those that `from` names, in place: a second set would be 420 KiB of stack.
+void rearrange(const Origins& from, std::size_t count, std::span<RollingFilter::Hypothesis> all) {
+  std::array<int, RollingFilter::kHypotheses> readers{};  // of each place, that have not read it yet
+  std::array<bool, RollingFilter::kHypotheses> waits{};
+  for (std::size_t k = 0; k < count; ++k) {
+    waits[k] = from[k] != k;
+    readers[from[k]] += waits[k] ? 1 : 0;
+  }
+  // a place that nobody reads any more may be written, and sets the one free that it was written from
+  for (std::size_t first = 0; first < count; ++first) {
+    for (std::size_t k = first; k < count && waits[k] && readers[k] == 0; k = from[k]) {
+      all[k] = all[from[k]];
+      waits[k] = false;
+      --readers[from[k]];
+    }
+  }
+  // what is left stands in rings
+  for (std::size_t first = 0; first < count; ++first) {
+    if (!waits[first]) continue;
+    const RollingFilter::Hypothesis kept = all[first];
+    std::size_t k = first;
+    for (; from[k] != first; k = from[k]) {
+      all[k] = all[from[k]];
+      waits[k] = false;
+    }
+    all[k] = kept;
+    waits[k] = false;
+  }
+}
+
 }  // namespace
 
 /// rolling.md (R25).
@@ -216,11 +249,12 @@ void RollingFilter::choose_modes(const Eigen::Vector3d& rate_I_rad_s, State& sta
   Candidates candidates;
   const std::span<const Candidate> ordered = propose(params_, c, state, candidates);
   const Kept kept = keep(ordered, state.node, node_s);
-  std::array<Hypothesis, kHypotheses> next;
+  Origins parents{};
+  for (std::size_t k = 0; k < kept.count; ++k) parents[k] = static_cast<std::size_t>(kept.of[k].parent);
+  rearrange(parents, kept.count, state.hypotheses);
   for (std::size_t k = 0; k < kept.count; ++k) {
     const Candidate& candidate = kept.of[k];
-    Hypothesis& h = next[k];
-    h = state.hypotheses[static_cast<std::size_t>(candidate.parent)];
+    Hypothesis& h = state.hypotheses[k];
     rolling::change_floor(params_, h.mode, candidate.mode, node_s, state.nominal, h.x, h.P);
     measure_contact(c, candidate.mode, node_s, state.nominal.v_WI_m_s, params_, h);
     h.u_W_m_s = c.velocity(h.x);
@@ -229,10 +263,15 @@ void RollingFilter::choose_modes(const Eigen::Vector3d& rate_I_rad_s, State& sta
     h.switched_node = candidate.switched_node;
     h.parent = candidate.parent;
   }
-  for (std::size_t k = 0; k < kept.count; ++k) state.hypotheses[k] = next[k];
-  // what is not in use is blank, so that equal estimates are equal states
-  for (std::size_t k = kept.count; k < static_cast<std::size_t>(state.count); ++k) state.hypotheses[k] = Hypothesis{};
-  state.count = static_cast<int>(kept.count);
+  keep_first(kept.count, state);
+}
+
+/// What is not in use is blank, so that equal estimates are equal states.
+void RollingFilter::keep_first(std::size_t count, State& state) {
+  const auto begin = state.hypotheses.begin();
+  const auto first = begin + static_cast<std::ptrdiff_t>(count);
+  if (first < begin + state.count) std::fill(first, begin + state.count, Hypothesis{});
+  state.count = static_cast<int>(count);
 }
 
 /// Every hypothesis stands still: velocity and, unless it spins in place, rate are zero, the contact grips. rolling.md
@@ -259,22 +298,24 @@ void RollingFilter::correct_at_rest(State& state) const {
     }
     h.u_W_m_s.setZero();
   }
-  std::sort(state.hypotheses.begin(), state.hypotheses.begin() + state.count,
-            [](const Hypothesis& a, const Hypothesis& b) {
-              return std::tuple(-a.log_weight, a.parent) < std::tuple(-b.log_weight, b.parent);
-            });
+  const auto count = static_cast<std::size_t>(state.count);
+  Origins order{};
+  std::iota(order.begin(), order.begin() + state.count, std::size_t{0});
+  std::sort(order.begin(), order.begin() + state.count, [&](std::size_t a, std::size_t b) {
+    return std::tuple(-state.hypotheses[a].log_weight, a) < std::tuple(-state.hypotheses[b].log_weight, b);
+  });
+  rearrange(order, count, state.hypotheses);
   // they agree about the present, so after a while one is enough
   const bool settled = seconds(state.rest.quiet_ns) > kSettled_s;
   if (settled && state.count > 1) state.pruned_spread_m2 = position_spread(state);
   const double best = state.hypotheses[0].log_weight;
-  int kept = 0;
-  for (int k = 0; k < state.count; ++k) {
-    Hypothesis& h = state.hypotheses[static_cast<std::size_t>(k)];
+  std::size_t kept = 0;
+  for (std::size_t k = 0; k < count; ++k) {
+    Hypothesis& h = state.hypotheses[k];
     h.log_weight -= best;
     if (k == 0 || (!settled && h.log_weight > kDropped)) kept = k + 1;
   }
-  for (int k = kept; k < state.count; ++k) state.hypotheses[static_cast<std::size_t>(k)] = Hypothesis{};
-  state.count = kept;
+  keep_first(kept, state);
 }
 
 }  // namespace tumble

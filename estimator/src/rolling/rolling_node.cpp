@@ -76,8 +76,8 @@ RollingNominal start_nominal(const RollingParams& params, const Eigen::Quaternio
 }
 
 /// Of the states in the order of rolling.md (R1).
-Covariance prior_covariance(const RollingParams& params, const Eigen::Vector3d& rate_I_rad_s) {
-  Covariance P = Covariance::Zero();
+void set_prior(const RollingParams& params, const Eigen::Vector3d& rate_I_rad_s, Covariance& P) {
+  P.setZero();
   auto prior = P.diagonal();
   // the force of a sphere that is pushed is not gravity, and one that turns may slip by as much as it turns
   const bool moves = starts_in_motion(params, rate_I_rad_s);
@@ -93,7 +93,6 @@ Covariance prior_covariance(const RollingParams& params, const Eigen::Vector3d& 
   prior.segment<3>(kLeverArm).setConstant(squared(params.lever_arm_sigma_m));
   prior.segment<2>(kSlope).setConstant(squared(kLevelSlopeSigma));
   prior[kRadius] = squared(params.radius_sigma_m);
-  return P;
 }
 
 /// rolling.md (R2) to (R8).
@@ -212,7 +211,7 @@ void predict(const RollingParams& params, const RollingSums& sums, const Moving&
   x.head<9>() += (B * x).eval();
   P.topRows<9>() += (B * P).eval();
   P.leftCols<9>() += (P * B.transpose()).eval();
-  P = (0.5 * (P + P.transpose())).eval();
+  make_symmetric(P);
   const double attitude =
       squared(params.expert.noise.attitude_walk_rad_sqrts) * h +
       squared(params.expert.noise.rate_error_sqrts) * sums.turned_rad2_s + sums.gap_rad2 +
@@ -323,6 +322,12 @@ bool reset_tilt(const RollingParams& params, const RollingSums& sums, bool at_re
   P.diagonal().segment<3>(kVelocity).setConstant(
       squared(at_rest ? params.expert.contact.rest_velocity_sigma_m_s : kLostSpeed_m_s));
   return true;
+}
+
+void make_symmetric(Covariance& P) {
+  for (int j = 0; j < kStates; ++j) {
+    for (int i = 0; i < j; ++i) P(i, j) = P(j, i) = 0.5 * (P(i, j) + P(j, i));
+  }
 }
 
 void update(const Row& row, double measured, double variance, Vector& x, Covariance& P) {

@@ -50,7 +50,7 @@ bool starts_in_motion(const RollingParams& params, const Eigen::Vector3d& rate_I
 /// Levelled (or given) attitude, centre at the origin, at rest; in motion it rolls.
 RollingNominal start_nominal(const RollingParams& params, const Eigen::Quaterniond& q_WI,
                              const Eigen::Vector3d& rate_I_rad_s);
-Covariance prior_covariance(const RollingParams& params, const Eigen::Vector3d& rate_I_rad_s);
+void set_prior(const RollingParams& params, const Eigen::Vector3d& rate_I_rad_s, Covariance& P);
 
 /// Takes averaged readings into the nominal trajectory and the sums.
 void integrate(const RollingParams& params, const ImuAverage& reading, RollingNominal& nominal, RollingSums& sums);
@@ -96,6 +96,9 @@ bool forgets_slope(RollingMode from, RollingMode to);
 /// velocity. False when there was no need, or the node's force tells nothing.
 bool reset_tilt(const RollingParams& params, const RollingSums& sums, bool at_rest, RollingNominal& nominal,
                 Covariance& P);
+
+/// P <- (P + P^T) / 2, in place: a copy of it would lie on the stack.
+void make_symmetric(Covariance& P);
 
 /// Kalman update by a scalar row: measurement = row x + noise.
 void update(const Row& row, double measured, double variance, Vector& x, Covariance& P);

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <memory>
 
 #include "last_pass.hpp"
 #include "tumble/attitude/strapdown.hpp"
@@ -73,19 +74,23 @@ RollingSmoother::Take appending(std::vector<RollingEstimate>& out) {
 }
 
 /// Where the last pass begins: at the committed node, or with the first sample.
-rolling::LastPass::Place window_start(const RollingParams& filter, const RollingParams& path,
-                                      const RollingSmoother::State& state) {
+void start_window(const RollingParams& filter, const RollingParams& path, const RollingSmoother::State& state,
+                  rolling::LastPass::Place& start) {
   const RollingSmoother::Committed& last = state.committed;
+  start.filter.mode = last.mode;
   if (last.started) {
-    return {{last.nominal, last.P, last.mode},
-            {last.last_time_ns, last.last_rate_rad_s, 0, last.gap_rate_rad_s, last.gap_start_ns, last.gap_piece}};
+    start.filter.nominal = last.nominal;
+    start.filter.P = last.P;
+    start.reading = {last.last_time_ns,   last.last_rate_rad_s, 0,
+                     last.gap_rate_rad_s, last.gap_start_ns,    last.gap_piece};
+    return;
   }
   const ImuSample& sample = state.samples[0];
   Eigen::Quaterniond q_WI = filter.q_WI_start.value_or(Eigen::Quaterniond::Identity());
   if (!filter.q_WI_start) (void)level(sample.specific_force_m_s2, q_WI);  // went well in the filter
-  return {{rolling::start_nominal(path, q_WI, sample.angular_velocity_rad_s),
-           rolling::prior_covariance(path, sample.angular_velocity_rad_s), last.mode},
-          start_place(sample)};
+  start.filter.nominal = rolling::start_nominal(path, q_WI, sample.angular_velocity_rad_s);
+  rolling::set_prior(path, sample.angular_velocity_rad_s, start.filter.P);
+  start.reading = start_place(sample);
 }
 
 /// Which nodes lie in events whose way became uncertain.
@@ -274,8 +279,11 @@ void RollingSmoother::run_window(const Path& path, std::size_t emitted, State& s
   if (emitted > path.nodes.size() && params_.known_distance_m > 0.0) {
     distance = {params_.known_distance_m, params_.known_distance_sigma_m};
   }
-  rolling::LastPass pass(path_params_, state.samples, path.nodes, distance);
-  pass.run(window_start(params_.filter, path_params_, state), emitted);
+  const auto held = std::make_unique<rolling::LastPass>(path_params_, state.samples, path.nodes, distance);
+  rolling::LastPass& pass = *held;
+  const auto start = std::make_unique<rolling::LastPass::Place>();
+  start_window(params_.filter, path_params_, state, *start);
+  pass.run(*start, emitted);
   state.learnt = pass.end().nominal;
   state.radius_sigma_m = std::sqrt(std::max(0.0, pass.end().P(rolling::kRadius, rolling::kRadius)));
 
@@ -291,10 +299,17 @@ void RollingSmoother::run_window(const Path& path, std::size_t emitted, State& s
 
   if (emitted <= pass.nodes()) {
     const auto& [filter, place] = pass.cut();
-    state.committed = {
-        filter.nominal,       filter.P,      filter.mode,           events.committed_m2,  state.committed.held_p_WG_m,
-        state.committed.held, place.time_ns, place.last_rate_rad_s, place.gap_rate_rad_s, place.gap_start_ns,
-        place.gap_piece,      true};
+    Committed& last = state.committed;  // what it holds stays
+    last.nominal = filter.nominal;
+    last.P = filter.P;
+    last.mode = filter.mode;
+    last.event_variance_m2 = events.committed_m2;
+    last.last_time_ns = place.time_ns;
+    last.last_rate_rad_s = place.last_rate_rad_s;
+    last.gap_rate_rad_s = place.gap_rate_rad_s;
+    last.gap_start_ns = place.gap_start_ns;
+    last.gap_piece = place.gap_piece;
+    last.started = true;
     state.samples.erase(state.samples.begin(), state.samples.begin() + static_cast<std::ptrdiff_t>(place.next));
     state.steps.erase(state.steps.begin(), state.steps.begin() + static_cast<std::ptrdiff_t>(emitted));
   } else {

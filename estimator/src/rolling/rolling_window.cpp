@@ -22,7 +22,7 @@ void measure(const Row& H, double measured, double variance, NodeRecord& record,
   record.variance[k] = std::max(H.dot(PHt) + variance, squared(record.innovation[k] / kBelieved));
   record.gain[k] = PHt / record.variance[k];
   x += record.gain[k] * record.innovation[k];
-  P -= PHt * record.gain[k].transpose();
+  P.noalias() -= PHt * record.gain[k].transpose();
 }
 
 /// rolling.md (R27).
@@ -117,9 +117,8 @@ Eigen::Matrix<double, kReported, kStates> reported_rows(const Covariance& P) {
   return out;
 }
 
-NodeRecord close_node(const RollingParams& params, const RollingSums& sums, const Eigen::Vector3d& rate_I_rad_s,
-                      const PathNode& path, PathFilter& filter) {
-  NodeRecord record;
+void close_node(const RollingParams& params, const RollingSums& sums, const Eigen::Vector3d& rate_I_rad_s,
+                const PathNode& path, PathFilter& filter, NodeRecord& record) {
   record.path = path;
   record.B = transition(sums);
   Vector x = Vector::Zero();
@@ -133,14 +132,13 @@ NodeRecord close_node(const RollingParams& params, const RollingSums& sums, cons
     measure_contact(params, contact(params, filter.nominal, rate_I_rad_s, sums), sums.node_s, filter.nominal.v_WI_m_s,
                     record, x, filter.P);
   }
-  filter.P = (0.5 * (filter.P + filter.P.transpose())).eval();
+  make_symmetric(filter.P);
   filter.P.block<3, 3>(kPosition, kPosition) += path.spread_m2;
   rebase(x, filter.nominal);
   filter.mode = path.mode;
   record.correction = reported(x);
   record.P_rows = reported_rows(filter.P);
   record.nominal = filter.nominal;
-  return record;
 }
 
 /// rolling.md (R36).
@@ -160,7 +158,7 @@ Reported measure_distance(const RollingParams& params, double distance_m, double
   H.segment<3>(kLeverArm) = -along * R;
   Vector x = Vector::Zero();
   measure(H, distance_m - length_m, sigma_m * sigma_m, last, x, filter.P);
-  filter.P = (0.5 * (filter.P + filter.P.transpose())).eval();
+  make_symmetric(filter.P);
   rebase(x, filter.nominal);
   last.correction += reported(x);
   last.P_rows = reported_rows(filter.P);
@@ -169,8 +167,7 @@ Reported measure_distance(const RollingParams& params, double distance_m, double
 }
 
 /// rolling.md (R33), (R34).
-Adjoint smooth_back(const Adjoint& after, std::span<NodeRecord> nodes) {
-  Adjoint adjoint = after;
+void smooth_back(Adjoint& adjoint, std::span<NodeRecord> nodes) {
   auto& [lambda, Lambda] = adjoint;
   for (std::size_t n = nodes.size(); n-- > 0;) {
     NodeRecord& node = nodes[n];
@@ -184,8 +181,9 @@ Adjoint smooth_back(const Adjoint& after, std::span<NodeRecord> nodes) {
       const Vector& K = node.gain[k];
       const Vector through = Lambda * K;
       lambda -= H.transpose() * (K.dot(lambda) + node.innovation[k] / node.variance[k]);
-      Lambda += H.transpose() * (H * (K.dot(through) + 1.0 / node.variance[k])) - H.transpose() * through.transpose() -
-                through * H;
+      const Row seen = H * (K.dot(through) + 1.0 / node.variance[k]);
+      Lambda += H.transpose().lazyProduct(seen) - H.transpose().lazyProduct(through.transpose()) -
+                through.lazyProduct(H);  // not one matrix of 13 KiB for each of them
     }
     if (node.forgets_slope) {
       lambda.segment<2>(kSlope).setZero();
@@ -201,7 +199,6 @@ Adjoint smooth_back(const Adjoint& after, std::span<NodeRecord> nodes) {
     Lambda += (node.B.transpose() * Lambda.topRows<9>()).eval();
     Lambda += (Lambda.leftCols<9>() * node.B).eval();
   }
-  return adjoint;
 }
 
 }  // namespace tumble::rolling

@@ -100,9 +100,9 @@ struct PathFilter {
 
 Eigen::Matrix<double, kReported, kStates> reported_rows(const Covariance& P);
 
-/// Closes a node: predicts, measures, rebases.
-NodeRecord close_node(const RollingParams& params, const RollingSums& sums, const Eigen::Vector3d& rate_I_rad_s,
-                      const PathNode& path, PathFilter& filter);
+/// Closes a node: predicts, measures, rebases. `record` is a blank one.
+void close_node(const RollingParams& params, const RollingSums& sums, const Eigen::Vector3d& rate_I_rad_s,
+                const PathNode& path, PathFilter& filter, NodeRecord& record);
 
 /// The centre of `filter`, at or just after the last node, stands `distance_m` from the start, horizontally. Returns by
 /// what the nominal was moved; nothing where start and end are as good as one, and the distance has no direction.
@@ -115,8 +115,8 @@ struct Adjoint {
   Covariance Lambda = Covariance::Zero();
 };
 
-/// Modified Bryson-Fraser: fills `smoothed` and `smoothed_P` of nodes in a row, of which `after` is the adjoint behind
-/// the last one. Returns that before the first.
-Adjoint smooth_back(const Adjoint& after, std::span<NodeRecord> nodes);
+/// Modified Bryson-Fraser: fills `smoothed` and `smoothed_P` of nodes in a row. `adjoint` is that behind the last one,
+/// afterwards that before the first.
+void smooth_back(Adjoint& adjoint, std::span<NodeRecord> nodes);
 
 }  // namespace tumble::rolling

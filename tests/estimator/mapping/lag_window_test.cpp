@@ -93,7 +93,7 @@ struct System {
       P = Dense(0.5 * (P + P.transpose()));
       sweep.filtered = sweep.smoothed = estimated(x, P);
       EXPECT_FALSE(window.is_full());
-      window.enter(std::move(sweep));
+      window.enter() = std::move(sweep);
     }
     window.smooth();
   }
@@ -130,12 +130,12 @@ TEST(LagWindow, TheOldestLeavesOnceItIsFull) {
     return sweep;
   };
   window.smooth();
-  window.enter(ending_at(1));
+  window.enter() = ending_at(1);
   EXPECT_FALSE(window.is_full());
-  window.enter(ending_at(2));
+  window.enter() = ending_at(2);
   EXPECT_TRUE(window.is_full());
   EXPECT_EQ(window.sweeps().front().end_ns, 1);
-  window.enter(ending_at(3));
+  window.enter() = ending_at(3);
   EXPECT_EQ(window.sweeps().size(), 2u);
   EXPECT_EQ(window.sweeps().front().end_ns, 2);
 }

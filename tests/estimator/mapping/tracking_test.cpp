@@ -68,17 +68,27 @@ TEST(Tracking, AnswersOfItsStates) {
   EXPECT_EQ(failed_searches(FoundAgain{4}), 0);
 }
 
-Attempt aligned(double weakest_sigma_m) {
-  Attempt out;
-  out.alignment.emplace();
-  out.alignment->weakest_sigma_m = weakest_sigma_m;
+struct Tried {
+  Attempt attempt;
+  Placed placed;
+};
+
+Tried aligned(double weakest_sigma_m) {
+  Tried out;
+  out.placed.alignment.emplace().weakest_sigma_m = weakest_sigma_m;
   return out;
 }
 
-Attempt failed_with(bool too_few) {
-  Attempt out;
-  out.too_few_matches = too_few;
+Tried failed_with(bool too_few) {
+  Tried out;
+  out.attempt.too_few_matches = too_few;
   return out;
+}
+
+Placed judged(const LidarInertialOdometry::Params& params, const TrackingState& before, std::size_t points,
+              bool trusted, Tried tried) {
+  judge(params, before, points, trusted, tried.attempt, tried.placed);
+  return tried.placed;
 }
 
 TEST(Tracking, VerdictsAreWhatTheAttemptAndThePriorAllow) {
@@ -86,8 +96,8 @@ TEST(Tracking, VerdictsAreWhatTheAttemptAndThePriorAllow) {
   params.expert.matching.least = 100;
   params.expert.tracking.lost_sweeps_max = 30;
   params.expert.matching.degenerate_sigma_m = 0.15;
-  const auto verdict = [&](const TrackingState& before, std::size_t points, bool trusted, Attempt attempt) {
-    return judge(params, before, points, trusted, std::move(attempt)).verdict;
+  const auto verdict = [&](const TrackingState& before, std::size_t points, bool trusted, Tried tried) {
+    return judged(params, before, points, trusted, std::move(tried)).verdict;
   };
   EXPECT_EQ(verdict(Tracking{}, 500, false, aligned(0.15)), registered);
   EXPECT_EQ(verdict(Tracking{}, 500, false, aligned(0.16)), degenerate);
@@ -98,11 +108,11 @@ TEST(Tracking, VerdictsAreWhatTheAttemptAndThePriorAllow) {
   EXPECT_EQ(verdict(Lost{28, 28}, 500, false, failed_with(false)), rejected);
   EXPECT_EQ(verdict(Lost{29, 29}, 500, false, failed_with(false)), degenerate);
   EXPECT_EQ(verdict(Lost{29, 29}, 99, false, failed_with(false)), rejected);
-  EXPECT_TRUE(judge(params, Tracking{}, 500, false, failed_with(true)).map_says_nothing);
-  EXPECT_FALSE(judge(params, Tracking{}, 500, false, failed_with(false)).map_says_nothing);
-  EXPECT_FALSE(judge(params, Tracking{}, 99, false, failed_with(true)).map_says_nothing);
-  EXPECT_EQ(judge(params, Tracking{}, 500, false, aligned(0.1)).placement, found);
-  EXPECT_EQ(judge(params, Tracking{}, 500, true, failed_with(true)).placement, failed);
+  EXPECT_TRUE(judged(params, Tracking{}, 500, false, failed_with(true)).map_says_nothing);
+  EXPECT_FALSE(judged(params, Tracking{}, 500, false, failed_with(false)).map_says_nothing);
+  EXPECT_FALSE(judged(params, Tracking{}, 99, false, failed_with(true)).map_says_nothing);
+  EXPECT_EQ(judged(params, Tracking{}, 500, false, aligned(0.1)).placement, found);
+  EXPECT_EQ(judged(params, Tracking{}, 500, true, failed_with(true)).placement, failed);
 }
 
 }  // namespace

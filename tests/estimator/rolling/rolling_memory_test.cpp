@@ -96,7 +96,7 @@ std::vector<double> told(std::span<const ImuSample> samples, std::span<const rol
   rolling::LastPass pass(params, samples, path, distance, stretch);
   rolling::LastPass::Place start;
   start.filter.nominal = rolling::start_nominal(params, Eigen::Quaterniond::Identity(), Eigen::Vector3d::Zero());
-  start.filter.P = rolling::prior_covariance(params, Eigen::Vector3d::Zero());
+  rolling::set_prior(params, Eigen::Vector3d::Zero(), start.filter.P);
   start.reading.next = 1;
   pass.run(start, 200);
   EXPECT_EQ(pass.nodes(), path.size());

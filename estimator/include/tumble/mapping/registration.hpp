@@ -14,6 +14,11 @@
 
 namespace tumble {
 
+namespace mapping {
+template <int Rows, int Columns>
+class OuterProducts;
+}  // namespace mapping
+
 /// Registers a sweep to a map by point-to-plane distances, together with the motion inside the sweep.
 ///
 /// Unknowns: position, attitude (left perturbation in W) and velocity of the IMU at the start of the trajectory, and,
@@ -22,6 +27,8 @@ namespace tumble {
 /// Cost: robustly weighted squared distances to planes through the k nearest map points, plus the prior's Mahalanobis
 /// distance; Gauss-Newton, a 28x28 normal matrix at most. In directions that no surface holds the prior stands.
 class Registration {
+  static constexpr std::size_t kBlock = 128;  // points whose sums are formed together; however many threads there are
+
  public:
   using Params = RegistrationParams;
   using Result = RegistrationResult;
@@ -65,6 +72,7 @@ class Registration {
 
     void add(const Sums& other);
   };
+  using Products = mapping::OuterProducts<kUnknowns, int{kBlock}>;
   struct Unknowns;
   struct Problem;
   struct Descent;
@@ -79,7 +87,8 @@ class Registration {
   void accumulate(std::span<const SweepPoint> points, const SweepTrajectory& trajectory,
                   const SweepCalibration& calibration, const Unknowns& unknowns, double kernel_m, Sums& sum);
   void accumulate_block(std::span<const SweepPoint> points, std::size_t block, const SweepTrajectory& trajectory,
-                        const SweepCalibration& calibration, const Unknowns& unknowns, double kernel_m, Sums& sum);
+                        const SweepCalibration& calibration, const Unknowns& unknowns, double kernel_m,
+                        Products& products, Sums& sum);
 
   struct NoiseOfNormals;
   struct Pulls;

@@ -24,8 +24,9 @@ namespace tumble {
 ///
 /// World: z up, origin at the sphere's centre at the first sample, yaw 0 there. Begin with a second of rest. State of
 /// half a megabyte, 0.1 for each IMU, and 11 KiB for each 0.02 s of lag; a sample that ends no block
-/// (RollingSmoother::Params::block_s) allocates nothing once the first have come, but for poses that nobody takes. No
-/// threads, no files, no printing. Copies carry all state. Not modelled: see the classes named.
+/// (RollingSmoother::Params::block_s) allocates nothing once the first have come, but for poses that nobody takes. A
+/// call needs 64 KiB of stack at most. No threads, no files, no printing. Copies carry all state. Not modelled: see the
+/// classes named.
 class RollingOdometry {
  public:
   /// One IMU of the sphere.
@@ -126,6 +127,7 @@ class RollingOdometry {
   RollingSmoother smoother_;
   UnitRails rails_;
   std::unique_ptr<ImuMerge::State> merge_state_;
+  std::unique_ptr<ImuMerge::State> merged_state_;  ///< memory for the next one
   std::unique_ptr<RollingSmoother::State> state_;
   UnitRails::State rails_state_;
   std::vector<FrozenAxes> watches_;  ///< of the units

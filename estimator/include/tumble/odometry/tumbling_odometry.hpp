@@ -30,9 +30,9 @@ namespace tumble {
 /// An IMU sample costs one step of the stream, and now and then a sweep's registration; one that ends no sweep
 /// allocates nothing once the first have come. While the second pass runs a sweep costs up to four registrations, and
 /// five more once, as it catches up. Memory is bounded by the lag, the map's radius, `sweeps_max` and what the second
-/// pass remembers, but for 12 bytes a sweep while the body stays within ten metres. No threads, no files, no printing.
-/// Copies carry all state: continuing from a copy gives the same bits, so that a run may be split anywhere. Not
-/// modelled: see the two classes above.
+/// pass remembers, but for 12 bytes a sweep while the body stays within ten metres; of stack a call needs 64 KiB at
+/// most. No threads, no files, no printing. Copies carry all state: one goes on with the same bits, so that a run may
+/// be split anywhere. Not modelled: see the two classes above.
 class TumblingOdometry {
  public:
   using Params = TumblingParams;

@@ -28,7 +28,7 @@ namespace tumble {
 /// less.
 ///
 /// While the gyro stands at its rail the attitude is unknown to that extent, and rolling says nothing: the position is
-/// then bounded by the covariance alone. State and stack need 430 KiB each.
+/// then bounded by the covariance alone. The state needs 430 KiB.
 ///
 /// Not modelled: a floor that moves or gives way, wheels of the world under it. Heading drifts.
 class RollingFilter {
@@ -124,6 +124,7 @@ class RollingFilter {
   void hold(State& state) const;
   static Eigen::Matrix3d position_spread(const State& state);
   static void weigh_events(State& state);
+  static void keep_first(std::size_t count, State& state);
 
   Params params_;
   RestDetector rests_;

@@ -1,0 +1,67 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <Eigen/Core>
+#include <memory>
+#include <mutex>
+#include <utility>
+#include <vector>
+
+namespace tumble::mapping {
+
+/// Columns of up to `Rows` numbers, and the sum of their outer products: to the bit what
+/// SelfAdjointView<Lower>::rankUpdate makes of them. That holds its blocks by value, twice as much as the columns: 86
+/// KiB of stack for 128 of 28 numbers. Here they lie beside the columns, and all of it on the heap; hence Eigen's
+/// kernel by its own name.
+template <int Rows, int Columns>
+class OuterProducts {
+ public:
+  using Matrix = Eigen::Matrix<double, Rows, Rows>;
+
+  static std::unique_ptr<OuterProducts> make() { return std::unique_ptr<OuterProducts>(new OuterProducts); }
+  OuterProducts(const OuterProducts&) = delete;  // the blocks know where they lie
+  OuterProducts& operator=(const OuterProducts&) = delete;
+
+  Eigen::Matrix<double, Rows, Columns> columns;
+
+  /// Adds those of the first `count` columns, of their first `size` numbers, to the lower triangle of `sum`.
+  void add_to(int size, int count, Matrix& sum) {
+    namespace e = Eigen::internal;
+    e::general_matrix_matrix_triangular_product<Eigen::Index, double, Eigen::ColMajor, false, double, Eigen::RowMajor,
+                                                false, Eigen::ColMajor, 1, Eigen::Lower>::run(size, count,
+                                                                                              columns.data(), Rows,
+                                                                                              columns.data(), Rows,
+                                                                                              sum.data(), 1, Rows, 1.0,
+                                                                                              blocks_);
+  }
+
+ private:
+  using Blocks = Eigen::internal::gemm_blocking_space<Eigen::ColMajor, double, double, Rows, Rows, Columns>;
+
+  OuterProducts() = default;
+
+  Blocks blocks_{Rows, Rows, Columns, 1, false};
+};
+
+/// Memory that several threads take in turns: as many as work at a time are made.
+template <class Work>
+class Spare {
+ public:
+  std::unique_ptr<Work> take() {
+    const std::lock_guard lock(mutex_);
+    if (free_.empty()) return Work::make();
+    std::unique_ptr<Work> out = std::move(free_.back());
+    free_.pop_back();
+    return out;
+  }
+  void give(std::unique_ptr<Work> work) {
+    const std::lock_guard lock(mutex_);
+    free_.push_back(std::move(work));
+  }
+
+ private:
+  std::mutex mutex_;
+  std::vector<std::unique_ptr<Work>> free_;
+};
+
+}  // namespace tumble::mapping
