@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <algorithm>
+#include <memory>
 #include <optional>
 #include <utility>
 #include <vector>
@@ -52,7 +53,7 @@ RegimeStream::Params stream_params(const sim::Sensors& sensors, const sim::Value
   rate.rails = batch.rails;
   rate.expert.planes = batch.expert.planes;
   rate.expert.accel_planes = batch.expert.accel_planes;
-  rate.learnt_errors = batch.learnt_errors;
+  if (batch.learnt_errors) rate.learnt_errors = std::make_shared<KnownSensorErrors>(*batch.learnt_errors);
   return params;
 }
 
@@ -108,7 +109,7 @@ Estimate run_rate_tumble_lag(const sim::Sensors& sensors, const sim::Values& par
   const bool held = !(state.rig_covariance.topLeftCorner<3, 3>().trace() < before.topLeftCorner<3, 3>().trace());
   estimate.health["rig_held"] = held ? 1.0 : 0.0;
   estimate.health["rig_resets"] = static_cast<double>(state.rig_resets);
-  estimate.health["device_unlike"] = state.device.open.unlike;
+  estimate.health["device_unlike"] = state.device.front().open.unlike;
   estimate.health["steps_skipped"] = static_cast<double>(state.failures);
   if (all.given > 0) {
     const double each = 1.0 / static_cast<double>(all.given);

@@ -4,7 +4,6 @@
 #include <Eigen/Cholesky>
 #include <cmath>
 #include <limits>
-#include <optional>
 
 namespace tumble {
 
@@ -13,67 +12,69 @@ namespace {
 using Matrix = SensorErrors::Matrix;
 using Vector = SensorErrors::Vector;
 
-// Share of the devices that nobody has calibrated, as fit_sensor_errors() has it of scales.
-constexpr double kUnlike = 0.3;
-
 // Samples err in common: what the model of flight misses lasts longer than one of them. Of what they say of where the
 // errors lie this share is believed, as in fit_sensor_errors(), and of whether there are any ten times as much: with
 // all of it half the devices that are as on their sheet are taken for others, by a rig that is not known yet.
 constexpr double kBelieved = 0.03, kBelievedOfOdds = 0.3;
 
-struct Device {
-  double log_odds = 0.0;
-  Matrix about_corrected = Matrix::Zero();
-};
-
-// I + share U L U
-Matrix scaled_system(const SensorErrorEvidence& evidence, const Vector& deviation, double share) {
-  const Matrix told = deviation.asDiagonal() * evidence.information * deviation.asDiagonal();
-  return Matrix::Identity() + 0.5 * share * (told + told.transpose());
+// I + share U L U, L's lower and upper triangle alike
+void set_system(const SensorErrorEvidence& evidence, const Vector& deviation, double share, Matrix& system) {
+  for (int j = 0; j < SensorErrors::kSize; ++j) {
+    for (int i = 0; i < SensorErrors::kSize; ++i) {
+      const double told = 0.5 * (evidence.information(i, j) + evidence.information(j, i));
+      system(i, j) = (i == j ? 1.0 : 0.0) + share * deviation[i] * deviation[j] * told;
+    }
+  }
 }
 
 // rate_stream.md (R103); no number where the evidence is indefinite
-double log_odds(const SensorErrorEvidence& evidence, const Vector& deviation) {
-  Matrix system = scaled_system(evidence, deviation, kBelievedOfOdds);
+double log_odds(const SensorErrorEvidence& evidence, const Vector& deviation, Matrix& system) {
+  set_system(evidence, deviation, kBelievedOfOdds, system);
   const Eigen::LLT<Eigen::Ref<Matrix>> factor(system);
   if (factor.info() != Eigen::Success) return std::numeric_limits<double>::quiet_NaN();
   const Vector z = kBelievedOfOdds * deviation.cwiseProduct(evidence.gradient);
   return 0.5 * z.dot(factor.solve(z)) - system.diagonal().array().log().sum();
 }
 
-// rate_stream.md (R103)
-std::optional<Device> posterior(const SensorErrorEvidence& evidence, const Vector& deviation, double prior) {
+// rate_stream.md (R103): cov_i + m_i m_i' of one device; false where the evidence is indefinite
+bool about_corrected(const SensorErrorEvidence& evidence, const Vector& deviation, DeviceDoubt::Work& work) {
   constexpr int kRest = SensorErrors::kSize - SensorErrors::kFelt;
-  Matrix system = scaled_system(evidence, deviation, kBelieved);
+  set_system(evidence, deviation, kBelieved, work.system);
   // scale and misalignment stay what they are held for: what the model of flight misses looks like them
   Vector mean = Vector::Zero();
-  const Eigen::Matrix<double, kRest, kRest> rest = system.bottomRightCorner<kRest, kRest>();
+  const Eigen::Matrix<double, kRest, kRest> rest = work.system.bottomRightCorner<kRest, kRest>();
   mean.tail<kRest>() = rest.llt().solve(kBelieved * deviation.cwiseProduct(evidence.gradient).tail<kRest>());
   mean = deviation.cwiseProduct(mean).eval();
-  const Eigen::LLT<Eigen::Ref<Matrix>> factor(system);
-  if (factor.info() != Eigen::Success) return std::nullopt;
-  Device out;
-  out.log_odds = std::log(prior) + log_odds(evidence, deviation);
-  out.about_corrected = deviation.asDiagonal();
-  factor.solveInPlace(out.about_corrected);
-  out.about_corrected = (deviation.asDiagonal() * out.about_corrected).eval();
-  out.about_corrected += mean * mean.transpose();
-  return std::isfinite(out.log_odds) && out.about_corrected.allFinite() ? std::optional(out) : std::nullopt;
+  const Eigen::LLT<Eigen::Ref<Matrix>> factor(work.system);
+  if (factor.info() != Eigen::Success) return false;
+  for (int j = 0; j < SensorErrors::kSize;
+       ++j) {  // column by column: of all at once Eigen would have blocks on the stack
+    const Vector column = factor.solve(deviation[j] * Vector::Unit(j));
+    work.about_corrected.col(j) = deviation.cwiseProduct(column) + mean[j] * mean;
+  }
+  return work.about_corrected.allFinite();
 }
 
 }  // namespace
 
-DeviceDoubt::DeviceDoubt(const SensorErrorSizes& sizes)
-    : sheet_(error_deviations(sizes, 0.0)), unknown_(error_deviations(sizes, 1.0)) {}
+DeviceDoubt::DeviceDoubt(const SensorErrorSizes& sizes, double uncalibrated)
+    : sheet_(error_deviations(sizes, 0.0)), unknown_(error_deviations(sizes, 1.0)), uncalibrated_(uncalibrated) {}
 
-DeviceDoubt::Open DeviceDoubt::open(const SensorErrorEvidence& evidence) const {
-  const std::optional<Device> sheet = posterior(evidence, sheet_, 1.0 - kUnlike);
-  const std::optional<Device> unknown = posterior(evidence, unknown_, kUnlike);
-  if (!sheet || !unknown) return evidence.information.isZero() ? Open{} : open({});
-  Open out;
-  out.unlike = 1.0 / (1.0 + std::exp(sheet->log_odds - unknown->log_odds));
-  out.covariance = (1.0 - out.unlike) * sheet->about_corrected + out.unlike * unknown->about_corrected;
-  return out;
+void DeviceDoubt::forget(Open& open) const {
+  open.unlike = uncalibrated_;
+  open.covariance = ((1.0 - uncalibrated_) * sheet_.cwiseAbs2() + uncalibrated_ * unknown_.cwiseAbs2()).asDiagonal();
+}
+
+void DeviceDoubt::ask(const SensorErrorEvidence& evidence, Work& work, Open& open) const {
+  const double odds = std::log(uncalibrated_ / (1.0 - uncalibrated_)) + log_odds(evidence, unknown_, work.system) -
+                      log_odds(evidence, sheet_, work.system);
+  const double unlike = 1.0 / (1.0 + std::exp(-odds));
+  bool known = std::isfinite(unlike) && about_corrected(evidence, sheet_, work);
+  if (known) open.covariance = (1.0 - unlike) * work.about_corrected;
+  known = known && about_corrected(evidence, unknown_, work);
+  if (!known) return forget(open);
+  open.covariance += unlike * work.about_corrected;
+  open.unlike = unlike;
 }
 
 double DeviceDoubt::shared_delay_s2(const Open& open) const {

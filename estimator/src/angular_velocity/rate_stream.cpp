@@ -69,7 +69,7 @@ RateStream::RateStream(const Params& params)
       sense_({.lever_arm_m = params.model.nominal.lever_arm_m,
               .gyro_range_rad_s = params.rails.stated_gyro_rad_s.value_or(0.0)}),
       model_(corrected_for(params), params.period_s),
-      device_(params.model.expert.error_sizes) {
+      device_(params.model.expert.error_sizes, params.expert.uncalibrated) {
   require_fields(params);
   if (params.learnt_errors) require_known(*params.learnt_errors);
   require_within("lag_s", params.lag_s, 2.0 * params.period_s, std::min(10.0, 4096.0 * params.period_s));
@@ -82,9 +82,13 @@ RateStream::State RateStream::start() const {
   state.rails = rails_.start();
   state.window.reserve(capacity_ + every_);
   state.work.resize(capacity_ + every_);
-  state.device.work.resize(capacity_ + every_);
-  state.device.open =
-      params_.learnt_errors ? DeviceDoubt::Open{params_.learnt_errors->covariance, 0.0} : device_.open({});
+  RateStreamDevice& device = state.device.front();
+  device.moved.resize(capacity_ + every_);
+  device_.forget(device.open);
+  if (params_.learnt_errors) {
+    device.open.covariance = params_.learnt_errors->covariance;
+    device.open.unlike = 0.0;
+  }
   state.rig = state.prior_rig = model_.prior_constants();
   state.rig_covariance = model_.prior_covariance();
   model_.add_rig_prior(state.rig, state.prior_corner);
@@ -158,8 +162,9 @@ void RateStream::marginalise(std::size_t first, State& state) const {
   if (!short_flight && flies(oldest)) ++state.learnt_from;
   model_.add_sample(oldest.observation, oldest.estimate, state.rig, block, corner,
                     short_flight ? &state.rig_covariance : nullptr);
-  arrow::ErrorMatrix errors = state.device.prior;
-  model_.add_errors(oldest.observation, oldest.estimate, state.rig, errors, state.device.corner, state.device.evidence,
+  RateStreamDevice& device = state.device.front();
+  arrow::ErrorMatrix errors = device.prior;
+  model_.add_errors(oldest.observation, oldest.estimate, state.rig, errors, device.corner, device.evidence,
                     short_flight);
   model_.add_step(oldest.estimate, next.estimate, seconds_between(oldest, next), block, after);
   if (arrow::eliminate(block, &after, corner)) {

@@ -31,7 +31,7 @@ bool moves(const RateStream::Knot& knot) {
 
 // rate_stream.md (R101): the Schur complement of what leaves, errors being the last of the unknowns
 void RateStream::remember_errors(const arrow::Block& block, arrow::ErrorMatrix& errors, State& state) const {
-  RateStreamDevice& device = state.device;
+  RateStreamDevice& device = state.device.front();
   device.prior.setZero();
   arrow::eliminate_errors(block, errors, &device.prior, device.corner);
   device.evidence.information.noalias() -= errors.transpose().lazyProduct(errors);
@@ -43,22 +43,25 @@ void RateStream::forget_left(State& state) const {
   state.prior = {};
   state.prior_corner = {};
   model_.add_rig_prior(state.rig, state.prior_corner);
-  state.device.prior.setZero();
-  state.device.corner.setZero();
-  state.device.evidence = {};
+  RateStreamDevice& device = state.device.front();
+  device.prior.setZero();
+  device.corner.setZero();
+  device.evidence.information.setZero();
+  device.evidence.gradient.setZero();
 }
 
 // rate_stream.md (R102) over the window, whose blocks are eliminated; before its estimates and the rig are moved.
 void RateStream::consider_errors(const arrow::BorderVector& rig_step, State& state) const {
-  RateStreamDevice& device = state.device;
+  RateStreamDevice& device = state.device.front();
   const std::size_t count = state.window.size();
   if (std::none_of(state.window.begin(), state.window.end(), moves)) {
-    std::fill_n(device.work.begin(), count, arrow::ErrorMatrix::Zero());
+    std::fill_n(device.moved.begin(), count, arrow::ErrorMatrix::Zero());
     return;
   }
-  std::vector<arrow::ErrorMatrix>& errors = device.work;
-  arrow::BorderErrors border = device.corner;
-  SensorErrorEvidence told = device.evidence;
+  std::vector<arrow::ErrorMatrix>& errors = device.moved;
+  auto& [border, of_rig, told, doubt] = device.work;
+  border = device.corner;
+  told = device.evidence;
   errors[0] = device.prior;
   std::fill_n(errors.begin() + 1, count - 1, arrow::ErrorMatrix::Zero());
   for (std::size_t k = 0; k < count; ++k) {
@@ -68,7 +71,7 @@ void RateStream::consider_errors(const arrow::BorderVector& rig_step, State& sta
     told.information.noalias() -= errors[k].transpose().lazyProduct(errors[k]);
     told.gradient.noalias() += errors[k].transpose().lazyProduct(state.work[k].gradient);
   }
-  const arrow::BorderErrors of_rig = state.rig_covariance.lazyProduct(border);
+  of_rig.noalias() = state.rig_covariance.lazyProduct(border);
   for (std::size_t k = count; k-- > 0;)
     errors[k] =
         arrow::back_substitute_errors(state.work[k], errors[k], k + 1 == count ? nullptr : &errors[k + 1], of_rig);
@@ -79,15 +82,16 @@ void RateStream::consider_errors(const arrow::BorderVector& rig_step, State& sta
   told.information.noalias() -= border.transpose().lazyProduct(of_rig);
   told.gradient.noalias() += border.transpose().lazyProduct(rig_step);
   discount_untold(model_.said_once_share(), told);
-  device.open = device_.open(told);
+  device_.ask(told, doubt, device.open);
 }
 
 // What is open of the device's errors, and of a delay that both triads share, in the rate of a sample.
 Matrix3d RateStream::of_device(std::size_t k, const State& state) const {
   const Knot& knot = state.window[k];
   if (!moves(knot)) return Matrix3d::Zero();
-  Matrix3d out = considered(state.device.work[k], state.device.open.covariance, params_.model.rate_max_rad_s);
-  const double shared_s2 = device_.shared_delay_s2(state.device.open);
+  const RateStreamDevice& device = state.device.front();
+  Matrix3d out = considered(device.moved[k], device.open.covariance, params_.model.rate_max_rad_s);
+  const double shared_s2 = device_.shared_delay_s2(device.open);
   const Eigen::Vector3d& alpha = knot.estimate.knot.acceleration_rad_s2;
   const double struck = params_.model.expert.contact.gain_rad_m * knot.estimate.contact_m_s2.norm();
   out += shared_s2 * (alpha * alpha.transpose() + struck * struck * Matrix3d::Identity());

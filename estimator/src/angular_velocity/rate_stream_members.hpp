@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <optional>
 #include "frozen_members.hpp"
 #include "rails_members.hpp"
+
 #include "tumble/angular_velocity/rate_stream.hpp"
 
 /// Members of a RateStream's state and of what its Params hold beside Fields: state_visitor.hpp.
@@ -136,6 +138,7 @@ void members(Self& s, Visitor& visit) {
   visit("device.covariance", s.open.covariance);
   visit("device.unlike", s.open.unlike);
   visit("device.asked_ns", s.asked_ns);
+  visit.scratch(s.moved);
   visit.scratch(s.work);
 }
 
@@ -151,7 +154,7 @@ void members(Self& s, Visitor& visit) {
   visit("rate.rig_covariance", s.rig_covariance);
   visit("rate.prior", s.prior);
   visit("rate.prior_corner", s.prior_corner);
-  visit("rate.device", s.device);
+  visit("rate.device", s.device.front());
   visit("rate.extremes", s.extremes);
   visit("rate.least", s.least);
   visit("rate.entry_rad_s", s.entry_rad_s);
@@ -197,7 +200,9 @@ void others(Self& p, Visitor& visit) {
   others(p.rails, visit);
   others(p.expert.planes, visit);
   others(p.expert.accel_planes, visit);
-  visit("learnt_errors", p.learnt_errors);
+  std::optional<KnownSensorErrors> learnt;
+  if (p.learnt_errors) learnt = *p.learnt_errors;
+  visit("learnt_errors", learnt);
 }
 
 }  // namespace tumble

@@ -53,7 +53,7 @@ bool RateStream::equal(const State& a, const State& b) {
          a.rig == b.rig && a.rig_covariance == b.rig_covariance && a.prior.diagonal == b.prior.diagonal &&
          a.prior.border == b.prior.border && a.prior.gradient == b.prior.gradient &&
          a.prior_corner.matrix == b.prior_corner.matrix && a.prior_corner.gradient == b.prior_corner.gradient &&
-         alike(a.device, b.device) && a.extremes == b.extremes && a.least == b.least &&
+         alike(a.device.front(), b.device.front()) && a.extremes == b.extremes && a.least == b.least &&
          a.entry_rad_s == b.entry_rad_s && a.entry_samples == b.entry_samples && a.left == b.left &&
          a.left_ns == b.left_ns && a.prior_knot == b.prior_knot && a.prior_rig == b.prior_rig &&
          a.samples == b.samples && a.rig_resets == b.rig_resets && a.flight_run == b.flight_run &&

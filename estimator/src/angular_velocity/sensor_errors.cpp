@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "tumble/angular_velocity/sensor_errors.hpp"
 
+#include <Eigen/Cholesky>
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -138,9 +139,13 @@ void discount_untold(double share, SensorErrorEvidence& evidence) {
     untold(3 * j + k, 2 + i) = untold(SensorErrors::kAccel + 3 * j + k, 2 + i) = 0.5;
     untold(3 * k + j, 2 + i) = untold(SensorErrors::kAccel + 3 * k + j, 2 + i) = -0.5;
   }
-  const Matrix left = Matrix::Identity() - (1.0 - share) * untold * untold.transpose();
-  evidence.gradient = (left * evidence.gradient).eval();
-  evidence.information = (left * evidence.information * left).eval();
+  // (I - d U U') on both sides; by U's few columns, since a stream asks too, whose thread may have little stack
+  Eigen::Matrix<double, 5, SensorErrors::kSize> said = untold.transpose().lazyProduct(evidence.information);
+  evidence.information.noalias() -= (1.0 - share) * untold.lazyProduct(said);
+  said = untold.transpose().lazyProduct(evidence.information.transpose());
+  evidence.information.noalias() -= (1.0 - share) * said.transpose().lazyProduct(untold.transpose());
+  const Eigen::Matrix<double, 5, 1> pulled = untold.transpose().lazyProduct(evidence.gradient);
+  evidence.gradient.noalias() -= (1.0 - share) * untold.lazyProduct(pulled);
 }
 
 SensorErrorFit fit_sensor_errors(const SensorErrorEvidence& evidence, const SensorErrorSizes& sizes,

@@ -51,6 +51,12 @@ constexpr double kSweepsMax_hz = 20.0;  // of the lidars that there are: so many
 
 }  // namespace
 
+RegimeStream::Params TumblingExpertParams::rate_defaults() {
+  RegimeStream::Params out;
+  out.rate.expert.uncalibrated = 0.0;
+  return out;
+}
+
 OdometryParams TumblingExpertParams::mapping_defaults() {
   LidarInertialOdometry::Params out;
   out.expert.gravity_sigma_m_s2 = kGravitySigma_m_s2;

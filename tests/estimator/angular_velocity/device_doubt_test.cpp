@@ -7,6 +7,7 @@
 
 #include <cmath>
 #include <limits>
+#include <memory>
 #include <optional>
 #include <vector>
 
@@ -25,9 +26,16 @@ SensorErrorEvidence delay_of(double delay_s, double sigma_s) {
   return out;
 }
 
+DeviceDoubt::Open open_by(const DeviceDoubt& doubt, const SensorErrorEvidence& evidence) {
+  DeviceDoubt::Work work;
+  DeviceDoubt::Open out;
+  doubt.ask(evidence, work, out);
+  return out;
+}
+
 TEST(DeviceDoubt, WithoutEvidenceIsTheMixtureAssumed) {
   const SensorErrorSizes sizes;
-  const DeviceDoubt::Open open = DeviceDoubt(sizes).open({});
+  const DeviceDoubt::Open open = open_by(DeviceDoubt(sizes, 0.3), {});
   EXPECT_NEAR(open.unlike, 0.3, 1e-12);
   const SensorErrors::Vector sheet = error_deviations(sizes, 0.0), unknown = error_deviations(sizes, 1.0);
   const SensorErrors::Vector expected = 0.7 * sheet.cwiseAbs2() + 0.3 * unknown.cwiseAbs2();
@@ -40,7 +48,7 @@ TEST(DeviceDoubt, WithoutEvidenceIsTheMixtureAssumed) {
 TEST(DeviceDoubt, IsBayesOverTwoDevices) {
   const SensorErrorSizes sizes;
   const double delay_s = 1.5e-4, sigma_s = 1e-4;
-  const DeviceDoubt::Open open = DeviceDoubt(sizes).open(delay_of(delay_s, sigma_s));
+  const DeviceDoubt::Open open = open_by(DeviceDoubt(sizes, 0.3), delay_of(delay_s, sigma_s));
   const double of_odds_s = sigma_s / std::sqrt(0.3), believed_s = sigma_s / std::sqrt(0.03);
   const auto density = [&](double size) {
     const double variance = size * size + of_odds_s * of_odds_s;
@@ -58,8 +66,8 @@ TEST(DeviceDoubt, IsBayesOverTwoDevices) {
 }
 
 TEST(DeviceDoubt, APlainDelayLeavesAllOpenAndNoneTakesTheSheetsWord) {
-  const DeviceDoubt doubt({});
-  const DeviceDoubt::Open late = doubt.open(delay_of(8e-3, 1e-4)), in_time = doubt.open(delay_of(0.0, 1e-5));
+  const DeviceDoubt doubt({}, 0.3);
+  const DeviceDoubt::Open late = open_by(doubt, delay_of(8e-3, 1e-4)), in_time = open_by(doubt, delay_of(0.0, 1e-5));
   EXPECT_GT(late.unlike, 0.999);
   EXPECT_GT(late.covariance(kDelay, kDelay), 8e-3 * 8e-3 * 0.9);
   EXPECT_GT(late.covariance(0, 0), 0.9 * 0.01 * 0.01) << "who states one wrongly states all wrongly";
@@ -67,12 +75,21 @@ TEST(DeviceDoubt, APlainDelayLeavesAllOpenAndNoneTakesTheSheetsWord) {
   EXPECT_GT(doubt.shared_delay_s2(late), 10.0 * doubt.shared_delay_s2(in_time));
 }
 
+TEST(DeviceDoubt, OfNoneThatIsUncalibratedTheSheetIsBelieved) {
+  const SensorErrorSizes sizes;
+  const DeviceDoubt::Open open = open_by(DeviceDoubt(sizes, 0.0), delay_of(8e-3, 1e-4));
+  EXPECT_EQ(open.unlike, 0.0);
+  EXPECT_LE(open.covariance(0, 0), 1.001 * error_deviations(sizes, 0.0)[0] * error_deviations(sizes, 0.0)[0]);
+}
+
 TEST(DeviceDoubt, EvidenceThatIsNoNumberLeavesWhatWasOpen) {
-  const DeviceDoubt doubt({});
+  const DeviceDoubt doubt({}, 0.3);
   SensorErrorEvidence bad = delay_of(8e-3, 5e-4);
   bad.gradient[0] = std::numeric_limits<double>::quiet_NaN();
-  EXPECT_EQ(doubt.open(bad).covariance, doubt.open({}).covariance);
-  EXPECT_EQ(doubt.open(bad).unlike, doubt.open({}).unlike);
+  DeviceDoubt::Open before;
+  doubt.forget(before);
+  EXPECT_EQ(open_by(doubt, bad).covariance, before.covariance);
+  EXPECT_EQ(open_by(doubt, bad).unlike, before.unlike);
 }
 
 struct Held {
@@ -117,7 +134,7 @@ TEST(RateStreamDevices, OneThatNobodyCalibratedIsNotSilent) {
       recording.samples[k].specific_force_m_s2 = recording.samples[k - 1].specific_force_m_s2;
     add(recording, params, consumer);
     auto sure = params;
-    sure.learnt_errors = KnownSensorErrors{};
+    sure.learnt_errors = std::make_shared<KnownSensorErrors>();
     add(recording, sure, believed);
   }
   ASSERT_GT(consumer.all, 5000u);
@@ -128,11 +145,12 @@ TEST(RateStreamDevices, OneThatNobodyCalibratedIsNotSilent) {
 
 TEST(RateStreamDevices, WhatIsNoCovarianceIsRefused) {
   auto params = with_lever_arm<RateStream::Params>();
-  params.learnt_errors = KnownSensorErrors{};
+  const auto learnt = std::make_shared<KnownSensorErrors>();
+  params.learnt_errors = learnt;
   EXPECT_NO_THROW(RateStream{params});
-  params.learnt_errors->covariance(0, 0) = -0.01;
+  learnt->covariance(0, 0) = -0.01;
   EXPECT_THROW(RateStream{params}, InvalidParams);
-  params.learnt_errors->covariance(0, 0) = std::numeric_limits<double>::quiet_NaN();
+  learnt->covariance(0, 0) = std::numeric_limits<double>::quiet_NaN();
   EXPECT_THROW(RateStream{params}, InvalidParams);
 }
 

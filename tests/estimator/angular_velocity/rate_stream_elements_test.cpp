@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <memory>
 #include <optional>
 #include <vector>
 
@@ -233,7 +234,8 @@ Believed believed(const RateStream::Params& params) {
 TEST(RateStreamElements, NothingAtARailGoesOutAsMeasuredBeforeTheRailIsKnown) {
   auto params = with_lever_arm<RateStream::Params>();
   params.lag_s = 0.06;
-  params.learnt_errors = KnownSensorErrors{};  // a device that is as on its sheet: its rail alone is in doubt
+  params.learnt_errors =
+      std::make_shared<KnownSensorErrors>();  // a device that is as on its sheet: its rail alone is in doubt
   const Believed doubted = believed(params);
   // negative control: axes that turn slower than this are believed
   params.expert.planes.distance_min_rad_s = 1000.0;
@@ -259,7 +261,8 @@ TEST(RateStreamElements, ADoubtThatALargerReadingRefutesIsTakenBack) {
       samples[kTop - 4 + i].angular_velocity_rad_s.y() = steps[i] + 0.002 * std::sin(37.0 * static_cast<double>(i));
     }
     auto params = with_lever_arm<RateStream::Params>();
-    params.learnt_errors = KnownSensorErrors{};  // as above: 200 rad/s^2 would show a gyro that may be 1 ms late
+    params.learnt_errors =
+        std::make_shared<KnownSensorErrors>();  // as above: 200 rad/s^2 would show a gyro that may be 1 ms late
     const RateStream method(params);
     RateStream::State state = method.start();
     std::optional<RateState> rate;

@@ -59,7 +59,7 @@ class Registration {
  private:
   struct Match {
     PlaneFit plane;
-    Eigen::Vector3f searched_at_W_m;
+    Eigen::Vector3f searched_at_W_m = Eigen::Vector3f::Zero();
     float map_variance_m2 = 0.0f;
     float reach_m = std::numeric_limits<float>::infinity();  // to the farthest neighbour, where there are all
     bool searched = false;

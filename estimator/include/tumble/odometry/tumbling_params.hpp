@@ -21,12 +21,15 @@ struct TumblingExpertParams {
   /// Sweeps that may wait for the IMU, beside those that the lag holds back; and for take(), the oldest being
   /// dropped.
   std::size_t sweeps_max = 16;
-  RegimeStream::Params rate;
+  /// With a device that is taken for what its sheet says (`uncalibrated` 0): what is open of it widens each rate, and
+  /// sweeps are placed by them before the readings have told.
+  RegimeStream::Params rate = rate_defaults();
   /// With gravity's direction and what the rails hid of the rate among the unknowns.
   OdometryParams mapping = mapping_defaults();
   /// The second pass over the first seconds of motion, with what they told of rig and calibration.
   SecondPass::Params again;
   static OdometryParams mapping_defaults();
+  static RegimeStream::Params rate_defaults();
 
   template <class Self, class Visitor>
   static void fields(Self& p, Visitor& visit) {

@@ -18,16 +18,26 @@ class DeviceDoubt {
     double unlike = 0.0;  ///< probability of a device that is not as on its sheet
   };
 
-  explicit DeviceDoubt(const SensorErrorSizes& sizes);
+  /// Scratch space of open(), which is no small part of what a thread of a robot has as its stack.
+  struct Work {
+    SensorErrors::Matrix system, about_corrected;
+  };
+
+  /// `uncalibrated`: probability beforehand of a device that nobody has calibrated.
+  DeviceDoubt(const SensorErrorSizes& sizes, double uncalibrated);
 
   /// O(1): two systems of 29 unknowns; no allocation. Of evidence that is no number what was open before all.
-  Open open(const SensorErrorEvidence& evidence) const;
+  void ask(const SensorErrorEvidence& evidence, Work& work, Open& open) const;
+
+  /// Before all evidence.
+  void forget(Open& open) const;
 
   /// What both triads may be late by in common, which no evidence tells of a device unlike its sheet: variance [s^2].
   double shared_delay_s2(const Open& open) const;
 
  private:
   SensorErrors::Vector sheet_, unknown_;  ///< deviations
+  double uncalibrated_;
 };
 
 }  // namespace tumble

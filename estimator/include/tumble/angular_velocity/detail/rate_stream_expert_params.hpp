@@ -42,6 +42,8 @@ struct RateStreamExpertParams {
   double bound_damping = 0.5;    ///< share of a new bound taken over in each step
   int flight_run_min = 6;        ///< a flight of fewer samples in a row says nothing of the rig
   RigDoubtParams doubt = {};
+  /// Share of the devices that nobody has calibrated, before the readings tell; 0: a device is as its sheet says.
+  double uncalibrated = 0.3;
 
   template <class Self, class Visitor>
   static void fields(Self& p, Visitor& visit) {
@@ -55,6 +57,8 @@ struct RateStreamExpertParams {
     visit(p.flight_run_min,
           {"flight_run_min", "1", 0, 4096, "a flight of fewer samples in a row says nothing of the rig"});
     visit.group("", p.doubt);
+    visit(p.uncalibrated,
+          {"uncalibrated", "1", 0.0, 0.99, "share of the devices that nobody has calibrated, before readings tell"});
     visit(p.bound_damping, {"bound_damping", "1", 0.01, 1.0, "share of a new bound taken over in each step"});
   }
 };

@@ -40,12 +40,18 @@ struct RateStreamKnot {
 
 /// What all that left the window tells of the device's errors, and how it moves with them: rate_stream.md (R101).
 struct RateStreamDevice {
+  struct Work {
+    arrow::BorderErrors border, of_rig;
+    SensorErrorEvidence told;
+    DeviceDoubt::Work doubt;
+  };
   arrow::ErrorMatrix prior = arrow::ErrorMatrix::Zero();     ///< what each adds to the gradient of the oldest sample
   arrow::BorderErrors corner = arrow::BorderErrors::Zero();  ///< of the rig
   SensorErrorEvidence evidence;
-  DeviceDoubt::Open open;                ///< by the evidence, as asked last
-  TimeNs asked_ns = 0;                   ///< when
-  std::vector<arrow::ErrorMatrix> work;  ///< scratch space
+  DeviceDoubt::Open open;                 ///< by the evidence, as asked last
+  TimeNs asked_ns = 0;                    ///< when
+  std::vector<arrow::ErrorMatrix> moved;  ///< scratch space: d(sample) / d(errors)
+  Work work;                              ///< scratch space
 };
 
 /// All that evolves; made by RateStream::start(). Copyable; RateStream::equal() compares.
@@ -61,7 +67,8 @@ struct RateStreamState {
   // what is known of the oldest sample and of the rig from all that left the window, about a point
   arrow::Block prior;
   arrow::Corner prior_corner;
-  RateStreamDevice device;
+  /// One. Not inside of the state, which passes through threads of little stack.
+  std::vector<RateStreamDevice> device = std::vector<RateStreamDevice>(1);
   std::array<Eigen::Vector3d, 2> extremes{Eigen::Vector3d::Zero(), Eigen::Vector3d::Zero()};  ///< of readings so far
   LeastRails least;  ///< by the readings so far
   /// Of a run of readings at a possible rail that left in part: RateStreamKnot::approach_rad_s before it, and how many

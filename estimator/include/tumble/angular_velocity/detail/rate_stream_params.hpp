@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <optional>
+#include <memory>
 
 #include "tumble/angular_velocity/detail/rate_stream_expert_params.hpp"
 #include "tumble/angular_velocity/rail_detector.hpp"
@@ -25,8 +25,8 @@ struct RateStreamParams {
   double step_s = 0.005;                     ///< least time between Gauss-Newton steps; 0: with each sample
 
   /// What an earlier run has told of the device, taken as it is in place of model.errors. Else those are corrected for,
-  /// and what is open of them is asked of the readings.
-  std::optional<KnownSensorErrors> learnt_errors = std::nullopt;
+  /// and what is open of them is asked of the readings. Shared, as few have it and copies of Params are many.
+  std::shared_ptr<const KnownSensorErrors> learnt_errors;
 
   using Expert = RateStreamExpertParams;
   Expert expert = {};  ///< what few need
