@@ -77,7 +77,7 @@ void RateStream::consider_errors(const arrow::BorderVector& rig_step, State& sta
         arrow::back_substitute_errors(state.work[k], errors[k], k + 1 == count ? nullptr : &errors[k + 1], of_rig);
 
   const TimeNs now_ns = state.window.back().observation.sample.time_ns;
-  if (params_.learnt_errors || now_ns - device.asked_ns < kAskEvery_ns) return;
+  if (params_.learnt_errors || (device.asked_ns && now_ns - *device.asked_ns < kAskEvery_ns)) return;
   device.asked_ns = now_ns;
   told.information.noalias() -= border.transpose().lazyProduct(of_rig);
   told.gradient.noalias() += border.transpose().lazyProduct(rig_step);

@@ -49,7 +49,7 @@ struct RateStreamDevice {
   arrow::BorderErrors corner = arrow::BorderErrors::Zero();  ///< of the rig
   SensorErrorEvidence evidence;
   DeviceDoubt::Open open;                 ///< by the evidence, as asked last
-  TimeNs asked_ns = 0;                    ///< when
+  std::optional<TimeNs> asked_ns;         ///< when
   std::vector<arrow::ErrorMatrix> moved;  ///< scratch space: d(sample) / d(errors)
   Work work;                              ///< scratch space
 };
