@@ -2,6 +2,7 @@
 #include "near_rails.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstddef>
 
@@ -42,6 +43,17 @@ std::uint8_t may_meet(Readings readings, std::size_t at, const RailPlanes& plane
 }
 
 }  // namespace
+
+std::uint8_t may_meet_rails(const ImuSample* before, const ImuSample& now, const ImuSample* after,
+                            const RailPlanes& planes) {
+  std::array<Eigen::Vector3d, 3> readings;
+  std::size_t count = 0, at = 0;
+  if (before != nullptr) readings[count++] = before->angular_velocity_rad_s;
+  at = count;
+  readings[count++] = now.angular_velocity_rad_s;
+  if (after != nullptr) readings[count++] = after->angular_velocity_rad_s;
+  return may_meet(Readings(readings.data(), count), at, planes);
+}
 
 std::vector<std::uint8_t> may_meet_rails(std::span<const ImuSample> samples, const RailPlanes& planes) {
   std::vector<std::uint8_t> out(samples.size(), 0);

@@ -17,4 +17,8 @@ namespace tumble {
 /// that are said twice count once. O(N).
 std::vector<std::uint8_t> may_meet_rails(std::span<const ImuSample> samples, const RailPlanes& planes);
 
+/// Of one reading, by the steps to those beside it alone, null where there is none: as a stream has them. O(1).
+std::uint8_t may_meet_rails(const ImuSample* before, const ImuSample& now, const ImuSample* after,
+                            const RailPlanes& planes);
+
 }  // namespace tumble

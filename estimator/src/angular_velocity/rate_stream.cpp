@@ -8,7 +8,6 @@
 #include <limits>
 
 #include "element_clipping.hpp"
-#include "tumble/angular_velocity/detail/held_rates.hpp"
 
 namespace tumble {
 
@@ -346,51 +345,6 @@ RigConstants::Matrix RateStream::widened(const State& state) const {
     factor[i] = of_gyro ? 1.0 : std::clamp(before, 1.0, largest);
   }
   return factor.asDiagonal() * state.rig_covariance * factor.asDiagonal();
-}
-
-// rate_stream.md (R96)
-Eigen::Matrix3d RateStream::doubted(const Knot& knot, const State& state) const {
-  Eigen::Matrix3d out = knot.covariance_rad2_s2;
-  if (params_.model.calibration || knot.estimate.flight_weight >= 0.5) return out;
-  const double samples =
-      static_cast<double>(state.learnt_from) * model_.said_once_share() / params_.expert.doubt.samples;
-  const double share = params_.expert.doubt.contact / (1.0 + samples);
-  for (int j = 0; j < 3; ++j) {
-    if ((knot.observation.unseen() & knot.observation.clipping.gyro & 1u << j) == 0) continue;
-    const double read = std::abs(knot.observation.sample.angular_velocity_rad_s[j]);
-    const double least = share * std::max(0.0, std::abs(knot.estimate.knot.rate_rad_s[j]) - read);
-    out(j, j) = std::max(out(j, j), least * least);
-  }
-  return out;
-}
-
-RateState RateStream::to_state(std::size_t at, const State& state) const {
-  const Knot& knot = state.window[at];
-  const Eigen::Matrix3d covariance = doubted(knot, state);
-  RateState out;
-  out.time_ns = knot.observation.sample.time_ns;
-  out.w_WI_I_rad_s = knot.estimate.knot.rate_rad_s;
-  out.covariance_rad2_s2 = model_.reported(covariance, knot.observation, knot.estimate);
-  if (const std::optional<HeldRate> own = rate_between_readings(state.window, at, params_.period_s)) {
-    out.w_WI_I_rad_s = own->rate_rad_s - state.rig.gyro_bias_rad_s;
-    out.covariance_rad2_s2.diagonal() += own->variance_rad2_s2;
-  } else {
-    out.covariance_rad2_s2.diagonal() += knot.held.stale().cwiseAbs2();
-  }
-  out.covariance_rad2_s2.diagonal() += frozen_.rate_variance_rad2_s2(out.time_ns, state.frozen);
-  out.clipped_axes = knot.observation.clipping.gyro | knot.observation.clipping.void_gyro;
-  out.source = rate_source(knot.observation, knot.estimate, covariance, params_.recovered_sigma_rad_s);
-  return out;
-}
-
-std::optional<RateState> RateStream::newest(const State& state) const {
-  if (state.window.empty()) return std::nullopt;
-  return to_state(state.window.size() - 1, state);
-}
-
-void RateStream::flush(const State& state, std::vector<RateState>& out) const {
-  const std::size_t given = state.window.size() + 1 - std::min(capacity_, state.window.size() + 1);
-  for (std::size_t k = given; k < state.window.size(); ++k) out.push_back(to_state(k, state));
 }
 
 }  // namespace tumble

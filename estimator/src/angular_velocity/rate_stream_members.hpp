@@ -87,6 +87,7 @@ void members(Self& s, Visitor& visit) {
   visit("knot.age", s.age);
   visit("knot.repeats", s.repeats);
   visit("knot.held", s.held);
+  visit("knot.near", s.near);
 }
 
 template <StateOf<FlightSense::Reading> Self, class Visitor>

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "element_clipping.hpp"
+#include "near_rails.hpp"
 #include "tumble/angular_velocity/detail/rail_shares.hpp"
 #include "tumble/angular_velocity/rate_stream.hpp"
 #include "unseen_rails.hpp"
@@ -89,7 +90,7 @@ void RateStream::judge(bool all, State& state) const {
     const ImuSample* const sample_before = k > 0 ? &state.window[k - 1].observation.sample : nullptr;
     const ImuSample* const sample_after =
         k + 1 < state.window.size() ? &state.window[k + 1].observation.sample : nullptr;
-    const std::uint8_t read = now.unseen();
+    const auto read = static_cast<std::uint8_t>(now.unseen() | now.may_hide());
     Clipping by_walls = knot.by_walls;
     if (sample_after != nullptr) {
       rails_.walls().add_edge(now.sample, *sample_after, state.window[k + 1].by_walls, rails.walls, by_walls);
@@ -99,6 +100,7 @@ void RateStream::judge(bool all, State& state) const {
         clip_by_planes(accel_planes, Triad::accelerometer, now.clipping, sample_before, now.sample, sample_after);
     now.accel_rows = accel_rows;
     mark_partial(planes, rails_.walls(), rails.walls, noise, before, now, after);
+    knot.near = rails.upright ? std::uint8_t{0} : may_meet_rails(before, now.sample, after, planes);
     doubt_unseen(k, state);
     const bool newest = k + 1 == state.window.size();
     if (!newest && (now.unseen() & ~read) == 0) continue;
@@ -167,6 +169,21 @@ void RateStream::doubt_possible_rails(State& state) const {
   }
 }
 
+// The larger of the slopes with which the motion came to a run and left it, per sample; of each the lesser of two
+// steps: an impact is one.
+double RateStream::run_slope(int axis, std::size_t first, std::size_t last, const State& state) {
+  const auto size = [&](std::size_t k) {
+    return std::abs(state.window[k].observation.sample.angular_velocity_rad_s[axis]);
+  };
+  const double in = first > 0 ? state.window[first - 1].approach_rad_s[axis] : state.entry_rad_s[axis];
+  const std::size_t one = reading_after(last, state.window), two = reading_after(one, state.window),
+                    three = reading_after(two, state.window);
+  const bool left = three < state.window.size();
+  const auto falls = [&](std::size_t a, std::size_t b) { return (size(a) - size(b)) / static_cast<double>(b - a); };
+  const double out = left ? std::min(falls(one, two), falls(two, three)) : 0.0;
+  return std::max({in, out, 0.0});
+}
+
 // One such run: a smooth motion that is cut off there would have gone on with the slopes at its ends. (R95)
 void RateStream::doubt_run(int axis, std::size_t first, std::size_t last, State& state) const {
   const auto size = [&](std::size_t k) {
@@ -178,14 +195,9 @@ void RateStream::doubt_run(int axis, std::size_t first, std::size_t last, State&
     highest = std::max(highest, size(k));
     lowest = std::min(lowest, size(k));
   }
-  const double in = first > 0 ? state.window[first - 1].approach_rad_s[axis] : state.entry_rad_s[axis];
-  const std::size_t one = reading_after(last, state.window), two = reading_after(one, state.window),
-                    three = reading_after(two, state.window);
-  const bool left = three < state.window.size();
-  const auto falls = [&](std::size_t a, std::size_t b) { return (size(a) - size(b)) / static_cast<double>(b - a); };
-  const double out = left ? std::min(falls(one, two), falls(two, three)) : 0.0;
+  const double slope = run_slope(axis, first, last, state);
   const double samples = static_cast<double>(last - first + 1) + (first > 0 ? 0.0 : state.entry_samples[axis]);
-  const double cut = 0.25 * samples * std::max({in, out, 0.0});
+  const double cut = 0.25 * samples * slope;
   const double noise = model_.gyro_sigma_rad_s();
   if (cut < kKink * (highest - lowest) || cut < kPossibleNoise * noise) return;
   for (std::size_t k = first; k <= last; ++k) {

@@ -39,7 +39,8 @@ bool RateStream::equal(const State& a, const State& b) {
            x.observation.clipping == y.observation.clipping && x.by_walls == y.by_walls &&
            x.observation.at_rest == y.observation.at_rest && x.observation.partial == y.observation.partial &&
            x.observation.lone == y.observation.lone && x.observation.doubted == y.observation.doubted &&
-           x.repeats == y.repeats && x.held == y.held && x.observation.lost_rad_s == y.observation.lost_rad_s &&
+           x.repeats == y.repeats && x.held == y.held && x.near == y.near &&
+           x.observation.lost_rad_s == y.observation.lost_rad_s &&
            x.observation.lost_sigma_rad_s == y.observation.lost_sigma_rad_s && e.knot == f.knot &&
            e.flight_weight == f.flight_weight && e.contact_m_s2 == f.contact_m_s2 &&
            e.bound_precision == f.bound_precision && e.bound_shift == f.bound_shift && e.soft_bounds == f.soft_bounds &&

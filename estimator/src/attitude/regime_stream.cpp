@@ -37,6 +37,8 @@ ClipSigns signs_of(const RateObservation& observation) {
 RateState joined_rate(const RateState& rate, const RateState& carried, double share) {
   RateState out = either(rate, carried, share);
   out.clipped_axes = rate.clipped_axes;
+  // the carried body is not told which readings may have met a rail in a part
+  if (rate.source == RateSource::bounded_only && out.source == RateSource::measured) out.source = rate.source;
   return out;
 }
 

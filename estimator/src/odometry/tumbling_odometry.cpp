@@ -53,7 +53,7 @@ constexpr double kSweepsMax_hz = 20.0;  // of the lidars that there are: so many
 
 RegimeStream::Params TumblingExpertParams::rate_defaults() {
   RegimeStream::Params out;
-  out.rate.expert.uncalibrated = 0.0;
+  out.rate.expert.uncalibrated = 0.003;
   return out;
 }
 

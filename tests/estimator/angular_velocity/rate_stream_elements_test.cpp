@@ -7,6 +7,7 @@
 #include <cstdio>
 #include <memory>
 #include <optional>
+#include <utility>
 #include <vector>
 
 #include "estimator/angular_velocity/drawn_elements.hpp"
@@ -248,6 +249,37 @@ TEST(RateStreamElements, NothingAtARailGoesOutAsMeasuredBeforeTheRailIsKnown) {
   // not all of them: a stream that knows flight and contact alone is sure of more than it can know of a swing
   EXPECT_GT(doubted.within, 0.4 * doubted.clipped);
   EXPECT_LT(trusted.within, 0.05 * trusted.clipped);
+}
+
+/// Of the samples at the rail once it is known: how many, and within three deviations.
+std::pair<int, int> within_at_known_rail(const RateStream::Params& params) {
+  int clipped = 0, within = 0;
+  for (std::uint64_t seed = 1; seed <= 4; ++seed) {
+    const Swing swing(seed);
+    const RateStream method(params);
+    RateStream::State state = method.start();
+    const std::vector<RateState> rates = stream(method, swing.samples, state);
+    for (std::size_t k = 0; k < rates.size(); ++k) {
+      if ((rates[k].clipped_axes & 1u) == 0) continue;
+      ++clipped;
+      const double sigma = std::sqrt(rates[k].covariance_rad2_s2(0, 0));
+      within += std::abs(rates[k].w_WI_I_rad_s.x() - swing.truth[k].x()) < 3.0 * sigma;
+    }
+  }
+  return {clipped, within};
+}
+
+// Nothing holds a swing to flight or to a push: what its slopes hide is open.
+TEST(RateStreamElements, ARunOfClippedReadingsIsAsOpenAsItsSlopes) {
+  auto params = with_lever_arm<RateStream::Params>();
+  const auto [clipped, within] = within_at_known_rail(params);
+  params.expert.doubt.slopes = 0.0;
+  const auto [same, believed] = within_at_known_rail(params);
+  std::printf("of %d within %d; without what slopes hide %d of %d\n", clipped, within, believed, same);
+  ASSERT_GT(clipped, 60);
+  EXPECT_EQ(same, clipped);
+  EXPECT_GT(within, 0.97 * clipped);
+  EXPECT_LT(believed, 0.9 * clipped);
 }
 
 // With the rail of x known, y stays at about that height, is doubted, and then is read far beyond it within the lag.

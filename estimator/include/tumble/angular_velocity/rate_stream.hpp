@@ -92,6 +92,7 @@ class RateStream {
   void forget_doubts(State& state) const;
   void doubt_possible_rails(State& state) const;
   bool may_clip(const ImuSample& sample, int axis, int sign, const State& state) const;
+  static double run_slope(int axis, std::size_t first, std::size_t last, const State& state);
   void doubt_run(int axis, std::size_t first, std::size_t last, State& state) const;
   static Eigen::Vector3d approach(const std::vector<Knot>& window);
   static void remember_entry(const Knot& leaving, const Knot& next, State& state);
@@ -100,7 +101,9 @@ class RateStream {
   void weigh(State& state) const;
   bool step(State& state) const;
   RigConstants::Matrix widened(const State& state) const;
-  Eigen::Matrix3d doubted(const Knot& knot, const State& state) const;
+  bool near_rails(std::size_t at, const State& state) const;
+  double hidden_by_slopes(std::size_t at, int axis, const State& state) const;
+  Eigen::Matrix3d doubted(std::size_t at, const State& state) const;
   RateState to_state(std::size_t at, const State& state) const;
 
   Params params_;

@@ -21,8 +21,8 @@ struct TumblingExpertParams {
   /// Sweeps that may wait for the IMU, beside those that the lag holds back; and for take(), the oldest being
   /// dropped.
   std::size_t sweeps_max = 16;
-  /// With a device that is taken for what its sheet says (`uncalibrated` 0): what is open of it widens each rate, and
-  /// sweeps are placed by them before the readings have told.
+  /// With a device that is taken for what its sheet says until the readings tell otherwise (`uncalibrated` 0.003): what
+  /// is open of it widens each rate, and sweeps are placed by them before the readings have told.
   RegimeStream::Params rate = rate_defaults();
   /// With gravity's direction and what the rails hid of the rate among the unknowns.
   OdometryParams mapping = mapping_defaults();

@@ -18,6 +18,9 @@ struct RigDoubtParams {
   /// What contact tells of a rate beyond the rail rests on a rig that flight has to tell: its deviation is at least
   /// this share of what lies beyond the rail, over 1 + n / samples.
   double contact = 0.5;
+  /// Of a run of clipped samples in contact: the deviation is at least this share of what a parabola with the slopes at
+  /// the run's ends hides, less what the estimate has of it.
+  double slopes = 1.0;
 
   template <class Self, class Visitor>
   static void fields(Self& p, Visitor& visit) {
@@ -28,6 +31,9 @@ struct RigDoubtParams {
     visit(p.contact, {"contact_doubt", "1", 0.0, 10.0,
                       "of a rig without calibration: deviation of a rate in contact, as a share of what lies "
                       "beyond the rail, over 1 + n / rig_doubt_samples"});
+    visit(p.slopes, {"contact_slopes", "1", 0.0, 10.0,
+                     "deviation of a clipped rate in contact, as a share of what the slopes at the ends of its run "
+                     "hide"});
   }
 };
 

@@ -34,8 +34,9 @@ struct RateStreamKnot {
   /// By how much the size of each axis has grown in each of the two steps up to this sample, the lesser; 0 or more.
   Eigen::Vector3d approach_rad_s = Eigen::Vector3d::Zero();
   int age = 0;
-  bool repeats = false;  ///< its gyro says the reading of the sample before again: HoldWatch
-  HeldReading held;      ///< of its gyro; as if none was held at rest
+  bool repeats = false;   ///< its gyro says the reading of the sample before again: HoldWatch
+  HeldReading held;       ///< of its gyro; as if none was held at rest
+  std::uint8_t near = 0;  ///< axes that may have met a rail in a part of the reading's window: rails.md (R76)
 };
 
 /// What all that left the window tells of the device's errors, and how it moves with them: rate_stream.md (R101).

@@ -1,0 +1,91 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// What a RateStream gives out of a sample of its window.
+#include <algorithm>
+#include <cmath>
+
+#include "tumble/angular_velocity/detail/held_rates.hpp"
+#include "tumble/angular_velocity/rate_stream.hpp"
+
+namespace tumble {
+
+// What a run of clipped readings hides of one of its samples by the slopes at its ends: rate_stream.md (R105).
+double RateStream::hidden_by_slopes(std::size_t at, int axis, const State& state) const {
+  const std::vector<Knot>& window = state.window;
+  const auto hidden = [&](std::size_t k) {
+    const RateObservation& o = window[k].observation;
+    return ((o.clipping.gyro | o.read_in_part()) >> axis & 1) != 0;
+  };
+  std::size_t first = at, last = at;
+  while (first > 0 && hidden(first - 1)) --first;
+  while (last + 1 < window.size() && hidden(last + 1)) ++last;
+  const double before = static_cast<double>(at - first) + 0.5 + (first > 0 ? 0.0 : state.entry_samples[axis]);
+  // a run that goes on lasts as long again at least
+  const double left = static_cast<double>(last - at) + 0.5,
+               after = last + 1 < window.size() ? left : std::max(before, left);
+  const double slope = run_slope(axis, first, last, state);
+  return slope * before * after / (before + after);
+}
+
+// rate_stream.md (R96), (R105)
+Eigen::Matrix3d RateStream::doubted(std::size_t at, const State& state) const {
+  const Knot& knot = state.window[at];
+  Eigen::Matrix3d out = knot.covariance_rad2_s2;
+  if (knot.estimate.flight_weight >= 0.5) return out;
+  const double samples =
+      static_cast<double>(state.learnt_from) * model_.said_once_share() / params_.expert.doubt.samples;
+  const double share = params_.model.calibration ? 0.0 : params_.expert.doubt.contact / (1.0 + samples);
+  for (int j = 0; j < 3; ++j) {
+    if ((knot.observation.unseen() & knot.observation.clipping.gyro & 1u << j) == 0) continue;
+    const double read = std::abs(knot.observation.sample.angular_velocity_rad_s[j]);
+    const double beyond = std::max(0.0, std::abs(knot.estimate.knot.rate_rad_s[j]) - read);
+    const double least =
+        std::max(share * beyond, params_.expert.doubt.slopes * (hidden_by_slopes(at, j, state) - beyond));
+    out(j, j) = std::max(out(j, j), least * least);
+  }
+  return out;
+}
+
+// Whether the readings that a rate is made of may have met a rail in a part of their windows: its own, and of a log
+// that says readings again those beside.
+bool RateStream::near_rails(std::size_t at, const State& state) const {
+  const std::vector<Knot>& window = state.window;
+  if (window[at].near != 0) return true;
+  if (!window[at].held.held()) return false;
+  std::size_t next = at + 1;
+  while (next < window.size() && window[next].repeats) ++next;
+  if (next == window.size()) return false;
+  const RateObservation& after = window[next].observation;
+  return (window[next].near | after.clipping.gyro | after.may_hide()) != 0;
+}
+
+RateState RateStream::to_state(std::size_t at, const State& state) const {
+  const Knot& knot = state.window[at];
+  const Eigen::Matrix3d covariance = doubted(at, state);
+  RateState out;
+  out.time_ns = knot.observation.sample.time_ns;
+  out.w_WI_I_rad_s = knot.estimate.knot.rate_rad_s;
+  out.covariance_rad2_s2 = model_.reported(covariance, knot.observation, knot.estimate);
+  if (const std::optional<HeldRate> own = rate_between_readings(state.window, at, params_.period_s)) {
+    out.w_WI_I_rad_s = own->rate_rad_s - state.rig.gyro_bias_rad_s;
+    out.covariance_rad2_s2.diagonal() += own->variance_rad2_s2;
+  } else {
+    out.covariance_rad2_s2.diagonal() += knot.held.stale().cwiseAbs2();
+  }
+  out.covariance_rad2_s2.diagonal() += frozen_.rate_variance_rad2_s2(out.time_ns, state.frozen);
+  out.clipped_axes = knot.observation.clipping.gyro | knot.observation.clipping.void_gyro;
+  out.source = rate_source(knot.observation, knot.estimate, covariance, params_.recovered_sigma_rad_s);
+  if (out.source == RateSource::measured && near_rails(at, state)) out.source = RateSource::bounded_only;
+  return out;
+}
+
+std::optional<RateState> RateStream::newest(const State& state) const {
+  if (state.window.empty()) return std::nullopt;
+  return to_state(state.window.size() - 1, state);
+}
+
+void RateStream::flush(const State& state, std::vector<RateState>& out) const {
+  const std::size_t given = state.window.size() + 1 - std::min(capacity_, state.window.size() + 1);
+  for (std::size_t k = given; k < state.window.size(); ++k) out.push_back(to_state(k, state));
+}
+
+}  // namespace tumble
