@@ -113,6 +113,8 @@ class TumblingOdometry {
   /// bound. Parameters that are not those of the state are trouble too: the first that differs, the one saved and the
   /// one here. Bytes of another version of the library, or damaged ones, are refused.
   Status load(std::span<const std::byte> bytes);
+  /// The parameters that such bytes are of, to make one of; on trouble `params` are as they were.
+  static Status saved_params(std::span<const std::byte> bytes, Params& params);
 
   /// Stated once, in the library's own sources: state_visitor.hpp.
   template <class Self, class Visitor>
