@@ -17,9 +17,9 @@
 #include "streams.hpp"
 #include "tumble/angular_velocity/detail/recording_check.hpp"
 #include "tumble/attitude/carried_elements.hpp"
-#include "tumble/attitude/carried_live.hpp"
 #include "tumble/attitude/carried_smoother.hpp"
 #include "tumble/attitude/carried_stream.hpp"
+#include "tumble/attitude/detail/carried_live.hpp"
 
 namespace tumble::python {
 

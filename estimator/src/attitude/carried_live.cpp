@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "tumble/attitude/carried_live.hpp"
+#include "tumble/attitude/detail/carried_live.hpp"
 
 #include "tumble/common/imu.hpp"
 

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "../angular_velocity/rate_stream_members.hpp"
-#include "tumble/attitude/carried_live.hpp"
+#include "tumble/attitude/detail/carried_live.hpp"
 #include "tumble/attitude/regime_stream.hpp"
 
 /// Members of the states of RegimeStream, CarriedStream and CarriedLive, and of what their Params hold beside Fields:

@@ -7,8 +7,8 @@
 #include <vector>
 
 #include "tumble/angular_velocity/rate_stream.hpp"
-#include "tumble/attitude/carried_live.hpp"
 #include "tumble/attitude/carried_stream.hpp"
+#include "tumble/attitude/detail/carried_live.hpp"
 #include "tumble/attitude/regime_stream.hpp"
 #include "tumble/common/status.hpp"
 #include "tumble/rolling/rolling_filter.hpp"
