@@ -86,7 +86,7 @@ WAYS = {"load": loaded, "pickle": lambda _, stream: pickle.loads(pickle.dumps(st
 
 
 @pytest.mark.parametrize("way", WAYS.values(), ids=WAYS.keys())
-@pytest.mark.parametrize("at", [0, 1, 17, 150, 300, 399])
+@pytest.mark.parametrize("at", [0, 17, 150, 399])
 def test_split_anywhere_gives_the_same_bits(kind, samples, way, at):
     whole = kind.make()
     kind.feed(whole, cut(samples, 0, at))
