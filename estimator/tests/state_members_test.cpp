@@ -121,6 +121,7 @@ TEST(StateMembers, AllOfATumblingOdometry) {
   expect_whole(RateStream::Knot{}, "rate.window");
   expect_whole(CarriedStream::Reading{}, "carried.readings");
   expect_whole(CarriedStream::Knot{}, "carried.window");
+  expect_whole(CarriedLive::State{}, "live");
   expect_whole(RateState{}, "settled");
   expect_whole(RateKnot{}, "left");
   expect_whole(RailPlane{}, "planes");
@@ -163,9 +164,12 @@ TEST(StateMembers, AllOfTheParametersWithinAState) {
   expect_whole_params(RailDetector::Params{}, "walls");
   expect_whole_params(RateStream::Params{}, "rate");
   expect_whole_params(RegimeStream::Params{}, "regimes");
+  expect_whole_params(CarriedStream::Params{}, "carried");
+  expect_whole_params(CarriedLive::Params{}, "live");
   expect_whole_params(LidarInertialOdometry::Params{}, "mapping");
   expect_whole_params(TumblingOdometry::Params{}, "tumbling");
   expect_whole_params(ImuMerge::Params{}, "merge");
+  expect_whole_params(RollingFilter::Params{}, "live");
   expect_whole_params(RollingSmoother::Params{}, "rolling");
 }
 

@@ -33,7 +33,7 @@ auto bind_filter(nb::module_& m, const char* name, const char* doc) {
             keywords.done();
             new (self) Object(Running<Filter>{Filter(params), {}});
           },
-          nb::arg("options"))
+          nb::arg("options"), takes_options())
       .def(
           "add_imu",
           [](Object& self, nb::handle time_ns, nb::handle gyro, nb::handle accel, nb::handle clip_flags) {

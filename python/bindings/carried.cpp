@@ -15,12 +15,11 @@
 #include "rails.hpp"
 #include "results.hpp"
 #include "streams.hpp"
-#include "tumble/angular_velocity/detail/hold_watch.hpp"
-#include "tumble/angular_velocity/detail/rail_watch.hpp"
 #include "tumble/angular_velocity/detail/recording_check.hpp"
 #include "tumble/attitude/carried_elements.hpp"
 #include "tumble/attitude/carried_smoother.hpp"
 #include "tumble/attitude/carried_stream.hpp"
+#include "tumble/attitude/detail/carried_live.hpp"
 
 namespace tumble::python {
 
@@ -79,81 +78,19 @@ void bind_smoother(nb::module_& m) {
             keywords.done();
             new (self) Carried{CarriedSmoother(params), walls};
           },
-          nb::arg("options"))
+          nb::arg("options"), takes_options())
       .def("estimate", &carried, nb::arg("time_ns"), nb::arg("gyro"), nb::arg("accel"),
            nb::arg("clip_flags") = nb::none(),
            "Rates, attitudes (heading 0 at the start), one of each per sample, and what the run tells of itself.")
       .def_static("parameters", [] { return list_fields(CarriedSmoother::Params{}); });
 }
 
-/// CarriedStream, which has to be told what is at a rail, with what its samples have shown of the rails.
-class Telling {
- public:
-  Telling(const CarriedStream::Params& params, const RailWatch::Params& rails)
-      : stream_(params), watch_(rails), state_(stream_.start()), rails_(watch_.start()) {}
-
-  /// Of the rails no more is learnt from a sample that is refused.
-  Status push(const ImuSample& sample, std::optional<RateState>& out) {
-    out.reset();
-    if (const Status status = check_sample(sample); !status.ok()) return status;
-    signs_.clear();
-    judge_window(sample);
-    const ImuSample* const latest = state_.readings.empty() ? nullptr : &state_.readings.back().sample;
-    const Clipping judged = watch_.judge(latest, sample, rails_);
-    signs_.push_back(clip_signs(sample, judged));
-    HoldWatch::State holds = holds_;
-    HoldWatch().observe(sample, (judged.gyro | judged.void_gyro) != 0, holds);
-    const Status status = stream_.push(sample, {rows(), signs_}, state_, out, true, holds);
-    if (!status.ok()) return status;
-    holds_ = holds;
-    news_ = watch_.observe(sample, rails_);
-    watch_.walls().classify(sample, rails_.known.walls);  // carries what is clipped just now
-    return status;
-  }
-
-  void flush(std::vector<RateState>& out) const { stream_.flush(state_, out); }
-  std::size_t failures() const { return state_.failures; }
-
- private:
-  /// The newest sample of the window is judged by `next` too, and all of them where the rails are known better now.
-  void judge_window(const ImuSample& next) {
-    const std::vector<CarriedStream::Reading>& window = state_.readings;
-    RailDetector::State& walls = rails_.known.walls;
-    if (news_) {
-      for (RailDetector::Channel& channel : walls.channels) channel.clipped = false;
-    }
-    for (std::size_t k = news_ || window.empty() ? 0 : window.size() - 1; k < window.size(); ++k) {
-      const ImuSample* const before = k > 0 ? &window[k - 1].sample : nullptr;
-      const ImuSample& after = k + 1 < window.size() ? window[k + 1].sample : next;
-      signs_.push_back(clip_signs(window[k].sample, watch_.judge(before, window[k].sample, rails_, &after)));
-      if (news_) watch_.walls().classify(window[k].sample, walls);
-    }
-  }
-
-  /// What the gyro's elements sense along, where their planes were seen.
-  Eigen::Matrix3d rows() const {
-    Eigen::Matrix3d out = Eigen::Matrix3d::Identity();
-    for (int j = 0; j < 3; ++j) {
-      const std::optional<RailPlane>& plane = rails_.known.planes.element[static_cast<std::size_t>(j)];
-      if (plane) out.row(j) = plane->row.transpose();
-    }
-    return out;
-  }
-
-  CarriedStream stream_;
-  RailWatch watch_;
-  CarriedStream::State state_;
-  RailWatch::State rails_;
-  HoldWatch::State holds_;
-  std::vector<ClipSigns> signs_;
-  bool news_ = false;  ///< of the rails, by the last sample
-};
-
 /// The stream makes one step for a node, whatever this says.
 const std::vector<const char*> kWithoutMeaning = {"iterations_max"};
 
 void bind_stream(nb::module_& m) {
-  using Object = Guarded<Telling>;
+  using Live = Streaming<CarriedLive>;
+  using Object = Guarded<Live>;
   nb::class_<Object> bound(m, "CarriedStream",
                            "The streaming form of CarriedSmoother: each rate is given out when its sample is lag_s "
                            "old. Rails are those that\n"
@@ -164,20 +101,19 @@ void bind_stream(nb::module_& m) {
           "__init__",
           [](Object* self, const nb::kwargs& options) {
             Keywords keywords("CarriedStream", options);
-            CarriedStream::Params params;
-            RailWatch::Params rails;
-            read_ranges(keywords, rails.clipping.walls);
-            read_fields(keywords, params, kWithoutMeaning);
+            CarriedLive::Params params;
+            read_ranges(keywords, params.rails.clipping.walls);
+            read_fields(keywords, params.stream, kWithoutMeaning);
             keywords.done();
-            new (self) Object(Telling(params, rails));
+            new (self) Object(Live(params));
           },
-          nb::arg("options"))
+          nb::arg("options"), takes_options())
       .def(
           "add_imu",
           [](Object& self, nb::handle time_ns, nb::handle gyro, nb::handle accel, nb::handle clip_flags) {
             std::optional<RateState> settled;
-            const auto step = [&settled](Telling& at, const ImuSample& sample, Rates& out) {
-              const Status status = at.push(sample, settled);
+            const auto step = [&settled](Live& at, const ImuSample& sample, Rates& out) {
+              const Status status = at.filter.push(sample, *at.state, settled);
               if (settled) out.rows.push_back(*settled);
               return status;
             };
@@ -189,15 +125,15 @@ void bind_stream(nb::module_& m) {
           "flush",
           [](Object& self) {
             Rates out;
-            self.run([&](Telling& at) { at.flush(out.rows); });
+            self.run([&](Live& at) { at.filter.flush(*at.state, out.rows); });
             return out;
           },
           "Rates of the samples still in the window, as they stand. The stream stays as it is.")
       .def_prop_ro(
-          "failures", [](Object& self) { return self.run([](Telling& at) { return at.failures(); }); },
+          "failures", [](Object& self) { return self.run([](Live& at) { return at.state->stream.failures; }); },
           "steps that were left out, since their equations were not positive definite")
       .def_static("parameters", [] { return list_fields(CarriedStream::Params{}, kWithoutMeaning); });
-  bind_copy<Object>(bound);
+  bind_keeping<CarriedLive>(bound);
 }
 
 }  // namespace

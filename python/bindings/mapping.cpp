@@ -133,7 +133,7 @@ void bind_mapping(nb::module_& m) {
           [](Object* self, const nb::kwargs& options) {
             new (self) Object(LidarInertialOdometry(mapper_params(options)));
           },
-          nb::arg("options"))
+          nb::arg("options"), takes_options())
       .def("add_imu", &add_imu, nb::arg("time_ns"), nb::arg("gyro"), nb::arg("accel"), nb::arg("rates") = nb::none(),
            nb::arg("clip_flags") = nb::none(),
            "Takes one sample or many with the Rates of a rate method; without any the gyro is believed as it reads.")

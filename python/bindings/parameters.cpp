@@ -98,15 +98,19 @@ void bind_parameter(nb::module_& m) {
   nb::class_<Parameter>(m, "Parameter", "One number that a class takes as a keyword, as its `parameters()` lists them.")
       .def_ro("name", &Parameter::name)
       .def_ro("unit", &Parameter::unit, "\"1\" when dimensionless")
-      .def_ro("default", &Parameter::value)
+      .def_ro("default", &Parameter::value,
+              nb::for_getter(nb::sig("def default(self) -> bool | int | float | tuple[float, float, float]")))
       .def_ro("low", &Parameter::low, "least value; of a vector, of each coordinate")
       .def_ro("high", &Parameter::high, "largest value")
       .def_ro("meaning", &Parameter::meaning)
       .def_ro("first", &Parameter::first, "one of those that a user sets before others")
-      .def("__repr__", [](const Parameter& p) {
-        return nb::str("{} = {} [{}] within [{:g}, {:g}]: {}")
-            .attr("format")(p.name, p.value, p.unit, p.low, p.high, p.meaning);
-      });
+      .def(
+          "__repr__",
+          [](const Parameter& p) {
+            return nb::str("{} = {} [{}] within [{:g}, {:g}]: {}")
+                .attr("format")(p.name, p.value, p.unit, p.low, p.high, p.meaning);
+          },
+          nb::sig("def __repr__(self) -> str"));
 }
 
 }  // namespace tumble::python

@@ -26,6 +26,11 @@ struct Parameter {
   bool first;  ///< of those that a user sets before others
 };
 
+/// How a constructor that takes Keywords reads in the stubs.
+inline nb::sig takes_options() {
+  return {"def __init__(self, **options: object) -> None"};
+}
+
 /// Keywords of a constructor. What is taken is known; what is left over in the end is not.
 class Keywords {
  public:

@@ -81,8 +81,11 @@ void bind_rails(nb::module_& m) {
   nb::class_<Found>(m, "Rails", "The rails of an IMU, and which readings of a recording stand at them.")
       .def_prop_ro(
           "gyro", [](const Found& f) { return as_list(f.rails.planes); },
+          nb::for_getter(nb::sig("def gyro(self) -> list[RailPlane | None]")),
           "planes of the gyro's elements x, y, z, each a RailPlane or None where none was seen")
-      .def_prop_ro("accel", [](const Found& f) { return as_list(f.rails.accel_planes); })
+      .def_prop_ro(
+          "accel", [](const Found& f) { return as_list(f.rails.accel_planes); },
+          nb::for_getter(nb::sig("def accel(self) -> list[RailPlane | None]")))
       .def_prop_ro(
           "upright", [](const Found& f) { return f.rails.upright; },
           "the device clips what it delivers: nothing is off on the axes beside")
@@ -96,6 +99,9 @@ void bind_rails(nb::module_& m) {
   m.def(
       "find_rails", &find_rails, nb::arg("time_ns"), nb::arg("gyro"), nb::arg("accel"),
       nb::arg("clip_flags") = nb::none(), nb::arg("options"),
+      nb::sig(
+          "def find_rails(time_ns: object, gyro: object, accel: object, clip_flags: object | None = None, **options: "
+          "object) -> Rails"),
       "Finds which readings of a recording are clipped, without flags and without a stated range: level plateaus and\n"
       "tilted planes. gyro_range_rad_s, accel_range_m_s2: what the data sheet states, if anything. Further keywords:\n"
       "rails_parameters().");

@@ -118,7 +118,8 @@ void bind_batch(nb::module_& m) {
       .def_ro("rig_held", &RateReport::rig_held, "nothing was learnt, the constants were held")
       .def_ro("rail", &RateReport::rail, "in use: gyro x y z [rad/s], accelerometer [m/s^2]; None: not seen")
       .def_prop_ro(
-          "planes", [](const RateReport& r) { return as_list(r.planes); }, "of the gyro's elements")
+          "planes", [](const RateReport& r) { return as_list(r.planes); },
+          nb::for_getter(nb::sig("def planes(self) -> list[RailPlane | None]")), "of the gyro's elements")
       .def_ro("rate_unit_suspect", &RateReport::rate_unit_suspect, "readings that no body has: perhaps degrees")
       .def_ro("force_unit_suspect", &RateReport::force_unit_suspect, "the specific force is near 1: perhaps in g")
       .def_ro("samples", &RateReport::samples)
@@ -143,7 +144,7 @@ void bind_batch(nb::module_& m) {
           [](RateSmoother* self, const nb::kwargs& options) {
             new (self) RateSmoother(params_of<RateSmoother>("RateSmoother", options));
           },
-          nb::arg("options"))
+          nb::arg("options"), takes_options())
       .def("estimate", &smooth<RateSmoother, RateReport>, nb::arg("time_ns"), nb::arg("gyro"), nb::arg("accel"),
            nb::arg("clip_flags") = nb::none(), "One rate per sample, and what the run tells of itself.")
       .def_static("parameters", [] { return list_fields(RateSmoother::Params{}); });
@@ -152,6 +153,7 @@ void bind_batch(nb::module_& m) {
       .def_ro("rate", &Joint::rate, "of RateSmoother")
       .def_prop_ro(
           "shares", [](const Joint& r) { return shares_of(r.shares); },
+          nb::for_getter(nb::sig("def shares(self) -> dict[str, float]")),
           "means of the probabilities of flight, contact and being carried")
       .def_ro("carried_clipped_max", &Joint::carried_clipped_max, "largest share of being carried where the gyro clips")
       .def_ro("carried_asked", &Joint::carried_asked, "CarriedSmoother had a word")
@@ -166,7 +168,7 @@ void bind_batch(nb::module_& m) {
           [](RegimeSmoother* self, const nb::kwargs& options) {
             new (self) RegimeSmoother(params_of<RegimeSmoother>("RegimeSmoother", options));
           },
-          nb::arg("options"))
+          nb::arg("options"), takes_options())
       .def("estimate", &smooth<RegimeSmoother, Joint>, nb::arg("time_ns"), nb::arg("gyro"), nb::arg("accel"),
            nb::arg("clip_flags") = nb::none(), "One rate per sample, and what the run tells of itself.")
       .def_static("parameters", [] { return list_fields(RegimeSmoother::Params{}); });
@@ -187,7 +189,7 @@ void bind_batch(nb::module_& m) {
             keywords.done();
             new (self) Saave(params);
           },
-          nb::arg("options"))
+          nb::arg("options"), takes_options())
       .def("estimate", &saave, nb::arg("time_ns"), nb::arg("gyro"), nb::arg("accel"),
            nb::arg("clip_flags") = nb::none(), "One rate per sample.")
       .def_static("parameters", [] { return list_fields(Saave::Params{}); });
@@ -197,22 +199,19 @@ void bind_batch(nb::module_& m) {
 template <class Stream, class Rate, class RateState_>
 auto bind_stream(nb::module_& m, const char* name, const char* doc,
                  typename Stream::Params (*params)(const nb::kwargs&), Rate rate, RateState_ rate_state) {
-  using Object = Guarded<Running<Stream>>;
+  using Object = Guarded<Streaming<Stream>>;
   nb::class_<Object> bound(m, name, doc);
   bound
       .def(
           "__init__",
-          [params](Object* self, const nb::kwargs& options) {
-            const Stream stream(params(options));
-            new (self) Object(Running<Stream>{stream, stream.start()});
-          },
-          nb::arg("options"))
+          [params](Object* self, const nb::kwargs& options) { new (self) Object(Streaming<Stream>(params(options))); },
+          nb::arg("options"), takes_options())
       .def(
           "add_imu",
           [](Object& self, nb::handle time_ns, nb::handle gyro, nb::handle accel, nb::handle clip_flags) {
             std::optional<RateState> settled;
-            const auto step = [&settled](Running<Stream>& at, const ImuSample& sample, Rates& out) {
-              const Status status = at.filter.push(sample, at.state, settled);
+            const auto step = [&settled](Streaming<Stream>& at, const ImuSample& sample, Rates& out) {
+              const Status status = at.filter.push(sample, *at.state, settled);
               if (settled) out.rows.push_back(*settled);
               return status;
             };
@@ -224,7 +223,7 @@ auto bind_stream(nb::module_& m, const char* name, const char* doc,
           "flush",
           [](Object& self) {
             Rates out;
-            self.run([&](Running<Stream>& at) { at.filter.flush(at.state, out.rows); });
+            self.run([&](Streaming<Stream>& at) { at.filter.flush(*at.state, out.rows); });
             return out;
           },
           "Rates of the samples still in the window, as they stand. The stream stays as it is.")
@@ -232,8 +231,8 @@ auto bind_stream(nb::module_& m, const char* name, const char* doc,
           "newest",
           [rate, rate_state](Object& self) {
             Rates out;
-            self.run([&](Running<Stream>& at) {
-              const std::optional<RateState> newest = rate(at.filter).newest(rate_state(at.state));
+            self.run([&](Streaming<Stream>& at) {
+              const std::optional<RateState> newest = rate(at.filter).newest(rate_state(*at.state));
               if (newest) out.rows.push_back(*newest);
             });
             return out;
@@ -242,16 +241,17 @@ auto bind_stream(nb::module_& m, const char* name, const char* doc,
       .def(
           "calibration",
           [rate, rate_state](Object& self) {
-            return self.run([&](Running<Stream>& at) { return rate(at.filter).calibration(rate_state(at.state)); });
+            return self.run([&](Streaming<Stream>& at) { return rate(at.filter).calibration(rate_state(*at.state)); });
           },
           "What has been learnt of the rig.")
       .def(
           "doubt",
           [rate, rate_state](Object& self) {
-            return doubt_of(self.run([&](Running<Stream>& at) { return rate(at.filter).doubt(rate_state(at.state)); }));
+            return doubt_of(
+                self.run([&](Streaming<Stream>& at) { return rate(at.filter).doubt(rate_state(*at.state)); }));
           },
           nb::sig("def doubt(self) -> tumble.errors.TumbleError | None"), kDoubt);
-  bind_copy<Object>(bound);
+  bind_keeping<Stream>(bound);
   return bound;
 }
 
@@ -276,10 +276,11 @@ void bind_streams(nb::module_& m) {
       [](const RegimeStream::State& s) -> const RateStream::State& { return s.rate; })
       .def(
           "regime_shares",
-          [](Guarded<Running<RegimeStream>>& self) {
-            const RegimeShares shares = self.run([](Running<RegimeStream>& at) { return at.state.shares; });
+          [](Guarded<Streaming<RegimeStream>>& self) {
+            const RegimeShares shares = self.run([](Streaming<RegimeStream>& at) { return at.state->shares; });
             return shares_of(shares);
           },
+          nb::sig("def regime_shares(self) -> dict[str, float]"),
           "Probabilities of flight, contact and being carried, at the sample given out last.")
       .def_static("parameters", [] { return list_fields(RegimeStream::Params{}, kOfTheRate); });
 }

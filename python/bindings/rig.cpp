@@ -63,9 +63,12 @@ void bind_rig(nb::module_& m) {
           "(3,): from the centre of mass to the IMU, IMU axes")
       .def_prop_ro("gyro_bias_rad_s", [](const R& r) { return whole<3>(r.constants.gyro_bias_rad_s.data()); })
       .def_prop_ro("accel_bias_m_s2", [](const R& r) { return whole<3>(r.constants.accel_bias_m_s2.data()); })
-      .def("__reduce__", [](nb::handle_t<R> self) {
-        return nb::make_tuple(self.type(), nb::make_tuple(self.attr("constants"), self.attr("covariance")));
-      });
+      .def(
+          "__reduce__",
+          [](nb::handle_t<R> self) {
+            return nb::make_tuple(self.type(), nb::make_tuple(self.attr("constants"), self.attr("covariance")));
+          },
+          nb::sig("def __reduce__(self) -> tuple[object, ...]"));
 }
 
 }  // namespace tumble::python

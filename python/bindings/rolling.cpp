@@ -3,8 +3,9 @@
 #include <nanobind/stl/string.h>
 #include <nanobind/stl/vector.h>
 
-#include <memory>
+#include <cstddef>
 #include <optional>
+#include <span>
 #include <vector>
 
 #include "arrays.hpp"
@@ -20,20 +21,8 @@ namespace tumble::python {
 
 namespace {
 
-/// A filter of the sphere with its State, which is half a megabyte and does not lie inside of an object of Python's.
-template <class Filter>
-struct Rolling {
-  Filter filter;
-  std::unique_ptr<typename Filter::State> state = std::make_unique<typename Filter::State>();
-
-  explicit Rolling(const typename Filter::Params& params) : filter(params) {}
-  Rolling(const Rolling& other) : filter(other.filter), state(std::make_unique<typename Filter::State>(*other.state)) {}
-  Rolling& operator=(const Rolling&) = delete;
-  ~Rolling() = default;
-};
-
 void bind_smoother(nb::module_& m) {
-  using Object = Guarded<Rolling<RollingSmoother>>;
+  using Object = Guarded<Streaming<RollingSmoother>>;
   nb::class_<Object> bound(
       m, "RollingSmoother",
       "Pose of a rolling sphere from one IMU, smoothed with a fixed lag or, by default, over the whole run.\n\n"
@@ -49,13 +38,13 @@ void bind_smoother(nb::module_& m) {
             RollingSmoother::Params params;
             read_fields(keywords, params);
             keywords.done();
-            new (self) Object(Rolling<RollingSmoother>(params));
+            new (self) Object(Streaming<RollingSmoother>(params));
           },
-          nb::arg("options"))
+          nb::arg("options"), takes_options())
       .def(
           "add_imu",
           [](Object& self, nb::handle time_ns, nb::handle gyro, nb::handle accel, nb::handle clip_flags) {
-            const auto step = [](Rolling<RollingSmoother>& at, const ImuSample& sample, RollingPoses& out) {
+            const auto step = [](Streaming<RollingSmoother>& at, const ImuSample& sample, RollingPoses& out) {
               return at.filter.step(sample, *at.state, out.rows);
             };
             return feed<RollingPoses>(self, samples_of(time_ns, gyro, accel, clip_flags), step);
@@ -66,30 +55,16 @@ void bind_smoother(nb::module_& m) {
           "finish",
           [](Object& self) {
             RollingPoses out;
-            self.run([&](Rolling<RollingSmoother>& at) { at.filter.finish(*at.state, out.rows); });
+            self.run([&](Streaming<RollingSmoother>& at) { at.filter.finish(*at.state, out.rows); });
             return out;
           },
           "The poses that are still owed. The run has ended.")
       .def_static("parameters", [] { return list_fields(RollingSmoother::Params{}); });
-  bind_copy<Object>(bound);
-}
-
-/// What the live filter says at its last sample.
-RollingEstimate live_estimate(const RollingFilter::State& live) {
-  RollingEstimate out;
-  out.time_ns = live.last_time_ns;
-  out.p_WG_m = live.p_WG_m;
-  out.q_WI = live.q_WI;
-  out.v_WG_m_s = live.v_WG_m_s;
-  out.covariance.topLeftCorner<3, 3>() = live.position_covariance_m2;
-  out.mode = live.mode;
-  out.at_rest = live.at_rest;
-  out.uncertain = live.uncertain;
-  return out;
+  bind_keeping<RollingSmoother>(bound);
 }
 
 void bind_filter(nb::module_& m) {
-  using Live = Rolling<RollingFilter>;
+  using Live = Streaming<RollingFilter>;
   using Object = Guarded<Live>;
   nb::class_<Object> bound(
       m, "RollingFilter",
@@ -107,13 +82,13 @@ void bind_filter(nb::module_& m) {
             keywords.done();
             new (self) Object(Live(params));
           },
-          nb::arg("options"))
+          nb::arg("options"), takes_options())
       .def(
           "add_imu",
           [](Object& self, nb::handle time_ns, nb::handle gyro, nb::handle accel, nb::handle clip_flags) {
             const auto step = [](Live& at, const ImuSample& sample, RollingPoses& out) {
               const Status status = at.filter.step(sample, *at.state);
-              if (status.ok()) out.rows.push_back(live_estimate(*at.state));
+              if (status.ok()) out.rows.push_back(RollingFilter::estimate(*at.state));
               return status;
             };
             return feed<RollingPoses>(self, samples_of(time_ns, gyro, accel, clip_flags), step);
@@ -144,7 +119,7 @@ void bind_filter(nb::module_& m) {
           [](Object& self) { return self.run([](Live& at) { return at.state->started_in_motion; }); },
           "its attitude is believed less then")
       .def_static("parameters", [] { return list_fields(RollingFilter::Params{}); });
-  bind_copy<Object>(bound);
+  bind_keeping<RollingFilter>(bound);
 }
 
 /// The door's own numbers, and what its sheets say, take the place of these.
@@ -212,7 +187,18 @@ RollingPoses taken(RollingOdometry& odometry) {
 struct Door {
   RollingOdometry odometry;
   std::size_t units;
+
+  std::vector<std::byte> save() const { return odometry.save(); }
+  Status load(std::span<const std::byte> bytes) { return odometry.load(bytes); }
 };
+
+Door restored_door(std::span<const std::byte> bytes) {
+  RollingOdometry::Params params;
+  require(RollingOdometry::saved_params(bytes, params));
+  Door out{RollingOdometry(params), params.units.size()};
+  require(out.load(bytes));
+  return out;
+}
 
 void bind_door(nb::module_& m) {
   using Object = Guarded<Door>;
@@ -232,7 +218,7 @@ void bind_door(nb::module_& m) {
             const RollingOdometry::Params params = door_params(options);
             new (self) Object(Door{RollingOdometry(params), params.units.size()});
           },
-          nb::arg("options"))
+          nb::arg("options"), takes_options())
       .def(
           "add_imu",
           [](Object& self, nb::handle time_ns, nb::handle gyro, nb::handle accel) {
@@ -278,6 +264,7 @@ void bind_door(nb::module_& m) {
           "Begins a new run: at the origin, at rest.")
       .def_static("parameters", [] { return list_fields(RollingOdometry::Params{}, kOfTheDoor); });
   bind_copy<Object>(bound);
+  bind_saving<Door>(bound, &restored_door);
 }
 
 }  // namespace

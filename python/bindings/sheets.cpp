@@ -25,7 +25,7 @@ nb::class_<Sheet> bind_sheet(nb::module_& m, const char* name, const char* doc) 
             keywords.done();
             new (self) Sheet(sheet);
           },
-          nb::arg("options"))
+          nb::arg("options"), takes_options())
       .def_static("parameters", [] { return list_fields(Sheet{}); })
       .def("__repr__", [name](const Sheet& sheet) {
         std::string out = std::string(name) + "(";

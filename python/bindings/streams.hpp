@@ -4,12 +4,16 @@
 #include <nanobind/nanobind.h>
 
 #include <cstddef>
+#include <memory>
+#include <span>
 #include <utility>
 #include <vector>
 
 #include "guarded.hpp"
+#include "saving.hpp"
 #include "trouble.hpp"
 #include "tumble/common/imu.hpp"
+#include "tumble/odometry/saved_streams.hpp"
 
 namespace tumble::python {
 
@@ -21,6 +25,47 @@ struct Running {
   Filter filter;
   State state;
 };
+
+/// A stream with its State, which can be saved. That of a sphere is half a megabyte and does not lie inside of an
+/// object of Python's.
+template <SavedStream Stream>
+struct Streaming {
+  using Params = typename Stream::Params;
+  using State = typename Stream::State;
+
+  Params params;
+  Stream filter;
+  std::unique_ptr<State> state = std::make_unique<State>();
+
+  explicit Streaming(const Params& given) : params(given), filter(given) {
+    if constexpr (requires { filter.start(); }) *state = filter.start();
+  }
+  Streaming(const Streaming& other)
+      : params(other.params), filter(other.filter), state(std::make_unique<State>(*other.state)) {}
+  Streaming(Streaming&&) noexcept = default;
+  Streaming& operator=(const Streaming&) = delete;
+  ~Streaming() = default;
+
+  std::vector<std::byte> save() const { return save_state<Stream>(params, *state); }
+  Status load(std::span<const std::byte> bytes) { return load_state<Stream>(bytes, params, *state); }
+};
+
+/// Made anew of bytes alone.
+template <class Stream>
+Streaming<Stream> restored(std::span<const std::byte> bytes) {
+  typename Stream::Params params;
+  require(saved_params<Stream>(bytes, params));
+  Streaming<Stream> out(params);
+  require(out.load(bytes));
+  return out;
+}
+
+/// copy, save, load and pickle.
+template <class Stream, class Class>
+void bind_keeping(Class& bound) {
+  bind_copy<Guarded<Streaming<Stream>>>(bound);
+  bind_saving<Streaming<Stream>>(bound, &restored<Stream>);
+}
 
 /// Gives samples to an estimator one after the other, up to the first that it refuses, which is TumbleError with the
 /// sample's index and what came out before. `step(estimator, sample, out)` returns a Status.

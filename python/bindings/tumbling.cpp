@@ -6,7 +6,9 @@
 #include <nanobind/stl/string.h>
 #include <nanobind/stl/vector.h>
 
+#include <cstddef>
 #include <optional>
+#include <span>
 #include <vector>
 
 #include "arrays.hpp"
@@ -19,6 +21,14 @@
 namespace tumble::python {
 
 namespace {
+
+TumblingOdometry restored_door(std::span<const std::byte> bytes) {
+  TumblingOdometry::Params params;
+  require(TumblingOdometry::saved_params(bytes, params));
+  TumblingOdometry out(params);
+  require(out.load(bytes));
+  return out;
+}
 
 using Object = Guarded<TumblingOdometry>;
 using Sweep = TumblingOdometry::Sweep;
@@ -181,7 +191,7 @@ void bind_tumbling(nb::module_& m) {
       .def(
           "__init__",
           [](Object* self, const nb::kwargs& options) { new (self) Object(TumblingOdometry(door_params(options))); },
-          nb::arg("options"))
+          nb::arg("options"), takes_options())
       .def("add_imu", &add_imu, nb::arg("time_ns"), nb::arg("gyro"), nb::arg("accel"),
            nb::arg("clip_flags") = nb::none(),
            "Takes one sample or many, in order of time. Sweeps whose rates are settled with them are registered now.")
@@ -209,6 +219,7 @@ void bind_tumbling(nb::module_& m) {
       .def_static("parameters", [] { return list_fields(TumblingOdometry::Params{}, kOfTheDoor); });
   bind_talk(bound);
   bind_copy<Object>(bound);
+  bind_saving<TumblingOdometry>(bound, &restored_door);
 }
 
 }  // namespace tumble::python

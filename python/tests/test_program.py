@@ -365,3 +365,22 @@ def test_results_without_pandas(tmp_path, monkeypatch):
     with pytest.raises(tumble.TumbleError, match="no results database"):
         tumble.score_rows(tmp_path / "text.db")
     assert importlib.util.find_spec("tumble")
+
+
+def test_files_are_stored_as_the_programs_own(recordings, tmp_path):
+    """Dataset by dataset: chunks, filters, type; so that a file that was read and written is no larger."""
+    h5py = pytest.importorskip("h5py")
+    for name, first in recordings.items():
+        again = tmp_path / f"{name}.h5"
+        tumble.write(again, tumble.read(first))
+
+        def stored(path):
+            out = {}
+            with h5py.File(path) as file:
+                file.visititems(lambda place, at: out.update({place: (at.dtype, at.shape, at.chunks, at.compression, at.compression_opts,
+                                                                      at.shuffle)}) if isinstance(at, h5py.Dataset) else None)
+            return out
+
+        assert stored(again) == stored(first) and len(stored(first)) > 20
+        assert any(compression == "gzip" for _, _, _, compression, _, _ in stored(again).values()), "the control"
+        assert abs(again.stat().st_size / first.stat().st_size - 1.0) < 0.005

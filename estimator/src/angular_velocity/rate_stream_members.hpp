@@ -1,7 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <memory>
 #include <optional>
+#include <type_traits>
+
 #include "frozen_members.hpp"
 #include "rails_members.hpp"
 
@@ -189,7 +192,7 @@ void members(Self& s, Visitor& visit) {
 
 template <StateOf<RateModelParams> Self, class Visitor>
 void others(Self& p, Visitor& visit) {
-  visit("nominal", p.nominal);
+  visit.with_nan("nominal", p.nominal);  // NaN where a door has its own
   visit("calibration", p.calibration);
   visit("auxiliary_imus", p.auxiliary_imus);
   visit("errors", p.errors);
@@ -204,6 +207,8 @@ void others(Self& p, Visitor& visit) {
   std::optional<KnownSensorErrors> learnt;
   if (p.learnt_errors) learnt = *p.learnt_errors;
   visit("learnt_errors", learnt);
+  if constexpr (Visitor::kReads && !std::is_const_v<Self>)
+    p.learnt_errors = learnt ? std::make_shared<const KnownSensorErrors>(*learnt) : nullptr;
 }
 
 }  // namespace tumble

@@ -2,9 +2,11 @@
 #pragma once
 
 #include "../angular_velocity/rate_stream_members.hpp"
+#include "tumble/attitude/detail/carried_live.hpp"
 #include "tumble/attitude/regime_stream.hpp"
 
-/// Members of a RegimeStream's state, and of the CarriedStream's within: state_visitor.hpp.
+/// Members of the states of RegimeStream, CarriedStream and CarriedLive, and of what their Params hold beside Fields:
+/// state_visitor.hpp.
 namespace tumble {
 
 namespace carried {
@@ -136,6 +138,22 @@ void members(Self& s, Visitor& visit) {
 template <StateOf<RegimeStream::Params> Self, class Visitor>
 void others(Self& p, Visitor& visit) {
   others(p.rate, visit);
+}
+
+template <StateOf<CarriedLive::State> Self, class Visitor>
+void members(Self& s, Visitor& visit) {
+  visit("live.stream", s.stream);
+  visit("live.rails", s.rails);
+  visit("live.holds", s.holds);
+  visit("live.news", s.news);
+  visit.scratch(s.signs);
+}
+
+template <StateOf<CarriedLive::Params> Self, class Visitor>
+void others(Self& p, Visitor& visit) {
+  others(p.rails.clipping.walls, visit);
+  others(p.rails.clipping.planes, visit);
+  others(p.rails.clipping.accel_planes, visit);
 }
 
 }  // namespace tumble

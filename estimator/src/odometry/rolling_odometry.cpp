@@ -96,19 +96,6 @@ RollingOdometry::Pose as_pose(const RollingEstimate& estimate) {
   return out;
 }
 
-RollingEstimate live_estimate(const RollingFilter::State& live) {
-  RollingEstimate out;
-  out.time_ns = live.last_time_ns;
-  out.p_WG_m = live.p_WG_m;
-  out.q_WI = live.q_WI;
-  out.v_WG_m_s = live.v_WG_m_s;
-  out.covariance.topLeftCorner<3, 3>() = live.position_covariance_m2;
-  out.mode = live.mode;
-  out.at_rest = live.at_rest;
-  out.uncertain = live.uncertain;
-  return out;
-}
-
 }  // namespace
 
 RollingOdometry::RollingOdometry(const Params& params) : RollingOdometry(params, merge_params(params)) {}
@@ -194,7 +181,7 @@ Status RollingOdometry::doubt(const Frozen& frozen) const {
 
 std::optional<RollingOdometry::Pose> RollingOdometry::newest() const {
   if (!state_->live.started) return std::nullopt;
-  return as_pose(live_estimate(state_->live));
+  return as_pose(RollingFilter::estimate(state_->live));
 }
 
 std::optional<RollingOdometry::Pose> RollingOdometry::take() {
@@ -223,7 +210,7 @@ void RollingOdometry::reset() {
 Status RollingOdometry::take_in(const ImuSample& merged) {
   if (!live_) return smoother_.step(merged, *state_, done_);
   if (Status status = smoother_.filter().step(merged, state_->live); !status.ok()) return status;
-  done_.push_back(live_estimate(state_->live));
+  done_.push_back(RollingFilter::estimate(state_->live));
   return {};
 }
 

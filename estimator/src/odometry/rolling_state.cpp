@@ -64,4 +64,14 @@ Status RollingOdometry::load(std::span<const std::byte> bytes) {
   return {};
 }
 
+Status RollingOdometry::saved_params(std::span<const std::byte> bytes, Params& params) {
+  Params read;  // two things have no default
+  read.radius_m = 1.0;
+  read.units.emplace_back();
+  const RollingOdometry any(read);
+  const Status status = odometry::load_params(odometry::SavedKind::rolling, bytes, any, read);
+  if (status.ok()) params = read;
+  return status;
+}
+
 }  // namespace tumble

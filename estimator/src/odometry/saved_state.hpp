@@ -11,7 +11,7 @@
 #include "../common/state_layout.hpp"
 #include "../common/state_params.hpp"
 
-/// States of the door's classes as bytes that somebody keeps. Numbers are little-endian.
+/// States of the doors and of streams as bytes that somebody keeps. Numbers are little-endian.
 ///
 /// | bytes | |
 /// | --- | --- |
@@ -27,7 +27,16 @@
 /// something else than before without it the version.
 namespace tumble::odometry {
 
-enum class SavedKind : std::uint32_t { tumbling = 1, rolling = 2 };
+enum class SavedKind : std::uint32_t {
+  tumbling = 1,
+  rolling,
+  rate_stream,
+  regime_stream,
+  carried_stream,
+  carried_live,
+  rolling_filter,
+  rolling_smoother
+};
 inline constexpr std::uint32_t kSavedVersion = 1;
 inline constexpr std::size_t kSavedHeader = 40;
 
@@ -37,36 +46,50 @@ void seal(SavedKind kind, std::uint64_t layout, std::vector<std::byte>& bytes);
 Status open(SavedKind kind, std::uint64_t layout, std::span<const std::byte> bytes,
             std::span<const std::byte>& payload);
 
-template <class Door, class Params>
-std::uint64_t layout_of(const Door& door, const Params& params) {
+/// `whole`: a door, or the state of a stream.
+template <class Whole, class Params>
+std::uint64_t layout_of(const Whole& whole, const Params& params) {
   StateLayout layout;
   visit_params(params, layout);
-  Door::members(door, layout);
+  layout("state", whole);
   return layout.digest();
 }
 
-template <class Door, class Params>
-std::vector<std::byte> save(SavedKind kind, const Door& door, const Params& params) {
+template <class Whole, class Params>
+std::vector<std::byte> save(SavedKind kind, const Whole& whole, const Params& params) {
   std::vector<std::byte> bytes(kSavedHeader);
   StateWriter out(bytes);
   visit_params(params, out);
-  Door::members(door, out);
-  seal(kind, layout_of(door, params), bytes);
+  out("state", whole);
+  seal(kind, layout_of(whole, params), bytes);
   return bytes;
 }
 
-/// Into a door that was made anew of these parameters; on trouble it is of no use.
-template <class Door, class Params>
-Status load(SavedKind kind, std::span<const std::byte> bytes, const Params& params, Door& door) {
+/// Into one that was made anew of these parameters; on trouble it is of no use.
+template <class Whole, class Params>
+Status load(SavedKind kind, std::span<const std::byte> bytes, const Params& params, Whole& whole) {
   std::span<const std::byte> payload;
-  const Status opened = open(kind, layout_of(std::as_const(door), params), bytes, payload);
+  const Status opened = open(kind, layout_of(std::as_const(whole), params), bytes, payload);
   if (!opened.ok()) return opened;
   StateMatcher given(payload);
   visit_params(params, given);
   if (!given.status().ok()) return given.status();
   StateReader in(given.left());
-  Door::members(door, in);
+  in("state", whole);
   in.require("bytes after the state", in.left().empty(), double(in.left().size()), 0.0);
+  return in.status();
+}
+
+/// The parameters alone. `params`: any that are valid, of which `whole` was made; on trouble they are as they were.
+template <class Whole, class Params>
+Status load_params(SavedKind kind, std::span<const std::byte> bytes, const Whole& whole, Params& params) {
+  std::span<const std::byte> payload;
+  const Status opened = open(kind, layout_of(whole, std::as_const(params)), bytes, payload);
+  if (!opened.ok()) return opened;
+  StateReader in(payload);
+  Params read = params;
+  visit_params(read, in);
+  if (in.status().ok()) params = read;
   return in.status();
 }
 

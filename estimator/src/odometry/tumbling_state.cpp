@@ -60,4 +60,13 @@ Status TumblingOdometry::load(std::span<const std::byte> bytes) {
   return {};
 }
 
+Status TumblingOdometry::saved_params(std::span<const std::byte> bytes, Params& params) {
+  Params read;
+  read.lever_arm_I_m.setZero();  // has no default
+  const auto any = std::make_unique<TumblingOdometry>(read);
+  const Status status = odometry::load_params(odometry::SavedKind::tumbling, bytes, *any, read);
+  if (status.ok()) params = read;
+  return status;
+}
+
 }  // namespace tumble

@@ -220,4 +220,22 @@ void RollingFilter::report(State& state) const {
   state.contact_velocity_m_s = state.hypotheses[0].u_W_m_s;
 }
 
+RollingEstimate RollingFilter::estimate(const State& state) {
+  RollingEstimate out;
+  out.time_ns = state.last_time_ns;
+  out.p_WG_m = state.p_WG_m;
+  out.q_WI = state.q_WI;
+  out.v_WG_m_s = state.v_WG_m_s;
+  out.covariance.topLeftCorner<3, 3>() = state.position_covariance_m2;
+  out.mode = state.mode;
+  out.at_rest = state.at_rest;
+  out.uncertain = state.uncertain;
+  return out;
+}
+
+Status RollingFilter::check_state(const State& state) {
+  if (!state.started || state.count >= 1) return {};
+  return {Trouble::out_of_range, "live.count", double(state.count), 1.0};
+}
+
 }  // namespace tumble

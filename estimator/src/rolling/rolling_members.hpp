@@ -136,9 +136,14 @@ void members(Self& s, Visitor& visit) {
   visit("estimate.uncertain", s.uncertain);
 }
 
+template <StateOf<RollingParams> Self, class Visitor>
+void others(Self& p, Visitor& visit) {
+  visit("q_WI_start", p.q_WI_start);
+}
+
 template <StateOf<RollingSmoother::Params> Self, class Visitor>
 void others(Self& p, Visitor& visit) {
-  visit("q_WI_start", p.filter.q_WI_start);
+  others(p.filter, visit);
 }
 
 }  // namespace tumble

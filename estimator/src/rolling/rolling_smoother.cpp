@@ -171,8 +171,7 @@ std::size_t RollingSmoother::samples_set_aside() const {
 
 Status RollingSmoother::check_state(const State& state) const {
   const RollingParams& filter = params_.filter;
-  if (state.live.started && state.live.count < 1)
-    return {Trouble::out_of_range, "live.count", double(state.live.count), 1.0};
+  if (const Status status = RollingFilter::check_state(state.live); !status.ok()) return status;
   const std::size_t most = lag_nodes_ + block_nodes_;
   if (params_.lag_s < kWholeRun && state.steps.size() > most)
     return {Trouble::out_of_range, "rolling.steps", double(state.steps.size()), double(most)};

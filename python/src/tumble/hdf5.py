@@ -13,6 +13,8 @@ from .files import optional
 
 Array = npt.NDArray[Any]
 XYZ = "x y z"
+CHUNK_BYTES = 2**20  # of a deflated dataset, FORMAT.md
+PLAIN = {"position_L_m", "range_m", "intensity", "hit_W_m"}  # floats of a lidar, like noise: deflating takes long and saves little
 
 
 class Group:
@@ -82,8 +84,17 @@ def same_length(place: str, first: Array, **others: Array | None) -> None:
                               len(rows), len(first))
 
 
-def put(group: Any, name: str, rows: Any, dtype: str, unit: str, shape: tuple[int, ...], columns: str = "") -> None:
-    """Writes a dataset with its unit and the names of its columns.
+def _storage(name: str, rows: Array) -> dict[str, Any]:
+    """How the program stores such rows (scenarios/recordings/FORMAT.md)."""
+    if name in PLAIN or len(rows) == 0:
+        return {}
+    in_chunk = max(1, CHUNK_BYTES // (rows.itemsize * rows[0].size))
+    return {"chunks": (min(len(rows), in_chunk), *rows.shape[1:]), "shuffle": True, "compression": "gzip", "compression_opts": 1}
+
+
+def put(group: Any, name: str, rows: Any, dtype: str, unit: str, shape: tuple[int, ...], columns: str = "", many: bool = True) -> None:
+    """Writes a dataset with its unit and the names of its columns, stored as the program does. many=False: rows of a fixed number,
+    which are too few to be deflated.
 
     TumbleError `shape`; `type` of numbers that are to be whole and are not, `out_of_range` of those that the file's type does not hold.
     """
@@ -100,7 +111,8 @@ def put(group: Any, name: str, rows: Any, dtype: str, unit: str, shape: tuple[in
             if not held.min <= number <= held.max:
                 raise TumbleError(f"{group.name}/{name} is {number}, must be within [{held.min}, {held.max}]", "out_of_range",
                                   f"{group.name}/{name}", number, (held.min, held.max))
-    data = group.create_dataset(name, data=given.astype(dtype))
+    stored = given.astype(dtype)
+    data = group.create_dataset(name, data=stored, **_storage(name, stored) if many else {})
     data.attrs["unit"] = unit
     if columns:
         data.attrs["columns"] = columns

@@ -55,7 +55,7 @@ def point_errors(recording: Recording, poses: Any, every: int = 1) -> tuple[Arra
     if truth is None:
         raise TumbleError("truth is not there, must be in the recording", "empty", "truth", None, "a truth")
     lidar = recording.sweeps
-    counts = np.diff(lidar.sweep_first.astype(np.int64))
+    counts: Array = np.diff(lidar.sweep_first.astype(np.int64))
     time_ns = (np.repeat(lidar.sweep_start_ns, counts) + lidar.offset_ns)[::every]
     returns_L = lidar.position[::every].astype(float)
     returns_I = returns_L @ recording.T_IL[:3, :3].T + recording.T_IL[:3, 3]

@@ -88,7 +88,8 @@ def run(scenario: Path, seed: int = 1, methods: Iterable[Path] = (), folder: Pat
     """Draws, simulates, estimates and scores one situation; with `folder` leaves recording, estimates and pictures. Returns what
     the program tells as JSON."""
     words = ["--seed", int(seed), *_repeated("--method", methods), *_settings(settings), *(["-o", folder] if folder else [])]
-    return json.loads(call("run", scenario, *words, "--json"))
+    told: dict[str, Any] = json.loads(call("run", scenario, *words, "--json"))
+    return told
 
 
 def sweep(suite: Path, db: Path, seeds: tuple[int, int] | None = None, methods: Iterable[Path] = (), jobs: int | None = None,

@@ -249,7 +249,7 @@ def _write_imu(group: Any, imu: Imu) -> None:
     group.attrs["name"], group.attrs["device"], group.attrs["period_ns"] = imu.name, imu.device, np.int64(period)
     for name, own in _IMU_NUMBERS.items():
         group.attrs[name] = float(getattr(imu, own))
-    put(group, "T_BI", imu.T_BI, "<f8", "1, last column m", (4, 4))
+    put(group, "T_BI", imu.T_BI, "<f8", "1, last column m", (4, 4), many=False)
     put(group, "time_ns", imu.time_ns, "<i8", "ns", (count,))
     put(group, "gyro_I_rad_s", imu.gyro, "<f8", "rad/s", (count, 3), XYZ)
     put(group, "accel_I_m_s2", imu.accel, "<f8", "m/s^2", (count, 3), XYZ)
@@ -258,7 +258,7 @@ def _write_imu(group: Any, imu: Imu) -> None:
     if imu.magnetic_field_t is not None:
         put(group, "magnetic_field_I_t", imu.magnetic_field_t, "<f8", "T", (count, 3), XYZ)
     if imu.earth_field_t is not None:
-        put(group, "earth_field_W_t", np.reshape(imu.earth_field_t, (1, 3)), "<f8", "T", (1, 3), XYZ)
+        put(group, "earth_field_W_t", np.reshape(imu.earth_field_t, (1, 3)), "<f8", "T", (1, 3), XYZ, many=False)
 
 
 def _write_lidar(group: Any, lidar: Lidar) -> None:
@@ -267,7 +267,7 @@ def _write_lidar(group: Any, lidar: Lidar) -> None:
     if lidar.point_times != "measured":
         group.attrs["point_times"] = lidar.point_times
     group.attrs["sweep_period_ns"] = np.int64(lidar.sweep_period_ns)
-    put(group, "T_BL", lidar.T_BL, "<f8", "1, last column m", (4, 4))
+    put(group, "T_BL", lidar.T_BL, "<f8", "1, last column m", (4, 4), many=False)
     put(group, "sweep_start_ns", lidar.sweep_start_ns, "<i8", "ns", (sweeps,))
     put(group, "sweep_first", lidar.sweep_first, "<u8", "1", (sweeps + 1,))
     put(group, "position_L_m", lidar.position, "<f4", "m", (points, 3), XYZ)

@@ -91,6 +91,7 @@ def tumbling(recording: Recording, on_sample: Callable[[_tumble.TumblingOdometry
         if on_sample is None:
             odometry.add_imu(*(None if rows is None else rows[given:end] for rows in imu.samples))
             given = end
+            return
         while given < end:
             odometry.add_imu(*(None if rows is None else rows[given : given + 1] for rows in imu.samples))
             given += 1

@@ -171,7 +171,7 @@ def _write_rows(group: Any, listed: Sequence[_Rows], record: Any, sensor: int | 
         rows = np.asarray(rows)[None] if each.like == "one" else np.atleast_1d(rows)
         count = each.count(record, sensor)
         assert count is not None, "of a list with rows like the sensor's, whose number is given"
-        put(group, each.name, rows, each.dtype, each.unit, (count, *each.shape), each.columns)
+        put(group, each.name, rows, each.dtype, each.unit, (count, *each.shape), each.columns, many=each.like not in ("one", "three"))
 
 
 def read_truth(group: Group) -> Truth:
@@ -200,10 +200,10 @@ def write_truth(group: Any, truth: Truth, samples: Sequence[int], points: Sequen
     for k, imu in enumerate(truth.imus):
         own = imus.create_group(str(k))
         own.attrs["name"] = imu.name
-        put(own, "T_BI", imu.T_BI, "<f8", "1, last column m", (4, 4))
+        put(own, "T_BI", imu.T_BI, "<f8", "1, last column m", (4, 4), many=False)
         _write_rows(own, _IMU, imu, samples[k])
     for k, lidar in enumerate(truth.lidars):
         own = lidars.create_group(str(k))
         own.attrs["name"] = lidar.name
-        put(own, "T_BL", lidar.T_BL, "<f8", "1, last column m", (4, 4))
+        put(own, "T_BL", lidar.T_BL, "<f8", "1, last column m", (4, 4), many=False)
         _write_rows(own, _LIDAR, lidar, points[k])

@@ -34,8 +34,11 @@ Dialect kiss_icp_dialect() {
   out.sweeps = ouster_layout;
   out.configuration = configuration;
   out.run = "kiss_icp_pipeline --topic /lidar/points --config kiss_icp.yaml recording.bag";
-  out.notes = {"of the times it takes their share of the sweep; its poses belong to the sweep's last point",
-               "max_range stays 100 m, the authors': a hundredth of it is the voxel's size"};
+  out.notes = {
+      "pip install kiss-icp pyyaml rosbags: it reads its configuration by PyYAML and bags by rosbags, and asks for "
+      "neither",
+      "of the times it takes their share of the sweep; its poses belong to the sweep's last point",
+      "max_range stays 100 m, the authors': a hundredth of it is the voxel's size"};
   out.sources = {
       {"PRBonn/kiss-icp", "python/kiss_icp/tools/point_cloud2.py", "f396813d0806980a08b701f6fab73bb63a8d65ce"},
       {"PRBonn/kiss-icp", "python/kiss_icp/datasets/rosbag.py", "02c2fce874aa90ff59a3d2a8f5162557912fac88"},

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "tumble/mapping/flight_arc.hpp"
+#include "tumble/mapping/detail/flight_arc.hpp"
 
 #include <gtest/gtest.h>
 

@@ -108,6 +108,7 @@ class RollingOdometry {
   /// As TumblingOdometry::save and load: a state of up to a megabyte, less at rest, and what the lag holds.
   std::vector<std::byte> save() const;
   Status load(std::span<const std::byte> bytes);
+  static Status saved_params(std::span<const std::byte> bytes, Params& params);
 
   /// Stated once, in the library's own sources: state_visitor.hpp.
   template <class Self, class Visitor>

@@ -107,12 +107,12 @@ class TumblingOdometry {
   /// machine: one of the same parameters that loads them goes on with the same bits. A checksum is with them. Two
   /// states are equal when their bytes are. What a map costs: docs/tutorials/your_robot.md.
   std::vector<std::byte> save() const;
-
   /// Goes on from where save() was called, in place of what is here. On trouble this is as it was: `too_few` (bytes
   /// that end early), `non_finite`, `time_order`, `gap`, `out_of_range`, with the field, what the bytes say and the
-  /// bound. Parameters that are not those of the state are trouble too: the first that differs, the one saved and the
-  /// one here. Bytes of another version of the library, or damaged ones, are refused.
+  /// bound. So are parameters that are not those of the state, bytes of another version of the library, damaged ones.
   Status load(std::span<const std::byte> bytes);
+  /// The parameters that such bytes are of, to make one of; on trouble `params` are as they were.
+  static Status saved_params(std::span<const std::byte> bytes, Params& params);
 
   /// Stated once, in the library's own sources: state_visitor.hpp.
   template <class Self, class Visitor>

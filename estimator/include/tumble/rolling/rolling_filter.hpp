@@ -102,6 +102,12 @@ class RollingFilter {
                      Listener{&closed, [](void* to, const State& at) { (*static_cast<Closed*>(to))(at); }});
   }
 
+  /// What a state says at its last sample. Of the covariance the position's alone is known, the rest is zero.
+  static RollingEstimate estimate(const State& state);
+
+  /// What holds of every state that step() left, for one that comes from elsewhere; the first that does not.
+  static Status check_state(const State& state);
+
  private:
   struct Listener {
     void* to;

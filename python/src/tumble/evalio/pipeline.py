@@ -24,7 +24,7 @@ def _coordinate(parameter: Any, axis: str) -> str:
     return f"{parameter.name}_{axis}"
 
 
-class Tumble(needed_bindings().Feed):
+class Tumble(needed_bindings().Feed):  # type: ignore[misc]  # a class of the compiled half, which has no stubs
     """TumblingOdometry: a body that tumbles, with an IMU whose gyro may clip and a lidar whose sweeps are bent.
 
     Poses are of the IMU, at its samples inside of sweeps: each sweep's last word, 0.3 s after its end. `evalio run` ends when
@@ -60,12 +60,13 @@ class Tumble(needed_bindings().Feed):
         for parameter in _tumble.TumblingOdometry.parameters():
             if parameter.name in _STATED:
                 continue
-            if isinstance(parameter.default, tuple):
+            default = parameter.default
+            if isinstance(default, tuple):
                 # the lever arm has no default, and no data set states it: zero unless it is given
-                known = [0.0 if np.isnan(value) else value for value in parameter.default]
+                known = [0.0 if np.isnan(value) else value for value in default]
                 out |= {_coordinate(parameter, axis): value for axis, value in zip("xyz", known, strict=True)}
             else:
-                out[parameter.name] = parameter.default
+                out[parameter.name] = default
         return out
 
     def set_params(self, params: dict[str, bool | int | float | str]) -> dict[str, bool | int | float | str]:

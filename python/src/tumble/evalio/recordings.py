@@ -154,7 +154,7 @@ def _sequences() -> dict[str, str]:
     return {name: name for name in [*draws, *named]}
 
 
-Recordings = _Sequences("Recordings", _sequences(), module=__name__)
+Recordings = _Sequences("Recordings", _sequences(), module=__name__)  # type: ignore[call-arg]  # an enumeration that is made
 Recordings.__doc__ = """Draws of the rig's scenarios, `hill_1` and so on (`$TUMBLE_EVALIO_SEEDS`), and the HDF5 files of `$TUMBLE_EVALIO_FILES`,
 each by its name. `evalio dl tumble/hill_1` simulates a draw with the program, into evalio's folder of data. The truth is the body's, with
 its exact mounting. What the rig's lidar sees of the rig itself is left out."""

@@ -4,7 +4,7 @@
 #include <optional>
 
 #include "tumble/common/parameters.hpp"
-#include "tumble/mapping/flight_arc.hpp"
+#include "tumble/mapping/detail/flight_arc.hpp"
 
 /// Groups of LidarInertialOdometry::Params::Expert: what the mapper asks of the IMU.
 namespace tumble {

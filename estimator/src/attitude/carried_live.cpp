@@ -1,0 +1,70 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "tumble/attitude/detail/carried_live.hpp"
+
+#include "tumble/common/imu.hpp"
+
+namespace tumble {
+
+namespace {
+
+/// What the gyro's elements sense along, where their planes were seen.
+Eigen::Matrix3d rows_of(const RailPlanes& planes) {
+  Eigen::Matrix3d out = Eigen::Matrix3d::Identity();
+  for (int j = 0; j < 3; ++j) {
+    const std::optional<RailPlane>& plane = planes.element[static_cast<std::size_t>(j)];
+    if (plane) out.row(j) = plane->row.transpose();
+  }
+  return out;
+}
+
+}  // namespace
+
+CarriedLive::CarriedLive(const Params& params) : stream_(params.stream), watch_(params.rails) {}
+
+CarriedLive::State CarriedLive::start() const {
+  State state;
+  state.stream = stream_.start();
+  state.rails = watch_.start();
+  return state;
+}
+
+Status CarriedLive::push(const ImuSample& sample, State& state, std::optional<RateState>& out) const {
+  out.reset();
+  if (const Status status = check_sample(sample); !status.ok()) return status;
+  state.signs.clear();
+  judge_window(sample, state);
+  const ImuSample* const latest = state.stream.readings.empty() ? nullptr : &state.stream.readings.back().sample;
+  const Clipping judged = watch_.judge(latest, sample, state.rails);
+  state.signs.push_back(clip_signs(sample, judged));
+  HoldWatch::State holds = state.holds;
+  HoldWatch().observe(sample, (judged.gyro | judged.void_gyro) != 0, holds);
+  const ClippedElements known{rows_of(state.rails.known.planes), state.signs};
+  const Status status = stream_.push(sample, known, state.stream, out, true, holds);
+  if (!status.ok()) return status;
+  state.holds = holds;
+  state.news = watch_.observe(sample, state.rails);
+  watch_.walls().classify(sample, state.rails.known.walls);  // carries what is clipped just now
+  return status;
+}
+
+/// The newest sample of the window is judged by `next` too, and all of them where the rails are known better now.
+void CarriedLive::judge_window(const ImuSample& next, State& state) const {
+  const std::vector<CarriedStream::Reading>& window = state.stream.readings;
+  RailDetector::State& walls = state.rails.known.walls;
+  if (state.news) {
+    for (RailDetector::Channel& channel : walls.channels) channel.clipped = false;
+  }
+  for (std::size_t k = state.news || window.empty() ? 0 : window.size() - 1; k < window.size(); ++k) {
+    const ImuSample* const before = k > 0 ? &window[k - 1].sample : nullptr;
+    const ImuSample& after = k + 1 < window.size() ? window[k + 1].sample : next;
+    state.signs.push_back(clip_signs(window[k].sample, watch_.judge(before, window[k].sample, state.rails, &after)));
+    if (state.news) watch_.walls().classify(window[k].sample, walls);
+  }
+}
+
+Status CarriedLive::check_state(const State& state) const {
+  if (!watch_.has_room_for(state.rails)) return {Trouble::out_of_range, "rails.readings", 1.0, 0.0};
+  return stream_.check_state(state.stream);
+}
+
+}  // namespace tumble

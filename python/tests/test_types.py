@@ -1,0 +1,54 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""mypy --strict has nothing to say about the package: stubs of the compiled module, and all that is Python."""
+import pathlib
+import sys
+
+import pytest
+
+import tumble
+
+api = pytest.importorskip("mypy.api")
+FOLDER = pathlib.Path(tumble.__file__).parent
+SETTINGS = pathlib.Path(__file__).parents[1] / "pyproject.toml"
+
+
+@pytest.fixture
+def check(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    if FOLDER.parent.name not in ("site-packages", "dist-packages"):  # where mypy looks by itself
+        monkeypatch.setenv("MYPYPATH", str(FOLDER.parent))
+
+    def run(*what):
+        said, broken, status = api.run(["--strict", "--config-file", str(SETTINGS), "--python-executable", sys.executable,
+                                        "--cache-dir", str(tmp_path / "cache"), *what])
+        assert not broken, broken
+        return said, status
+    return run
+
+
+def test_the_package(check):
+    said, status = check("-p", "tumble")
+    assert status == 0, said
+    assert "no issues found in" in said
+
+
+def test_who_calls_it(check, tmp_path):
+    """A script of a user's, and one that a checker has to refuse."""
+    good, bad = tmp_path / "good.py", tmp_path / "bad.py"
+    good.write_text("""import tumble
+
+def speed(stream: tumble.RateStream, imu: tumble.Imu) -> float:
+    rates = stream.add_imu(*imu.samples)
+    state: bytes = stream.save()
+    stream.load(state)
+    return float(rates.rate[0, 0])
+""")
+    bad.write_text("""import tumble
+
+state: str = tumble.Vqf().add_imu(0, None, None)
+tumble.RateStream(lever_arm_m=(0, 0, 0)).laod(b"")
+""")
+    said, status = check(str(good))
+    assert status == 0, said
+    said, status = check(str(bad))
+    assert status == 1 and "Incompatible types" in said and "laod" in said, said
