@@ -230,8 +230,8 @@ TEST(Page, DrawsAScoreOverTheRangeOfWhatBreaksIt) {
 TEST(Page, SaysHowManyDrawsMoreTellWhatBreaksAMethod) {
   EXPECT_EQ(draws_needed_text({{"hill", 24}, {"roll", 500}}), "");
   EXPECT_EQ(draws_needed_text({{"hill", 5}, {"roll", 500}, {"slip", 23}}),
-            "It takes 12 draws of a scenario to say what breaks a method, and 24 to draw the score over a number. "
-            "hill has 5 and needs 7 more, 19 more to be drawn; slip has 23 and needs 1 more to be drawn. ");
+            "It takes 12 draws of a scenario to say what breaks a method, and 24 for a picture of the score over a "
+            "number. Still missing: of hill 7, and 19 for the picture; of slip 1 for the picture. ");
 }
 
 TEST(Page, MovesByItselfAndStandsStillForWhoeverAsks) {

@@ -80,13 +80,13 @@ std::string draws_needed_text(const std::map<std::string, std::int64_t>& draws) 
   for (const auto& [scenario, count] : draws) {
     if (count >= kDrawnFrom) continue;
     out += out.empty() ? fmt::format(
-                             "It takes {} draws of a scenario to say what breaks a method, and {} to draw the "
-                             "score over a number. ",
+                             "It takes {} draws of a scenario to say what breaks a method, and {} for a picture "
+                             "of the score over a number. Still missing: ",
                              kToldFrom, kDrawnFrom)
                        : "; ";
-    out += fmt::format("{} has {} and needs ", scenario, count);
-    if (count < kToldFrom) out += fmt::format("{} more, ", kToldFrom - count);
-    out += fmt::format("{} more to be drawn", kDrawnFrom - count);
+    out += "of " + scenario + " ";
+    if (count < kToldFrom) out += fmt::format("{}, and ", kToldFrom - count);
+    out += fmt::format("{} for the picture", kDrawnFrom - count);
   }
   return out.empty() ? out : out + ". ";
 }
