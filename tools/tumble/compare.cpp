@@ -106,7 +106,7 @@ Row cells_of(const MetricComparison& row, bool margin, bool apart) {
   out.add("more draws", more_draws_text(row.pairs_needed, row.pairs, row.finding == Finding::undecided));
   if (margin) {
     out.add("no worse p", chance_text(row.not_inferior_chance));
-    out.add("Holm p", chance_text(row.not_inferior_corrected));
+    out.add(apart ? "no worse Holm p" : "Holm p", chance_text(row.not_inferior_corrected));
     out.add("no worse", row.not_inferior ? "yes" : "not shown");
   }
   return out;
