@@ -114,11 +114,27 @@ struct Cell {
   float count = 0.0f;
 };
 
-/// Returns of a sweep in the lidar's axes at its start, voxelised, with their variances.
-std::vector<baselines::TrimmedIcp::Point> prepare(const bridge::Sweep& sweep, const ImuOdometry& odometry,
+TimeNs rounded_offset(const LidarPoint& point) {
+  return static_cast<TimeNs>(point.offset_ns) / kBucketNs * kBucketNs;
+}
+
+/// The time whose pose the registration asks for: the start of the sweep; of one whose points are all of one instant,
+/// as triage's are, that instant. Were they moved to a start that they are far from, an error of the velocity would
+/// come back as one of position and be fed back as one of velocity: v' = v_true + (v - v'') from sweep to sweep, whose
+/// root -1.6 runs away. Points over the whole sweep halve that term: roots 0.5 and -1.
+TimeNs registered_at(const bridge::Sweep& sweep) {
+  if (sweep.points.empty()) return sweep.start_ns;
+  const auto [first, last] = std::minmax_element(
+      sweep.points.begin(), sweep.points.end(), [](const auto& a, const auto& b) { return a.offset_ns < b.offset_ns; });
+  if (static_cast<TimeNs>(last->offset_ns) - static_cast<TimeNs>(first->offset_ns) >= kBucketNs) return sweep.start_ns;
+  return sweep.start_ns + rounded_offset(*first);
+}
+
+/// Returns of a sweep in the lidar's axes at `at_ns`, voxelised, with their variances.
+std::vector<baselines::TrimmedIcp::Point> prepare(const bridge::Sweep& sweep, TimeNs at_ns, const ImuOdometry& odometry,
                                                   const Eigen::Isometry3d& T_IL, const SeedParams& params) {
   const double rate = params.skew_sigma_m_s;
-  const Eigen::Isometry3d from_odom = (odometry.pose(sweep.start_ns) * T_IL).inverse(Eigen::Isometry);
+  const Eigen::Isometry3d from_odom = (odometry.pose(at_ns) * T_IL).inverse(Eigen::Isometry);
   std::unordered_map<std::uint64_t, std::size_t> index_of;
   std::vector<Cell> cells;
   TimeNs bucket = -1;
@@ -127,7 +143,7 @@ std::vector<baselines::TrimmedIcp::Point> prepare(const bridge::Sweep& sweep, co
   for (const LidarPoint& point : sweep.points) {
     if (!point.position_L_m.allFinite() || point.position_L_m.norm() > kRangeMaxM) continue;
     if (kOwnBody.contains(point.position_L_m) || point.position_L_m.norm() < 0.2f) continue;
-    const TimeNs rounded = static_cast<TimeNs>(point.offset_ns) / kBucketNs * kBucketNs;
+    const TimeNs rounded = rounded_offset(point);
     if (rounded != bucket) {
       bucket = rounded;
       move = (from_odom * odometry.pose(sweep.start_ns + rounded) * T_IL).cast<float>();
@@ -158,17 +174,18 @@ std::vector<baselines::TrimmedIcp::Point> prepare(const bridge::Sweep& sweep, co
   return points;
 }
 
-/// The mapper: registers at the sweep's start, keeps what lies between the map's frame and the odometry's.
+/// The mapper: registers at one time of the sweep, keeps what lies between the map's frame and the odometry's.
 class SeedMapper {
  public:
   SeedMapper(const SeedParams& params, const Eigen::Isometry3d& T_IL, const ImuOdometry& odometry)
       : ends_on_abort_(params.abort_ends_mapping), T_IL_(T_IL), odometry_(odometry), icp_(params.icp) {}
 
-  bool add(const bridge::Sweep& sweep, std::span<const baselines::TrimmedIcp::Point> points, SweepReport& report) {
+  bool add(const bridge::Sweep& sweep, TimeNs at_ns, std::span<const baselines::TrimmedIcp::Point> points,
+           SweepReport& report) {
     report.points_used = sweep.points.size();
     report.points_registered = points.size();
     if (dead_ || points.empty()) return false;
-    const Eigen::Isometry3d in_odom = odometry_.pose(sweep.start_ns) * T_IL_;
+    const Eigen::Isometry3d in_odom = odometry_.pose(at_ns) * T_IL_;
     Eigen::Isometry3d T = T_map_odom_ * in_odom;
     if (map_.size() == 0) {
       report.verdict = SweepVerdict::first;
@@ -250,20 +267,20 @@ void tell_poses(const bridge::Sweep& sweep, std::span<const ImuSample> samples, 
   if (report.trajectory.empty()) report.trajectory.push_back(report.pose);
 }
 
-/// Where the last registered sweep began.
+/// Where the last sweep was registered.
 struct Return {
   std::optional<TimeNs> time_ns;
   Eigen::Vector3d p_m = Eigen::Vector3d::Zero();
 };
 
 /// The mean velocity since the last registered sweep goes back to the odometry.
-void feed_back(TimeNs start_ns, const Eigen::Isometry3d& T_map_odom, bool late, Return& last, ImuOdometry& odometry) {
-  const Eigen::Vector3d here_m = (T_map_odom * odometry.pose(start_ns)).translation();
-  if (last.time_ns) {
-    const Eigen::Vector3d mean = (here_m - last.p_m) / seconds(start_ns - *last.time_ns);
-    odometry.feed_back(T_map_odom.linear().transpose() * mean, late ? start_ns : (start_ns + *last.time_ns) / 2);
+void feed_back(TimeNs at_ns, const Eigen::Isometry3d& T_map_odom, bool late, Return& last, ImuOdometry& odometry) {
+  const Eigen::Vector3d here_m = (T_map_odom * odometry.pose(at_ns)).translation();
+  if (last.time_ns && at_ns > *last.time_ns) {
+    const Eigen::Vector3d mean = (here_m - last.p_m) / seconds(at_ns - *last.time_ns);
+    odometry.feed_back(T_map_odom.linear().transpose() * mean, late ? at_ns : (at_ns + *last.time_ns) / 2);
   }
-  last = {start_ns, here_m};
+  last = {at_ns, here_m};
 }
 
 }  // namespace
@@ -291,12 +308,13 @@ void run_seed_chain(const sim::Sensors& sensors, std::span<const ImuSample> samp
       return Status{Trouble::out_of_range, "offset_ns", double(point.offset_ns), double(sweep.end_ns - sweep.start_ns)};
     }
     odometry.advance(sweep.end_ns);
-    std::vector<baselines::TrimmedIcp::Point> points = prepare(sweep, odometry, T_IL, params);
+    const TimeNs at_ns = registered_at(sweep);
+    std::vector<baselines::TrimmedIcp::Point> points = prepare(sweep, at_ns, odometry, T_IL, params);
     const Status trouble = sweep_trouble(sweep, points.size());
     if (!trouble.ok()) points.clear();
-    const bool registered = mapper.add(sweep, points, report);
+    const bool registered = mapper.add(sweep, at_ns, points, report);
     tell_poses(sweep, samples, odometry, mapper.T_map_odom(), report);
-    if (registered) feed_back(sweep.start_ns, mapper.T_map_odom(), params.late_velocity, last, odometry);
+    if (registered) feed_back(at_ns, mapper.T_map_odom(), params.late_velocity, last, odometry);
     return trouble;
   };
   if (run_over_sweeps(lidar, {covers, add}, estimate)) estimate.map = mapper.map();

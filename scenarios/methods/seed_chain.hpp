@@ -39,9 +39,9 @@ struct SeedParams {
 
 /// The published chain behind a rate method (Deschenes et al., ICRA 2024, with the constants of the authors' launch
 /// files): Madgwick's attitude, accelerometer odometry whose velocity the registration feeds back, deskewing to the
-/// start of the sweep, time weighting, trimmed point-to-plane registration of voxelised points, a map that grows where
-/// it is empty. `estimate.rates` are given; the constants that one may want to vary, and the chain's own errors, are
-/// parameters.
+/// start of the sweep (of one that was cast at an instant: to that), time weighting, trimmed point-to-plane
+/// registration of voxelised points, a map that grows where it is empty. `estimate.rates` are given; the constants that
+/// one may want to vary, and the chain's own errors, are parameters.
 void run_seed_chain(const sim::Sensors& sensors, std::span<const ImuSample> samples, const sim::Values& parameters,
                     Estimate& estimate);
 

@@ -3,8 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
-#include <unordered_set>
+#include <optional>
 
 namespace tumble::scenarios {
 
@@ -38,8 +37,9 @@ Nearness::Nearness(std::span<const Eigen::Vector3f> points_m, float distance_m) 
   points_m_.reserve(order.size());
   for (const auto& [cell, index] : order) {
     const auto place = static_cast<std::uint32_t>(points_m_.size());
-    auto& range = cells_.try_emplace(cell, place, place).first->second;
-    range.second = place + 1;
+    const auto next = static_cast<std::uint32_t>(ranges_.size());
+    if (cells_.insert(cell, next) == next) ranges_.emplace_back(place, place);
+    ranges_.back().second = place + 1;
     points_m_.push_back(points_m[index]);
   }
 }
@@ -51,9 +51,9 @@ bool Nearness::has_neighbour(const Eigen::Vector3f& point_m) const {
   for (std::int64_t x = -1; x <= 1; ++x) {
     for (std::int64_t y = -1; y <= 1; ++y) {
       for (std::int64_t z = -1; z <= 1; ++z) {
-        const auto found = cells_.find(key(centre.x() + x, centre.y() + y, centre.z() + z));
-        if (found == cells_.end()) continue;
-        for (std::uint32_t k = found->second.first; k < found->second.second; ++k) {
+        const std::uint32_t found = cells_.find(key(centre.x() + x, centre.y() + y, centre.z() + z));
+        if (found == SpatialHash::kAbsent) continue;
+        for (std::uint32_t k = ranges_[found].first; k < ranges_[found].second; ++k) {
           if ((points_m_[k] - point_m).squaredNorm() <= limit2) return true;
         }
       }
@@ -63,10 +63,15 @@ bool Nearness::has_neighbour(const Eigen::Vector3f& point_m) const {
 }
 
 std::vector<Eigen::Vector3f> one_per_cell(std::span<const Eigen::Vector3f> points_m, float cell_m) {
-  std::unordered_set<std::uint64_t> taken;
+  SpatialHash taken;
   std::vector<Eigen::Vector3f> kept;
+  std::optional<std::uint64_t> last;  // neighbours in a sweep often share a cell
   for (const Eigen::Vector3f& point : points_m) {
-    if (point.allFinite() && taken.insert(key_of(point, cell_m)).second) kept.push_back(point);
+    if (!point.allFinite()) continue;
+    const std::uint64_t cell = key_of(point, cell_m);
+    if (cell == last) continue;
+    last = cell;
+    if (taken.add(cell)) kept.push_back(point);
   }
   return kept;
 }

@@ -4,8 +4,10 @@
 #include <Eigen/Core>
 #include <cstdint>
 #include <span>
-#include <unordered_map>
+#include <utility>
 #include <vector>
+
+#include "tumble/mapping/detail/spatial_hash.hpp"
 
 namespace tumble::scenarios {
 
@@ -18,8 +20,9 @@ class Nearness {
 
  private:
   float distance_m_;
-  std::vector<Eigen::Vector3f> points_m_;                                             ///< sorted by cell
-  std::unordered_map<std::uint64_t, std::pair<std::uint32_t, std::uint32_t>> cells_;  ///< key -> range of points_m_
+  std::vector<Eigen::Vector3f> points_m_;                        ///< sorted by cell
+  std::vector<std::pair<std::uint32_t, std::uint32_t>> ranges_;  ///< of points_m_, a cell each
+  SpatialHash cells_;                                            ///< key -> place in ranges_
 };
 
 /// One point of each occupied cell of `cell_m`, the first given; order kept. Points that are not finite are left out.

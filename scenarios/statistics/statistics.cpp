@@ -61,27 +61,55 @@ std::optional<double> quantile_of_all(std::span<const double> values, double sha
   return finite ? quantile(values, share) : kNaN;
 }
 
-Interval median_interval(std::span<const double> values) {
-  std::vector<double> sorted = numbers_of(values);
-  std::sort(sorted.begin(), sorted.end());
-  const auto n = static_cast<double>(sorted.size());
-  Interval interval{kNaN, -kInfinity, kInfinity};
-  if (sorted.empty()) return interval;
-  const Place middle(0.5, sorted.size());
-  interval.value = middle.between(sorted[middle.below], sorted[middle.above]);
-  // largest rank r (from 1) with P(fewer than r of n lie below the median) <= 2.5 %
-  std::size_t rank = 0;
-  double cumulative = 0.0;
-  for (std::size_t k = 0; k < sorted.size(); ++k) {
+namespace {
+
+/// The largest rank r (from 1) with P(fewer than r of n lie below the median) <= kTail; 0: none.
+std::size_t tail_rank(std::size_t values) {
+  const auto n = static_cast<double>(values);
+  const auto exponent = [&](std::size_t k) {
     const auto count = static_cast<double>(k);
-    cumulative +=
-        std::exp(std::lgamma(n + 1) - std::lgamma(count + 1) - std::lgamma(n - count + 1) - n * std::log(2.0));
+    return std::lgamma(n + 1) - std::lgamma(count + 1) - std::lgamma(n - count + 1) - n * std::log(2.0);
+  };
+  // the terms rise up to n / 2; those that are 0 as doubles, most of them where n is large, need not be summed
+  constexpr double kNothing = -750.0;
+  std::size_t first = 0;
+  for (std::size_t above = values / 2; first < above;) {
+    const std::size_t middle = first + (above - first) / 2;
+    if (exponent(middle) < kNothing)
+      first = middle + 1;
+    else
+      above = middle;
+  }
+  std::size_t rank = first;
+  double cumulative = 0.0;
+  for (std::size_t k = first; k < values; ++k) {
+    cumulative += std::exp(exponent(k));
     if (cumulative > kTail) break;
     rank = k + 1;
   }
+  return rank;
+}
+
+}  // namespace
+
+Interval median_interval(std::span<const double> values) {
+  std::vector<double> numbers = numbers_of(values);
+  Interval interval{kNaN, -kInfinity, kInfinity};
+  if (numbers.empty()) return interval;
+  // four ranks are all that is asked, as above
+  const Place middle(0.5, numbers.size());
+  const auto begin = numbers.begin(), below = begin + static_cast<std::ptrdiff_t>(middle.below);
+  std::nth_element(begin, below, numbers.end());
+  const auto above = middle.above == middle.below ? below : std::min_element(below + 1, numbers.end());
+  interval.value = middle.between(*below, *above);
+  const std::size_t rank = tail_rank(numbers.size());
   if (rank == 0) return interval;
-  interval.low = sorted[rank - 1];
-  interval.high = sorted[sorted.size() - rank];
+  const auto low = begin + static_cast<std::ptrdiff_t>(rank - 1),
+             high = numbers.end() - static_cast<std::ptrdiff_t>(rank);
+  if (low < below) std::nth_element(begin, low, below);
+  if (high > below) std::nth_element(below + 1, high, numbers.end());
+  interval.low = *low;
+  interval.high = *high;
   return interval;
 }
 

@@ -69,7 +69,9 @@ class Collecting {
     const auto by_seed = [](const Run& a, const Run& b) { return a.seed < b.seed; };
     for (auto& [key, by_value] : found_) {
       for (auto& [value, runs] : by_value) {
-        for (auto& [method, own] : runs) std::stable_sort(own.begin(), own.end(), by_seed);
+        for (auto& [method, own] : runs) {
+          if (!std::is_sorted(own.begin(), own.end(), by_seed)) std::stable_sort(own.begin(), own.end(), by_seed);
+        }
       }
     }
     return std::move(found_);

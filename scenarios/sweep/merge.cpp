@@ -115,7 +115,7 @@ MergeCounts merge_results(const DatabaseOwner& owner, std::span<const fs::path> 
   Made made(out);
   MergeCounts counts;
   {
-    Results results(out, Results::Mode::create_or_append);
+    Results results(out, Results::Mode::join);
     results.in_one_transaction([&] {
       if (!made.is_new() && !mixed && !notes.empty() && !results.note("data").empty())
         require_same_origin(notes.front(), results.notes(), out);

@@ -66,7 +66,7 @@ Results::Results(const std::filesystem::path& path, Mode mode) {
   if (mode == Mode::read_only && !std::filesystem::exists(path)) throw BadInput(path.string() + ": no such file");
   try {
     impl_ = std::make_unique<Impl>(path, mode);
-    if (mode == Mode::create_or_append && impl_->is_empty()) impl_->create();
+    if (mode != Mode::read_only && impl_->is_empty()) impl_->create();
     impl_->check(mode);
   } catch (const SQLite::Exception& error) {
     if (error.getErrorCode() == kSqliteBusy) throw BadInput(path.string() + ": " + kBusy);

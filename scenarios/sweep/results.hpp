@@ -67,9 +67,11 @@ bool is_method_note(const std::string& key);
 /// Each store is one transaction, so that whatever has finished survives a kill.
 class Results {
  public:
-  enum class Mode { create_or_append, read_only };
+  /// `join` is `create_or_append` for who calls `absorb` and stores no outcome besides: that each score has its outcome
+  /// is seen to there, and the engine does not look it up for each.
+  enum class Mode { create_or_append, join, read_only };
   /// Throws BadInput: absent (read_only), not a results database, without a table, column or view of the schema,
-  /// written by another build (create_or_append; note "build"), no room. So do all members, with the path in the
+  /// written by another build (but read_only; note "build"), no room. So do all members, with the path in the
   /// message, also where a value that they read is no number (text, a blob).
   Results(const std::filesystem::path& path, Mode mode);
   ~Results();

@@ -55,7 +55,9 @@ struct Results::Impl {
                      (mode == Mode::read_only ? SQLite::OPEN_READONLY : SQLite::OPEN_READWRITE | SQLite::OPEN_CREATE),
                  kBusyTimeoutMs) {
     // a rollback journal: one file, readable from a read-only folder; a store is on the disk before it returns
-    if (mode == Mode::create_or_append) database.exec("PRAGMA foreign_keys = ON; PRAGMA synchronous = FULL;");
+    if (mode == Mode::read_only) return;
+    database.exec("PRAGMA synchronous = FULL");
+    database.exec(mode == Mode::join ? "PRAGMA foreign_keys = OFF" : "PRAGMA foreign_keys = ON");
   }
 
   // SQLite's trouble as one line with the path
@@ -94,7 +96,7 @@ struct Results::Impl {
     const std::string missing = missing_of_schema(database);
     if (!missing.empty()) throw BadInput(path.string() + ": not a usable results database: it has no " + missing);
     const std::string build = read_note("build");
-    if (mode == Mode::create_or_append && build != build_id()) {
+    if (mode != Mode::read_only && build != build_id()) {
       throw BadInput(path.string() + ": written by build '" + build + "', this is '" + build_id() +
                      "'; outcomes of two builds do not mix: name another file");
     }

@@ -10,6 +10,7 @@
 #include "scenarios/recordings/number_text.hpp"
 #include "scenarios/scoring/cost.hpp"
 #include "scenarios/sweep/results_database.hpp"
+#include "scenarios/sweep/rows_into.hpp"
 #include "scenarios/sweep/stored_value.hpp"
 
 namespace tumble::scenarios {
@@ -41,24 +42,22 @@ class Joining {
       std::int64_t id = 0;
       if (take(row, id)) copy_scores(row, id);
     }
+    scores_into_.flush();
   }
 
   void join_draws() {
     SQLite::Statement select(shard_, "SELECT scenario, seed, metric, value, varied, setting FROM draw_values");
-    SQLite::Statement insert(into_, "INSERT OR REPLACE INTO draw_values VALUES (?, ?, ?, ?, ?, ?)");
+    RowsInto<DrawValue> draws(into_);
     while (next(select)) {
-      insert.bindNoCopy(1, select.getColumn(0).getText());
-      insert.bind(2, select.getColumn(1).getInt64());
-      insert.bindNoCopy(3, select.getColumn(2).getText());
       const auto whose = [&] {
         return select.getColumn(0).getString() + ", seed " + std::to_string(read_seed(select.getColumn(1).getInt64())) +
                ", " + select.getColumn(2).getString();
       };
-      bind_number(stored_value(select.getColumn(3), path_, whose), insert, 4);
-      insert.bindNoCopy(5, select.getColumn(4).getText());
-      insert.bind(6, select.getColumn(5).getDouble());
-      run(insert);
+      draws.add({&text_(select.getColumn(0).getText()), select.getColumn(1).getInt64(),
+                 &text_(select.getColumn(2).getText()), stored_value(select.getColumn(3), path_, whose),
+                 &text_(select.getColumn(4).getText()), select.getColumn(5).getDouble()});
     }
+    draws.flush();
   }
 
   /// Only where no outcome of the draw stands.
@@ -95,14 +94,6 @@ class Joining {
             text(8),
             text(9),
             select.getColumn(10).getDouble()};
-  }
-
-  // SQLite has no NaN: a number that is none is null
-  static void bind_number(double value, SQLite::Statement& to, int index) {
-    if (std::isnan(value))
-      to.bind(index);
-    else
-      to.bind(index, value);
   }
 
   static std::string words(const ShardRow& row) {
@@ -183,6 +174,7 @@ class Joining {
 
   /// Takes the held row away where this one says more.
   bool replaces_held(const ShardRow& row, OutcomeStatus own) {
+    scores_into_.flush();
     held_.bindNoCopy(1, row.scenario);
     held_.bind(2, row.seed);
     held_.bindNoCopy(3, row.kind);
@@ -196,8 +188,10 @@ class Joining {
     held_.reset();
     const OutcomeStatus known = status(status_text.c_str());
     if (outranks(own, known)) {
-      remove_.bind(1, id);
-      run(remove_);
+      for (SQLite::Statement* remove : {&remove_scores_, &remove_}) {
+        remove->bind(1, id);
+        run(*remove);
+      }
       return true;
     }
     if (outranks(known, own) || mixed_ || !was_scored(known)) return false;
@@ -262,12 +256,7 @@ class Joining {
   }
 
   void copy_scores(const ShardRow& row, std::int64_t to) {
-    each_score(row, [&](const char* metric, double value) {
-      score_.bind(1, to);
-      score_.bindNoCopy(2, metric);
-      bind_number(value, score_, 3);
-      run(score_);
-    });
+    each_score(row, [&](const char* metric, double value) { scores_into_.add({to, &text_(metric), value}); });
   }
 
   SQLite::Database& into_;
@@ -288,9 +277,11 @@ class Joining {
                           "SELECT id, status, recording_digest, estimate_digest FROM outcomes WHERE scenario = ? AND "
                           "seed = ? AND kind = ? AND method = ? AND varied = ? AND setting = ?"};
   SQLite::Statement held_scores_{into_, "SELECT metric, value FROM score_values WHERE outcome = ?"};
+  SQLite::Statement remove_scores_{into_, "DELETE FROM score_values WHERE outcome = ?"};  // Mode::join leaves them
   SQLite::Statement remove_{into_, "DELETE FROM outcomes WHERE id = ?"};
   SQLite::Statement forget_{into_, std::string("DELETE FROM outcomes") + kDraw + "= ''"};
-  SQLite::Statement score_{into_, "INSERT OR REPLACE INTO score_values VALUES (?, ?, ?)"};
+  RowsInto<ScoreValue> scores_into_{into_};
+  Kept text_;
 };
 
 }  // namespace

@@ -2,8 +2,10 @@
 #include <SQLiteCpp/SQLiteCpp.h>
 
 #include <cstdint>
+#include <limits>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <utility>
 
 #include "scenarios/errors.hpp"
@@ -124,17 +126,19 @@ void Results::each(Rows rows, Names& names, const std::function<void(const Outco
                                    picked(rows) + " ORDER BY id");
     SQLite::Statement scores(impl_->database,
                              "SELECT outcome, metric, value FROM score_values ORDER BY outcome, metric");
-    bool more = scores.executeStep();
+    constexpr std::int64_t kNobody = std::numeric_limits<std::int64_t>::max();
+    const auto next_score = [&] { return scores.executeStep() ? scores.getColumn(0).getInt64() : kNobody; };
+    std::int64_t whose = next_score();
     std::vector<OutcomeView::Value> values;
     const auto text = [](SQLite::Statement& row, int column) {
       return std::string_view(row.getColumn(column).getText());
     };
     while (outcomes.executeStep()) {
       const std::int64_t id = outcomes.getColumn(0).getInt64();
-      while (more && scores.getColumn(0).getInt64() < id) more = scores.executeStep();
+      while (whose < id) whose = next_score();
       values.clear();
       auto name = names.begin();
-      for (; more && scores.getColumn(0).getInt64() == id; more = scores.executeStep()) {
+      for (; whose == id && id != kNobody; whose = next_score()) {
         const std::string_view metric = text(scores, 1);
         // of an outcome they rise, as the names do: mostly the next one, if not the one after
         for (int ahead = 0; ahead < 2 && name != names.end() && *name < metric; ++ahead) ++name;
@@ -196,16 +200,18 @@ std::vector<DrawValues> Results::draws(Rows rows) const {
         impl_->database, std::string("SELECT scenario, seed, metric, value, varied, setting FROM draw_values WHERE ") +
                              picked(rows) + order);
     while (select.executeStep()) {
-      const std::string scenario = select.getColumn(0).getString();
+      // of a draw all but the metric and its value stay, and texts are made once
+      const std::string_view scenario = select.getColumn(0).getText(), varied = select.getColumn(4).getText();
       const std::uint64_t seed = read_seed(select.getColumn(1).getInt64());
-      const Setting setting{select.getColumn(4).getString(), select.getColumn(5).getDouble()};
-      if (draws.empty() || draws.back().scenario != scenario || draws.back().seed != seed ||
-          draws.back().setting != setting) {
-        draws.push_back({scenario, seed, {}, setting});
+      const double setting = select.getColumn(5).getDouble();
+      if (draws.empty() || draws.back().seed != seed || draws.back().scenario != scenario ||
+          draws.back().setting.key != varied || draws.back().setting.value != setting) {
+        draws.push_back({std::string(scenario), seed, {}, {std::string(varied), setting}});
       }
-      const std::string metric = select.getColumn(2).getString();
-      draws.back().values.push_back({metric, stored_value(select.getColumn(3), impl_->path,
-                                                          [&] { return draw_text(scenario, seed) + ", " + metric; })});
+      draws.back().values.push_back({select.getColumn(2).getText(), 0.0});
+      Score& score = draws.back().values.back();
+      score.value = stored_value(select.getColumn(3), impl_->path,
+                                 [&] { return draw_text(draws.back().scenario, seed) + ", " + score.metric; });
     }
     return draws;
   });

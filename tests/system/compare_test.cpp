@@ -72,6 +72,14 @@ TEST(Compare, WritesTablesForDocuments) {
   const std::string database = database_of(test_folder()).string();
   EXPECT_THAT(run_program({"compare", database, "--format", "md"}).out, HasSubstr("| metric | method | draws |"));
   EXPECT_THAT(run_program({"compare", database, "--format", "csv"}).out, HasSubstr("\nmetric,method,draws,"));
+  // other programs read numbers: an interval's ends are cells of their own
+  const std::string csv = run_program({"compare", database, "--format", "csv"}).out;
+  EXPECT_THAT(csv, HasSubstr(",median difference,95 % (BCa) low,95 % (BCa) high,better,worse,sign p,"));
+  EXPECT_THAT(csv, HasSubstr(",share %,share % 95 % low,share % 95 % high,against %,"));
+  EXPECT_EQ(csv.find('['), std::string::npos);
+  // no two columns of one name
+  EXPECT_THAT(run_program({"compare", database, "--margin", "10%", "--format", "csv"}).out,
+              HasSubstr(",no worse p,no worse Holm p,no worse\n"));
   EXPECT_THAT(run_program({"report", database, "--format", "tex"}).out,
               HasSubstr("rate\\_error\\_clipped\\_median\\_rad\\_s & raw & 60 & "));
   const Ended wrong = run_program({"compare", database, "--format", "pdf"});

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "tools/report/page.hpp"
+#include "tools/report/sensitivity_html.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -224,6 +225,13 @@ TEST(Page, DrawsAScoreOverTheRangeOfWhatBreaksIt) {
   EXPECT_THAT(page, Not(HasSubstr("=\"inf"))) << "an infinite end lies on the frame";
   content.sensitivity[0].influences[0].dependence.resize(1);
   EXPECT_THAT(page_html(content, ""), Not(HasSubstr("<svg class=\"dependence\""))) << "one class has no shape";
+}
+
+TEST(Page, SaysHowManyDrawsMoreTellWhatBreaksAMethod) {
+  EXPECT_EQ(draws_needed_text({{"hill", 24}, {"roll", 500}}), "");
+  EXPECT_EQ(draws_needed_text({{"hill", 5}, {"roll", 500}, {"slip", 23}}),
+            "It takes 12 draws of a scenario to say what breaks a method, and 24 for a picture of the score over a "
+            "number. Still missing: of hill 7, and 19 for the picture; of slip 1 for the picture. ");
 }
 
 TEST(Page, MovesByItselfAndStandsStillForWhoeverAsks) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The palette stays apart for everybody: distances in CIELAB, as seen by normal, protan and deutan eyes.
+// The palette stays apart for everybody: distances in CIELAB, as seen by normal, protan, deutan and tritan eyes.
 #include <gtest/gtest.h>
 
 #include <Eigen/Core>
@@ -35,13 +35,14 @@ Vector3d lab(const Vector3d& rgb) {
   return {116.0 * f.y() - 16.0, 500.0 * (f.x() - f.y()), 200.0 * (f.y() - f.z())};
 }
 
-/// What eyes without red, or without green cones see of linear light (Machado, Oliveira, Fernandes, *A
+/// What eyes without red, without green, or without blue cones see of linear light (Machado, Oliveira, Fernandes, *A
 /// physiologically-based model for simulation of color vision deficiency*, IEEE TVCG 15:1291, 2009; severity 1).
-std::array<Matrix3d, 3> eyes() {
-  Matrix3d protan, deutan;
+std::array<Matrix3d, 4> eyes() {
+  Matrix3d protan, deutan, tritan;
   protan << 0.152286, 1.052583, -0.204868, 0.114503, 0.786281, 0.099216, -0.003882, -0.048116, 1.051998;
   deutan << 0.367322, 0.860646, -0.227968, 0.280085, 0.672501, 0.047413, -0.011820, 0.042940, 0.968881;
-  return {Matrix3d::Identity(), protan, deutan};
+  tritan << 1.255528, -0.076749, -0.178779, -0.078411, 0.930809, 0.147602, 0.004733, 0.691367, 0.303900;
+  return {Matrix3d::Identity(), protan, deutan, tritan};
 }
 
 /// Between the two that are nearest to each other, for the eyes that tell them apart worst.

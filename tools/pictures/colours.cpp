@@ -7,12 +7,12 @@ namespace tumble::tools {
 
 namespace {
 
-// Any two of these and the truth's lie at least 32 apart in CIELAB for normal, protan and deutan eyes, so that light
-// and dark tell apart what hue does not; none is so light or dark that it is lost on a light or a dark page. Found by
-// exchange, one colour at a time, over hues from amber to blue (palette_test.cpp holds the distances).
-constexpr std::array<const char*, kMethodColours> kColours = {"#ffbb22", "#7700ff", "#44ddff",
-                                                              "#bb0000", "#3355aa", "#cccc77"};
-constexpr const char* kTruthColour = "#009e73";
+// Any two of these and the truth's lie at least 30 apart in CIELAB for normal, protan, deutan and tritan eyes, so that
+// light and dark tell apart what hue does not; none is so light or dark that it is lost on a light or a dark page.
+// Found by exchange, one colour at a time, over hues from amber to blue (palette_test.cpp holds the distances).
+constexpr std::array<const char*, kMethodColours> kColours = {"#ffbb22", "#8800ff", "#44ddff",
+                                                              "#bb0000", "#224499", "#bbcc77"};
+constexpr const char* kTruthColour = "#449977";
 
 }  // namespace
 

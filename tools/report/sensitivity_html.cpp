@@ -69,7 +69,27 @@ std::string row_html(const Sensitivity& row) {
   return "<tr>" + cell(row.method) + cell(row.metric) + "<td colspan=\"6\">none is told from chance</td></tr>\n";
 }
 
+// two classes are the least that show a way
+constexpr auto kToldFrom = static_cast<std::int64_t>(scenarios::kSensitivityDrawsMin);
+constexpr auto kDrawnFrom = static_cast<std::int64_t>(2 * scenarios::kDependenceDrawsMin);
+
 }  // namespace
+
+std::string draws_needed_text(const std::map<std::string, std::int64_t>& draws) {
+  std::string out;
+  for (const auto& [scenario, count] : draws) {
+    if (count >= kDrawnFrom) continue;
+    out += out.empty() ? fmt::format(
+                             "It takes {} draws of a scenario to say what breaks a method, and {} for a picture "
+                             "of the score over a number. Still missing: ",
+                             kToldFrom, kDrawnFrom)
+                       : "; ";
+    out += "of " + scenario + " ";
+    if (count < kToldFrom) out += fmt::format("{}, and ", kToldFrom - count);
+    out += fmt::format("{} for the picture", kDrawnFrom - count);
+  }
+  return out.empty() ? out : out + ". ";
+}
 
 std::string sensitivity_html(const std::vector<Sensitivity>& rows, const std::string& note) {
   std::string out;

@@ -7,6 +7,9 @@
 #include <cmath>
 #include <memory>
 #include <nlohmann/json.hpp>
+#include <string>
+#include <utility>
+#include <vector>
 
 #include "scenarios/errors.hpp"
 #include "tools/tumble/arguments.hpp"
@@ -64,63 +67,90 @@ bool one_section(const Contest& a, const Contest& b) {
   return a.scenario == b.scenario && a.kind == b.kind && a.against == b.against;
 }
 
-std::vector<Table> metric_tables(const std::vector<MetricComparison>& rows, bool margin) {
-  std::vector<Table> tables;
-  std::vector<std::string> header = {
-      "metric",         "method", "draws",         "median", "against", "median difference", "95 % (BCa)",
-      "better : worse", "sign p", "signed rank p", "Holm p", "finding", "more draws"};
-  if (margin) header.insert(header.end(), {"no worse p", "Holm p", "no worse"});
-  const Contest* open = nullptr;
-  for (const MetricComparison& row : rows) {
-    if (open == nullptr || !one_section(*open, row.contest)) {
-      tables.emplace_back(title_of(row.contest, "paired with " + row.contest.against), header);
-      tables.back().align_right_from(2);
-      open = &row.contest;
-    }
-    std::vector<std::string> cells = {row.metric,
-                                      row.contest.method,
-                                      std::to_string(row.pairs),
-                                      number_text(row.median),
-                                      number_text(row.against_median),
-                                      number_text(row.difference.value),
-                                      interval_text(row.difference),
-                                      fmt::format("{} : {}", row.better, row.worse),
-                                      chance_text(row.sign_chance),
-                                      chance_text(row.rank_chance),
-                                      chance_text(row.corrected),
-                                      to_string(row.finding),
-                                      more_draws_text(row.pairs_needed, row.pairs, row.finding == Finding::undecided)};
-    if (margin) {
-      cells.push_back(chance_text(row.not_inferior_chance));
-      cells.push_back(chance_text(row.not_inferior_corrected));
-      cells.emplace_back(row.not_inferior ? "yes" : "not shown");
-    }
-    tables.back().add_row(std::move(cells));
+/// A row's cells, each under its head.
+struct Row {
+  std::vector<std::string> heads = {}, cells = {};
+
+  void add(const std::string& head, std::string cell) {
+    heads.push_back(head);
+    cells.push_back(std::move(cell));
   }
-  return tables;
+  /// As tables that programs read (CSV) have an interval: two cells of numbers, empty where it has no end.
+  void add_ends(const std::string& head, const scenarios::Interval& interval, double unit = 1.0) {
+    const auto end = [&](double value) { return std::isfinite(value) ? fmt::format("{:.6g}", unit * value) : ""; };
+    add(head + " low", end(interval.low));
+    add(head + " high", end(interval.high));
+  }
+};
+
+Row cells_of(const MetricComparison& row, bool margin, bool apart) {
+  Row out;
+  out.add("metric", row.metric);
+  out.add("method", row.contest.method);
+  out.add("draws", std::to_string(row.pairs));
+  out.add("median", number_text(row.median));
+  out.add("against", number_text(row.against_median));
+  out.add("median difference", number_text(row.difference.value));
+  if (apart) {
+    out.add_ends("95 % (BCa)", row.difference);
+    out.add("better", std::to_string(row.better));
+    out.add("worse", std::to_string(row.worse));
+  } else {
+    out.add("95 % (BCa)", interval_text(row.difference));
+    out.add("better : worse", fmt::format("{} : {}", row.better, row.worse));
+  }
+  out.add("sign p", chance_text(row.sign_chance));
+  out.add("signed rank p", chance_text(row.rank_chance));
+  out.add("Holm p", chance_text(row.corrected));
+  out.add("finding", to_string(row.finding));
+  out.add("more draws", more_draws_text(row.pairs_needed, row.pairs, row.finding == Finding::undecided));
+  if (margin) {
+    out.add("no worse p", chance_text(row.not_inferior_chance));
+    out.add(apart ? "no worse Holm p" : "Holm p", chance_text(row.not_inferior_corrected));
+    out.add("no worse", row.not_inferior ? "yes" : "not shown");
+  }
+  return out;
 }
 
 std::string share_text(const scenarios::Interval& share) {
   return fmt::format("{:.1f} % [{:.1f}, {:.1f}]", 100.0 * share.value, 100.0 * share.low, 100.0 * share.high);
 }
 
-std::vector<Table> failure_tables(const std::vector<FailureComparison>& rows) {
+Row cells_of(const FailureComparison& row, bool apart) {
+  Row out;
+  out.add("failure", row.what);
+  out.add("method", row.contest.method);
+  out.add("draws", std::to_string(row.pairs));
+  for (const auto& [head, share] : {std::pair{"share", row.share}, std::pair{"against", row.against_share}}) {
+    if (apart) {
+      out.add(head + std::string(" %"), fmt::format("{:.6g}", 100.0 * share.value));
+      out.add_ends(head + std::string(" % 95 %"), share, 100.0);
+    } else {
+      out.add(head + std::string(" [95 %]"), share_text(share));
+    }
+  }
+  out.add("it alone", std::to_string(row.only_method));
+  out.add("the other alone", std::to_string(row.only_against));
+  out.add("McNemar p", chance_text(row.chance));
+  out.add("Holm p", chance_text(row.corrected));
+  out.add("finding", to_string(row.finding));
+  out.add("more draws", more_draws_text(row.pairs_needed, row.pairs, row.finding == Finding::undecided));
+  return out;
+}
+
+/// A table for each contest; `cells(row)` of each row.
+template <typename Comparisons, typename Cells>
+std::vector<Table> tables_of(const Comparisons& rows, const std::string& what, const Cells& cells) {
   std::vector<Table> tables;
   const Contest* open = nullptr;
-  for (const FailureComparison& row : rows) {
+  for (const auto& row : rows) {
+    Row own = cells(row);
     if (open == nullptr || !one_section(*open, row.contest)) {
-      tables.emplace_back(
-          title_of(row.contest, "failures, paired with " + row.contest.against),
-          std::vector<std::string>{"failure", "method", "draws", "share [95 %]", "against [95 %]", "it alone",
-                                   "the other alone", "McNemar p", "Holm p", "finding", "more draws"});
+      tables.emplace_back(title_of(row.contest, what + row.contest.against), std::move(own.heads));
       tables.back().align_right_from(2);
       open = &row.contest;
     }
-    tables.back().add_row({row.what, row.contest.method, std::to_string(row.pairs), share_text(row.share),
-                           share_text(row.against_share), std::to_string(row.only_method),
-                           std::to_string(row.only_against), chance_text(row.chance), chance_text(row.corrected),
-                           to_string(row.finding),
-                           more_draws_text(row.pairs_needed, row.pairs, row.finding == Finding::undecided)});
+    tables.back().add_row(std::move(own.cells));
   }
   return tables;
 }
@@ -186,8 +216,13 @@ int compare(const Session& session, const Options& options) {
   const Comparison comparison = scenarios::compare(scenarios::summarize(results), asked);
   if (comparison.failures.empty())
     throw BadInput(options.database.string() + ": holds no draw on which two of the methods asked for have run");
-  std::vector<Table> tables = metric_tables(comparison.metrics, asked.margin.has_value());
-  for (Table& table : failure_tables(comparison.failures)) tables.push_back(std::move(table));
+  const bool apart = session.format == TableFormat::csv;
+  std::vector<Table> tables = tables_of(comparison.metrics, "paired with ", [&](const MetricComparison& row) {
+    return cells_of(row, asked.margin.has_value(), apart);
+  });
+  for (Table& table : tables_of(comparison.failures, "failures, paired with ",
+                                [&](const FailureComparison& row) { return cells_of(row, apart); }))
+    tables.push_back(std::move(table));
   session.print(tables, to_json(comparison, asked.margin.has_value()));
   session.note(fmt::format(
       "risk {:g} of any false finding among the {} of the metrics, and again among the {} of failures (Holm); "

@@ -19,6 +19,7 @@
 #include "tools/report/badge.hpp"
 #include "tools/report/curves.hpp"
 #include "tools/report/distributions.hpp"
+#include "tools/report/sensitivity_html.hpp"
 #include "tools/tumble/arguments.hpp"
 #include "tools/tumble/numbers_of_draws.hpp"
 #include "tools/tumble/verbs.hpp"
@@ -158,10 +159,10 @@ void add_sensitivity(const Session& session, const std::string& data_found, Repo
       options.metrics.push_back(metrics.front());
   }
   input.sensitivity = scenarios::sensitivities(some, numbers, options);
-  if (input.sensitivity.empty())
-    input.sensitivity_note =
-        fmt::format("It takes {} draws of a scenario, and a number in which they differ, to say what breaks a method.",
-                    scenarios::kSensitivityDrawsMin);
+  const std::string needed = draws_needed_text(input.summary->draws);
+  input.sensitivity_note += needed;
+  if (input.sensitivity.empty() && needed.empty())
+    input.sensitivity_note += "No number is known in which the draws of a scenario differ. ";
   for (const auto& [scenario, draws] : input.summary->draws) {
     if (draws <= static_cast<std::int64_t>(kSensitivityDraws)) continue;
     input.sensitivity_note +=

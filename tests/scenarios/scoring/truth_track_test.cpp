@@ -3,9 +3,12 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cmath>
 #include <limits>
 #include <numbers>
+#include <set>
+#include <vector>
 
 #include "scenarios/errors.hpp"
 #include "scenarios/methods/synthetic_recording.hpp"
@@ -179,6 +182,27 @@ TEST(Nearness, OnePerCellKeepsTheFirst) {
   EXPECT_EQ(kept[0], points[0]);
   EXPECT_EQ(kept[1], points[2]);
   EXPECT_EQ(kept[2], points[3]);
+}
+
+TEST(Nearness, OnePerCellOfManyPointsIsThatOfASetOfCells) {
+  std::vector<Eigen::Vector3f> points;
+  for (int k = 0; k < 20000; ++k) {
+    const auto f = [k](float step) { return std::fmod(static_cast<float>(k) * step, 3.0f) - 1.5f; };
+    points.emplace_back(f(0.7548777f), f(0.5698403f), f(1.3247179f));
+    if (k % 3 == 0) points.push_back(points.back() + Eigen::Vector3f::Constant(0.001f));
+    if (k % 1000 == 0) points.emplace_back(0.0f, std::nanf(""), 0.0f);
+  }
+  std::set<std::array<int, 3>> taken;
+  std::vector<Eigen::Vector3f> expected;
+  for (const Eigen::Vector3f& point : points) {
+    if (!point.allFinite()) continue;
+    const auto cell = [&](int axis) {
+      return static_cast<int>(std::floor(static_cast<double>(point[axis]) / static_cast<double>(0.1f)));
+    };
+    if (taken.insert({cell(0), cell(1), cell(2)}).second) expected.push_back(point);
+  }
+  EXPECT_GT(expected.size(), 1000u);
+  EXPECT_EQ(one_per_cell(points, 0.1f), expected);
 }
 
 }  // namespace

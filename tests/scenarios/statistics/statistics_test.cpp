@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <numeric>
@@ -46,6 +47,33 @@ TEST(MedianInterval, RanksAreThoseOfTheTables) {
     EXPECT_EQ(interval.value, 0.5 * (row.n + 1)) << row.n;
     EXPECT_EQ(interval.low, row.low) << row.n;
     EXPECT_EQ(interval.high, row.high) << row.n;
+  }
+}
+
+// by sorting and by summing all terms, for as few and as many values as there are, with ties and infinities
+TEST(MedianInterval, IsThatOfTheSortedValuesToTheLastBit) {
+  for (const std::size_t count : {1, 2, 5, 6, 7, 8, 60, 61, 1000, 1001, 1500, 1501, 4000, 30001}) {
+    std::vector<double> values;
+    for (std::size_t i = 0; i < count; ++i) {
+      values.push_back(std::fmod(7919.0 * static_cast<double>(i), 0.7 * static_cast<double>(count) + 1.0));
+      if (i % 41 == 40) values.back() = std::numeric_limits<double>::infinity();
+    }
+    std::vector<double> sorted = values;
+    std::sort(sorted.begin(), sorted.end());
+    const auto n = static_cast<double>(count);
+    std::size_t rank = 0;
+    double cumulative = 0.0;
+    for (std::size_t k = 0; k < count; ++k) {
+      const auto below = static_cast<double>(k);
+      cumulative +=
+          std::exp(std::lgamma(n + 1) - std::lgamma(below + 1) - std::lgamma(n - below + 1) - n * std::log(2.0));
+      if (cumulative > 0.025) break;
+      rank = k + 1;
+    }
+    const Interval interval = median_interval(values);
+    EXPECT_EQ(interval.value, quantile(values, 0.5)) << count;
+    EXPECT_EQ(interval.low, rank == 0 ? -std::numeric_limits<double>::infinity() : sorted[rank - 1]) << count;
+    EXPECT_EQ(interval.high, rank == 0 ? std::numeric_limits<double>::infinity() : sorted[count - rank]) << count;
   }
 }
 
