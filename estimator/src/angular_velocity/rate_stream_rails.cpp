@@ -90,7 +90,7 @@ void RateStream::judge(bool all, State& state) const {
     const ImuSample* const sample_before = k > 0 ? &state.window[k - 1].observation.sample : nullptr;
     const ImuSample* const sample_after =
         k + 1 < state.window.size() ? &state.window[k + 1].observation.sample : nullptr;
-    const auto read = static_cast<std::uint8_t>(now.unseen() | now.may_hide());
+    const std::uint8_t read = now.unseen();
     Clipping by_walls = knot.by_walls;
     if (sample_after != nullptr) {
       rails_.walls().add_edge(now.sample, *sample_after, state.window[k + 1].by_walls, rails.walls, by_walls);
