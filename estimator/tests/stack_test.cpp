@@ -112,13 +112,14 @@ TEST_F(Stack, OfARollingSphereLiveAndSmoothed) {
   }
 }
 
-/// With `trouble` a stretch of the IMU is missing, and sweeps of another scale follow, in which it finds no place.
-void tumble_over(const test::ThrownBody& body, bool trouble, TumblingOdometry& odometry) {
+/// With `trouble` a stretch of the IMU is missing, and sweeps of another scale follow, in which it finds no place:
+/// sweeps that were rejected.
+std::size_t tumble_over(const test::ThrownBody& body, bool trouble, TumblingOdometry& odometry) {
   std::vector<test::ThrownBody::Sweep> sweeps = body.sweeps();
-  std::size_t next = 0;
+  std::size_t next = 0, rejected = 0;
   for (const ImuSample& sample : body.imu()) {
     if (trouble && sample.time_ns > 1'300'000'000 && sample.time_ns < 1'700'000'000) continue;
-    ASSERT_TRUE(odometry.add_imu(sample).ok());
+    EXPECT_TRUE(odometry.add_imu(sample).ok());
     for (; next < sweeps.size() && sweeps[next].end_ns <= sample.time_ns; ++next) {
       if (trouble && next % 8 > 4) {
         for (LidarPoint& point : sweeps[next].points) point.position_L_m *= 1.7f;
@@ -126,8 +127,10 @@ void tumble_over(const test::ThrownBody& body, bool trouble, TumblingOdometry& o
       (void)odometry.add_sweep(sweeps[next].start_ns, sweeps[next].end_ns, sweeps[next].points);
       PoseState pose;
       (void)odometry.newest(pose);
+      while (const auto done = odometry.take()) rejected += done->report.verdict == SweepVerdict::rejected;
     }
   }
+  return rejected;
 }
 
 TEST_F(Stack, OfATumblingBodyInTroubleAndWithASecondPass) {
@@ -145,14 +148,13 @@ TEST_F(Stack, OfATumblingBodyInTroubleAndWithASecondPass) {
     std::unique_ptr<TumblingOdometry> odometry;
     std::vector<std::byte> bytes;
     within("made", [&] { odometry = std::make_unique<TumblingOdometry>(params); });
-    within("samples and sweeps", [&] { tumble_over(body, trouble, *odometry); });
+    std::size_t rejected = 0;
+    within("samples and sweeps", [&] { rejected = tumble_over(body, trouble, *odometry); });
     EXPECT_TRUE(trouble || odometry->passed_again());
     within("saved", [&] { bytes = odometry->save(); });
     within("loaded", [&] { ASSERT_TRUE(odometry->load(bytes).ok()); });
     within("finished", [&] { odometry->finish(); });
-    bool nowhere = false;
-    while (const auto done = odometry->take()) nowhere |= done->report.verdict == SweepVerdict::rejected;
-    EXPECT_EQ(nowhere, trouble);
+    EXPECT_EQ(rejected > 0, trouble);
   }
 }
 
