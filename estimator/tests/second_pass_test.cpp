@@ -4,7 +4,6 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <cstdio>
 #include <vector>
 
 #include "thrown_body.hpp"
@@ -91,9 +90,8 @@ TEST(SecondPass, IsTakenOverAndEndsNoWorse) {
   }
   std::sort(twice_m.begin(), twice_m.end());
   std::sort(once_m.begin(), once_m.end());
-  std::printf("taken over %d of 8; median end %.4f m, %.4f with one pass\n", taken, twice_m[4], once_m[4]);
   EXPECT_GE(taken, 5);  // one that rejects more sweeps than the first is not: two of the eight
-  EXPECT_LT(twice_m[4], 1.3 * once_m[4]);
+  EXPECT_LT(twice_m[4], 1.3 * once_m[4]);  // 3.6 and 4.2 cm
 }
 
 TEST(SecondPass, CatchesUpWhereTheClocksDifferByMoreThanWasKnown) {
