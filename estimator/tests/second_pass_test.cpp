@@ -90,7 +90,7 @@ TEST(SecondPass, IsTakenOverAndEndsNoWorse) {
   }
   std::sort(twice_m.begin(), twice_m.end());
   std::sort(once_m.begin(), once_m.end());
-  EXPECT_GE(taken, 5);  // one that rejects more sweeps than the first is not: two of the eight
+  EXPECT_GE(taken, 5);                     // one that rejects more sweeps than the first is not: two of the eight
   EXPECT_LT(twice_m[4], 1.3 * once_m[4]);  // 3.6 and 4.2 cm
 }
 
