@@ -370,8 +370,8 @@ def test_results_without_pandas(tmp_path, monkeypatch):
 def test_files_are_stored_as_the_programs_own(recordings, tmp_path):
     """Dataset by dataset: chunks, filters, type; so that a file that was read and written is no larger."""
     h5py = pytest.importorskip("h5py")
-    for name, first in recordings.items():
-        again = tmp_path / f"{name}.h5"
+    for name in ("hill", "slip", "twirl"):  # the program's: other tests add files of Python's
+        first, again = recordings[name], tmp_path / f"{name}.h5"
         tumble.write(again, tumble.read(first))
 
         def stored(path):
