@@ -8,7 +8,7 @@
 
 namespace tumble::mapping {
 
-/// mapping.md (R31), (R32), (R33).
+/// mapping.md (R31), (R32), (R33), (R101).
 Eigen::Matrix<double, 9, 9> inertial_noise(const LidarInertialOdometry::Params& params,
                                            const SweepTrajectory& trajectory, std::span<const MotionSample> samples,
                                            unsigned excess_axes) {
@@ -20,7 +20,8 @@ Eigen::Matrix<double, 9, 9> inertial_noise(const LidarInertialOdometry::Params& 
   const TimeNs start_ns = trajectory.start_ns();
   std::size_t hint = 0;
   Eigen::Matrix3d turned = Eigen::Matrix3d::Zero();
-  double turned_rad = 0.0, pushed_m_s = 0.0, gap_m_s = 0.0, gap_m = 0.0;
+  double turned_rad = 0.0, pushed_m_s = 0.0, gap_m2_s2 = 0.0, gap_m2 = 0.0, gap_m2_s = 0.0;
+  const double gap_m2_s3 = std::pow(params.expert.prior.gap_velocity_walk_m_s_sqrt_s, 2);
   for (const MotionSample& sample : samples) {
     const double from = std::max(seconds(sample.from_ns - start_ns), 0.0);
     const double to = std::min(seconds(sample.time_ns - start_ns), trajectory.duration_s());
@@ -30,19 +31,17 @@ Eigen::Matrix<double, 9, 9> inertial_noise(const LidarInertialOdometry::Params& 
     for (int axis = 0; axis < 3; ++axis) {
       if (excess_axes >> axis & sample.clipped_axes >> axis & 1) variance[axis] = 0.0;
     }
-    if (sample.bridges_gap) {
-      gap_m += gap_m_s * (to - from) + 0.5 * params.expert.prior.gap_force_m_s2 * (to - from) * (to - from);
-      gap_m_s += params.expert.prior.gap_force_m_s2 * (to - from);
-    } else {
-      pushed_m_s += (to - from) * sample.f_I_m_s2.norm();
-    }
-    turned_rad += (to - from) * sample.w_WI_I_rad_s.norm();
-    turned += (to - from) * R * variance.asDiagonal() * R.transpose();
+    const double dt = to - from, walk_m2_s3 = sample.bridges_gap ? gap_m2_s3 : 0.0;
+    gap_m2 += dt * (2.0 * gap_m2_s + dt * (gap_m2_s2 + walk_m2_s3 * dt / 3.0));
+    gap_m2_s += dt * (gap_m2_s2 + 0.5 * walk_m2_s3 * dt);
+    gap_m2_s2 += walk_m2_s3 * dt;
+    if (!sample.bridges_gap) pushed_m_s += dt * sample.f_I_m_s2.norm();
+    turned_rad += dt * sample.w_WI_I_rad_s.norm();
+    turned += dt * R * variance.asDiagonal() * R.transpose();
   }
   noise.diagonal().segment<3>(6).setConstant(std::pow(params.expert.prior.sigma_m_s * span, 2) +
-                                             std::pow(params.expert.prior.force_share * pushed_m_s, 2) +
-                                             gap_m_s * gap_m_s);
-  noise.diagonal().segment<3>(0).array() += gap_m * gap_m;
+                                             std::pow(params.expert.prior.force_share * pushed_m_s, 2) + gap_m2_s2);
+  noise.diagonal().segment<3>(0).array() += gap_m2;
   // held still: velocity is zero, and what it would have moved by does not count
   const auto rests = [&](const MotionSample& sample) {
     return sample.at_rest || seconds(sample.from_ns - start_ns) >= trajectory.duration_s();
@@ -94,14 +93,12 @@ Status start_at_rest(const LidarInertialOdometry::Params& params, std::span<cons
   return {};
 }
 
-Eigen::Vector3d believed_rate_sigma(const LidarInertialOdometry::Params& params, const RateState& rate,
-                                    TimeNs window_ns) {
+Eigen::Vector3d believed_rate_sigma(const LidarInertialOdometry::Params& params, const RateState& rate) {
   Eigen::Vector3d sigma = rate.covariance_rad2_s2.diagonal().cwiseMax(0.0).cwiseSqrt();
   const bool recovered = rate.source == RateSource::recovered_flight || rate.source == RateSource::recovered_contact;
   for (int axis = 0; axis < 3; ++axis) {
     if (rate.clipped_axes >> axis & 1 && !recovered)
       sigma[axis] = std::max(sigma[axis], params.expert.rails.rate_sigma_rad_s);
-    if (window_ns > kGap_ns) sigma[axis] = params.expert.prior.rate_sigma_max_rad_s;
   }
   return sigma.cwiseMin(params.expert.prior.rate_sigma_max_rad_s);
 }

@@ -9,9 +9,6 @@
 
 namespace tumble::mapping {
 
-/// Longer windows say nothing about what the motion was inside of them.
-inline constexpr TimeNs kGap_ns = 50'000'000;
-
 /// What the inertial side may be wrong by over one stretch, as uncertainty of the state at its start: the registration
 /// refines a stretch by its start, so noise that arises inside is booked there. A rate error is taken as constant over
 /// the stretch (it comes from a rail, not from white noise), which makes the attitude's standard deviation the time
@@ -31,7 +28,6 @@ Status start_at_rest(const LidarInertialOdometry::Params& params, std::span<cons
                      MotionState& state);
 
 /// Uncertainty of a rate method's angular velocity, per IMU axis, as the mapper believes it.
-Eigen::Vector3d believed_rate_sigma(const LidarInertialOdometry::Params& params, const RateState& rate,
-                                    TimeNs window_ns);
+Eigen::Vector3d believed_rate_sigma(const LidarInertialOdometry::Params& params, const RateState& rate);
 
 }  // namespace tumble::mapping

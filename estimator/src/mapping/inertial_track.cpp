@@ -16,9 +16,10 @@ using Params = LidarInertialOdometry::Params;
 constexpr std::uint8_t kAllAxes = 7;
 constexpr TimeNs kArcStep_ns = 5'000'000;
 constexpr TimeNs kArcMost_ns = 10'000'000'000;  // no flight lasts so long
+constexpr double kArcOff_rad_s = 0.5;           // beyond deviations: an impact changes more, a wrong inertia less
 
-TimeNs middle_of(const MotionSample& sample) {
-  return sample.from_ns + (sample.time_ns - sample.from_ns) / 2;
+WindowRate rate_of(const MotionSample& sample) {
+  return {sample.w_WI_I_rad_s, sample.rate_sigma_rad_s, sample.from_ns, sample.time_ns};
 }
 
 std::uint8_t railed_axes(const Params& params, const ImuSample& sample) {
@@ -67,36 +68,60 @@ void InertialTrack::take(const Params& params, const ImuSample& sample, const Ra
   listen_for_rest(params, sample, rate, next);
   if (!next.at_rest) next.w_WI_I_rad_s = rate.w_WI_I_rad_s - initial_.gyro_bias_rad_s;
   next.f_I_m_s2 = sample.specific_force_m_s2;
-  next.rate_sigma_rad_s = believed_rate_sigma(params, rate, next.time_ns - next.from_ns);
+  next.rate_sigma_rad_s = believed_rate_sigma(params, rate);
   next.clipped_axes = static_cast<std::uint8_t>(rate.clipped_axes & kAllAxes);
   next.railed_axes = railed_axes(params, sample);
-  next.bridges_gap = next.time_ns - next.from_ns > kGap_ns;
-  const bool in_flight = params.expert.flight.body && !samples_.empty() && settle_force(params, next);
+  const bool after_gap = next.time_ns - next.from_ns > kGap_ns;
+  // a reading is of its own window, which is as long as the one before the gap
+  if (after_gap && newest_ && !next.at_rest) next.from_ns = next.time_ns - (newest_->time_ns - newest_->from_ns);
+  next.bridges_gap = after_gap && next.from_ns == from_ns;
+  const bool in_flight = params.expert.flight.body && !samples_.empty() && settle_force(params, next, after_gap);
   before_newest_ = newest_;
-  newest_ = {next.w_WI_I_rad_s, middle_of(next)};
-  if (in_flight && next.bridges_gap && next.time_ns - next.from_ns <= kArcMost_ns) {
-    const std::size_t before = samples_.size();
-    const Eigen::Vector3d w_rad_s = samples_.back().w_WI_I_rad_s;
-    if (flight_arc(*params.expert.flight.body, w_rad_s, next.from_ns, next.time_ns, kArcStep_ns, samples_).ok()) {
-      for (MotionSample& part : std::span(samples_).subspan(before)) {
-        part.rate_sigma_rad_s = next.rate_sigma_rad_s;
-        part.in_flight = true;
-      }
-      return;
-    }
-  }
+  newest_ = rate_of(next);
+  if (after_gap && !next.bridges_gap) fill_gap(params, in_flight);
   samples_.push_back(next);
+}
+
+void InertialTrack::fill_gap(const Params& params, bool in_flight) {
+  const std::size_t first = samples_.size();
+  if (!in_flight || !fly_through(params, *before_newest_, *newest_))
+    bridge_gap(params.expert.prior, *before_newest_, *newest_, samples_);
+  if (undecided_rad_s_.empty()) return;
+  // one rate for each sample, and the last is of the one that is still to come
+  for (const MotionSample& part : std::span(samples_).subspan(first))
+    undecided_rad_s_.insert(undecided_rad_s_.end() - 1, part.w_WI_I_rad_s);
+}
+
+/// Bridges the gap by the arc, if the rate at its end is the one that is read then: flight_arc.md (A12).
+bool InertialTrack::fly_through(const Params& params, const WindowRate& before, const WindowRate& after) {
+  if (after.from_ns - before.time_ns > kArcMost_ns) return false;
+  const std::size_t first = samples_.size();
+  if (!flight_arc(*params.expert.flight.body, before.rate_rad_s, before.time_ns, after.from_ns, kArcStep_ns, samples_)
+           .ok())
+    return false;
+  const Eigen::Vector3d off_rad_s = after.rate_rad_s - samples_.back().w_WI_I_rad_s;
+  const Eigen::Vector3d sigma_rad_s = (before.sigma_rad_s.cwiseAbs2() + after.sigma_rad_s.cwiseAbs2()).cwiseSqrt();
+  if (((off_rad_s.cwiseAbs() - 3.0 * sigma_rad_s).array() > kArcOff_rad_s).any()) {
+    samples_.resize(first);
+    return false;
+  }
+  for (MotionSample& part : std::span(samples_).subspan(first)) {
+    part.rate_sigma_rad_s = (sigma_rad_s + off_rad_s.cwiseAbs()).cwiseMin(params.expert.prior.rate_sigma_max_rad_s);
+    part.in_flight = true;
+  }
+  return true;
 }
 
 /// Now that the rates on both sides of the newest sample are known, tells whether it belongs to a flight: before a gap
 /// by the rate that flight itself would change. flight_arc.md (A3), (A4), (A5).
-bool InertialTrack::settle_force(const Params& params, const MotionSample& next) {
+bool InertialTrack::settle_force(const Params& params, const MotionSample& next, bool after_gap) {
   MotionSample& now = samples_.back();
   if (now.in_flight) return true;
   if (now.at_rest || now.bridges_gap || !before_newest_) return false;
-  const double span_s = seconds(middle_of(next) - before_newest_->middle_ns);
-  if (span_s <= 0.0) return false;
-  const Eigen::Vector3d acceleration = next.bridges_gap
+  const TimeNs span_ns = rate_of(next).middle_ns() - before_newest_->middle_ns();
+  if (span_ns <= 0 || (span_ns > 2 * kGap_ns && !after_gap)) return false;
+  const double span_s = seconds(span_ns);
+  const Eigen::Vector3d acceleration = after_gap
                                            ? torque_free_acceleration(*params.expert.flight.body, now.w_WI_I_rad_s)
                                            : Eigen::Vector3d((next.w_WI_I_rad_s - before_newest_->rate_rad_s) / span_s);
   const Eigen::Vector3d force = flight_force(*params.expert.flight.body, now.w_WI_I_rad_s, acceleration);

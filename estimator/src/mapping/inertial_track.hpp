@@ -5,6 +5,7 @@
 #include <span>
 #include <vector>
 
+#include "gap_bridge.hpp"
 #include "inertial_prior.hpp"
 #include "tumble/angular_velocity/rest_detector.hpp"
 
@@ -36,13 +37,6 @@ class InertialTrack {
   static void members(Self& s, Visitor& visit);
 
  private:
-  struct Rate {
-    Eigen::Vector3d rate_rad_s;
-    TimeNs middle_ns;
-    template <class Self, class Visitor>
-    static void members(Self& s, Visitor& visit);
-  };
-
   /// The rest at the start of a recording: once left it does not come back, and what it has taught stays.
   struct InitialRest {
     bool lasts = true;
@@ -55,7 +49,9 @@ class InertialTrack {
 
   void listen_for_rest(const Params& params, const ImuSample& sample, const RateState& rate, MotionSample& next);
   void take_back_rest(std::optional<TimeNs> rests_since_ns);
-  bool settle_force(const Params& params, const MotionSample& next);
+  bool settle_force(const Params& params, const MotionSample& next, bool after_gap);
+  void fill_gap(const Params& params, bool in_flight);
+  bool fly_through(const Params& params, const WindowRate& before, const WindowRate& after);
 
   std::vector<MotionSample> samples_;
   std::optional<TimeNs> border_ns_;  // end of the last sweep
@@ -63,7 +59,7 @@ class InertialTrack {
   RestDetector::State rest_;
   InitialRest initial_;
   std::vector<Eigen::Vector3d> undecided_rad_s_;  // rates since the detector's last whole reading
-  std::optional<Rate> before_newest_, newest_;    // windows of the IMU
+  std::optional<WindowRate> before_newest_, newest_;
 };
 
 }  // namespace tumble::mapping

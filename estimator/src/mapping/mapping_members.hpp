@@ -24,9 +24,11 @@ void InertialTrack::members(Self& s, Visitor& visit) {
 }
 
 template <class Self, class Visitor>
-void InertialTrack::Rate::members(Self& s, Visitor& visit) {
+void WindowRate::members(Self& s, Visitor& visit) {
   visit("newest.rate_rad_s", s.rate_rad_s);
-  visit("newest.middle_ns", s.middle_ns);
+  visit("newest.sigma_rad_s", s.sigma_rad_s);
+  visit("newest.from_ns", s.from_ns);
+  visit("newest.time_ns", s.time_ns);
 }
 
 template <class Self, class Visitor>

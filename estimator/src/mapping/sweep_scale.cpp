@@ -3,9 +3,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <optional>
 #include <vector>
 
+#include "gap_bridge.hpp"
 #include "tumble/common/time.hpp"
 
 namespace tumble {
@@ -35,7 +37,8 @@ class FeltMotion {
       attitudes_.insert(attitudes_.end(), sweep.trajectory.begin(), sweep.trajectory.end());
   }
 
-  /// Mean velocity from `middle_ns` to `to_ns` less that from `from_ns` to `middle_ns`; none where a force was hidden.
+  /// Mean velocity from `middle_ns` to `to_ns` less that from `from_ns` to `middle_ns`; none where a force was hidden
+  /// or lies in a gap.
   std::optional<Eigen::Vector3d> change(TimeNs from_ns, TimeNs middle_ns, TimeNs to_ns) const {
     if (attitudes_.empty()) return std::nullopt;
     const auto later = [](const ImuSample& sample, TimeNs time_ns) { return sample.time_ns <= time_ns; };
@@ -43,6 +46,8 @@ class FeltMotion {
     Eigen::Vector3d velocity = Eigen::Vector3d::Zero(), place = velocity, at_middle = velocity;
     for (TimeNs now = from_ns; now < to_ns;) {
       if (next == samples_.end() || (next->device_clip_flags & kAccelFlags) != 0) return std::nullopt;
+      const TimeNs before_ns = next == samples_.begin() ? from_ns : std::prev(next)->time_ns;
+      if (next->time_ns - before_ns > mapping::kGap_ns) return std::nullopt;
       const TimeNs until = std::min({next->time_ns, to_ns, now < middle_ns ? middle_ns : to_ns});
       const double dt_s = seconds(until - now);
       const Eigen::Vector3d a = attitude(now + (until - now) / 2) * next->specific_force_m_s2 + gravity_W_m_s2_;

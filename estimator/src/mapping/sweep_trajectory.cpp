@@ -31,7 +31,8 @@ Eigen::Vector3d signed_shares(const MotionSample& sample, const Eigen::Vector3d&
   for (int axis = 0; axis < 3; ++axis) {
     if (!(sample.clipped_axes >> axis & 1)) continue;
     share[axis] = least_known_rad_s[axis] > 0.0 ? sample.rate_sigma_rad_s[axis] / least_known_rad_s[axis] : 1.0;
-    if (sample.w_WI_I_rad_s[axis] < 0.0) share[axis] = -share[axis];
+    // what a rail hides is beyond it; what a gap hides has no sign
+    if (sample.w_WI_I_rad_s[axis] < 0.0 && !sample.bridges_gap) share[axis] = -share[axis];
   }
   return share;
 }

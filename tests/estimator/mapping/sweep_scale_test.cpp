@@ -89,6 +89,21 @@ TEST(SweepScale, ALidarThatIsSilentForTooLongIsNotCompared) {
   EXPECT_EQ(watch.scale().changes, 0u);
 }
 
+// What was felt inside of a gap of the IMU nobody knows: the blow of the second hop, say.
+TEST(SweepScale, NothingIsComparedOverAGapOfTheImu) {
+  Flight flight = hops(1.0, 0.005);
+  const std::size_t all = find_sweep_scale(flight.samples, flight.sweeps, kGravity).changes;
+  const auto lost = [](const ImuSample& sample) {
+    return (sample.time_ns > 750'000'000 && sample.time_ns < 850'000'000) ||
+           (sample.time_ns > 2'350'000'000 && sample.time_ns < 2'450'000'000);
+  };
+  std::erase_if(flight.samples, lost);
+  const SweepScale found = find_sweep_scale(flight.samples, flight.sweeps, kGravity);
+  EXPECT_GT(found.changes, 5u);
+  EXPECT_LT(found.changes, all - 10);
+  EXPECT_FALSE(found.is_off()) << found.scale << " +- " << found.sigma;
+}
+
 TEST(SweepScale, NothingIsSaidWhereNothingTells) {
   const Flight flight = hops(1.1, 0.005);
   EXPECT_FALSE(find_sweep_scale({}, {}, kGravity).is_off());

@@ -75,7 +75,10 @@ struct InertialNoiseParams {
   /// Of the specific force, as a share of its magnitude: velocity is uncertain by this times the integral of the force,
   /// which counts at impacts.
   double force_share = 0.03;
-  double gap_force_m_s2 = 5.0;        ///< what the force of a gap may be off by: the velocity goes on through it
+  /// Over a gap of the IMU velocity and rate are random walks, mapping.md (R99), (R100). Over 0.05 to 0.5 s of rigs
+  /// that tumble the truth's are 2.4 to 4.1 and, of a rate that is known at both ends, 3 to 11.
+  double gap_velocity_walk_m_s_sqrt_s = 3.0;
+  double gap_rate_walk_rad_s_sqrt_s = 9.0;
   double rate_sigma_max_rad_s = 5.0;  ///< what RateState reports is believed up to this
 
   template <class Self, class Visitor>
@@ -85,8 +88,10 @@ struct InertialNoiseParams {
     visit(p.sigma_m_s, {"prior_sigma_m_s", "m/s", 1e-9, 1e3, "inertial prior over 0.1 s: velocity", Rank::first});
     visit(p.turn_share, {"turn_sigma_share", "1", 0.0, 1.0, "inertial prior: of the angle turned", Rank::first});
     visit(p.force_share, {"force_sigma_share", "1", 0.0, 1.0, "inertial prior: of the force's integral", Rank::first});
-    visit(p.gap_force_m_s2,
-          {"gap_force_m_s2", "m/s^2", 0.0, 1e3, "of a gap of the IMU, over which the velocity goes on"});
+    visit(p.gap_velocity_walk_m_s_sqrt_s, {"gap_velocity_walk_m_s_sqrt_s", "m/s/sqrt(s)", 0.0, 1e3,
+                                           "of a gap of the IMU, over which the velocity goes on"});
+    visit(p.gap_rate_walk_rad_s_sqrt_s, {"gap_rate_walk_rad_s_sqrt_s", "rad/s/sqrt(s)", 0.0, 1e3,
+                                         "of a gap of the IMU, between the rates on both sides"});
     visit(p.rate_sigma_max_rad_s,
           {"rate_sigma_max_rad_s", "rad/s", 0.0, 100.0, "what RateState reports is believed up to this"});
   }

@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <Eigen/Core>
+#include <vector>
+
+#include "tumble/mapping/detail/inertial_params.hpp"
+#include "tumble/mapping/sweep_trajectory.hpp"
+
+namespace tumble::mapping {
+
+/// Longer windows of the IMU say nothing about what the motion was inside of them.
+inline constexpr TimeNs kGap_ns = 50'000'000;
+
+/// Rate of one window of the IMU, in IMU axes, with its standard deviation.
+struct WindowRate {
+  Eigen::Vector3d rate_rad_s;
+  Eigen::Vector3d sigma_rad_s;
+  TimeNs from_ns, time_ns;
+
+  TimeNs middle_ns() const { return from_ns + (time_ns - from_ns) / 2; }
+  template <class Self, class Visitor>
+  static void members(Self& s, Visitor& visit);
+};
+
+/// Appends samples from the end of `before` to the start of `after`: the rate goes from one to the other in a straight
+/// line, with the deviation of a random walk that is known at both ends; mapping.md (R100). All axes count as clipped,
+/// so that a registration which estimates the saturation deficit estimates what the line is off by. The force is not
+/// known
+/// (`bridges_gap`). Steps of 10 ms, longer ones over gaps beyond 0.64 s.
+void bridge_gap(const InertialNoiseParams& params, const WindowRate& before, const WindowRate& after,
+                std::vector<MotionSample>& samples);
+
+}  // namespace tumble::mapping
