@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "tumble/angular_velocity/detail/partial_clipping.hpp"
 #include "tumble/angular_velocity/detail/rail_shares.hpp"
 
 namespace tumble {
@@ -140,11 +141,9 @@ void mark_partial(const RailPlanes& planes, const RailDetector& rails, const Rai
     const int sign = side(now.sample, Triad::gyro, j);
     const double level = rail->distance_rad_s;
     const double reading = level - rail->short_of(now.sample.angular_velocity_rad_s, sign);
-    double neighbour = level;
-    for (const ImuSample* beside : {before, after}) {
-      if (beside == nullptr) continue;
-      neighbour = std::min(neighbour, level - rail->short_of(beside->angular_velocity_rad_s, sign));
-    }
+    const double neighbour =
+        free_neighbour(before, after, static_cast<int>(j), level,
+                       [&](const Eigen::Vector3d& beside) { return level - rail->short_of(beside, sign); });
     if (level - reading <= rail->tolerance_rad_s || neighbour > reading) continue;
     const PartialLoss loss = partial_loss(reading, neighbour, level, noise_rad_s);
     if (!loss.partial) continue;

@@ -16,6 +16,7 @@
 #include "scenarios/baselines/angular_velocity/magnetometer_rate.hpp"
 #include "scenarios/baselines/angular_velocity/standstill_smoother.hpp"
 #include "tumble/angular_velocity/detail/partial_clipping.hpp"
+#include "tumble/angular_velocity/detail/rate_observation.hpp"
 
 namespace tumble::baselines {
 namespace {
@@ -220,6 +221,34 @@ TEST(PartialLoss, IsExactForAConstantSlope) {
   // a plateau that sinks, as of a rail tilted by a thousandth: flagged throughout, and no step to a neighbour
   EXPECT_FALSE(partial_loss(kRail - 2e-3, kRail - 2.1e-3, kRail, 5e-3).partial);
   EXPECT_TRUE(partial_loss(kRail - 0.05, kRail - 0.3, kRail, 5e-3).partial);
+}
+
+// Readings that sink from sample to sample along a tilted rail, all of them flagged: none of them met it in a part of
+// its window, but for the one that comes after a free one.
+TEST(PartialLoss, OfAFlaggedNeighbourNothingIsTold) {
+  RailDetector::State state;
+  state.channels[0].rail = kRail;
+  const RailDetector rails({});
+  ASSERT_TRUE(rails.rail(state, 0).has_value());
+  std::vector<ImuSample> samples(6);
+  for (std::size_t k = 0; k < samples.size(); ++k) {
+    samples[k].angular_velocity_rad_s.x() = kRail - 0.1 - 0.02 * static_cast<double>(samples.size() - k);
+    samples[k].device_clip_flags = kClipGyroX;
+  }
+  samples[0].angular_velocity_rad_s.x() = kRail - 2.0;
+  samples[0].device_clip_flags = 0;
+  for (std::size_t k = 1; k + 1 < samples.size(); ++k) {
+    RateObservation now;
+    now.sample = samples[k];
+    now.clipping.gyro = 1;
+    mark_partial(rails, state, 5e-3, &samples[k - 1], now, &samples[k + 1]);
+    EXPECT_EQ(now.partial, k == 1 ? 1 : 0) << k;
+    // negative control: as if the one before had been free
+    ImuSample before = samples[k - 1];
+    before.device_clip_flags = 0;
+    mark_partial(rails, state, 5e-3, &before, now, &samples[k + 1]);
+    EXPECT_EQ(now.partial, 1) << k;
+  }
 }
 
 }  // namespace

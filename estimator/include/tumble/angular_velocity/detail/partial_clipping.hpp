@@ -22,4 +22,19 @@ struct PartialLoss {
 /// model: a slope that changes within the two windows; sigma allows for it (measured on impacts of tumbling bodies).
 PartialLoss partial_loss(double reading_rad_s, double neighbour_rad_s, double rail_rad_s, double noise_rad_s);
 
+/// The smaller of what the samples beside (null where there is none) read by `read`, or the rail where that one is
+/// flagged on the axis too: a rate of constant slope that passes the rail in this window was free in the one before,
+/// and readings that sink one by one along a rail are no rates. rails.md (R70).
+template <class Read>
+double free_neighbour(const ImuSample* before, const ImuSample* after, int axis, double rail_rad_s, const Read& read) {
+  double smallest = rail_rad_s;
+  bool free = false;
+  for (const ImuSample* beside : {before, after}) {
+    if (beside == nullptr || read(beside->angular_velocity_rad_s) >= smallest) continue;
+    smallest = read(beside->angular_velocity_rad_s);
+    free = (beside->device_clip_flags >> axis & 1u) == 0;
+  }
+  return free ? smallest : rail_rad_s;
+}
+
 }  // namespace tumble
