@@ -142,7 +142,7 @@ void mark_partial(const RailPlanes& planes, const RailDetector& rails, const Rai
     const double level = rail->distance_rad_s;
     const double reading = level - rail->short_of(now.sample.angular_velocity_rad_s, sign);
     const double neighbour =
-        free_neighbour(before, after, static_cast<int>(j), level,
+        free_neighbour(reading, level, static_cast<int>(j), before, after,
                        [&](const Eigen::Vector3d& beside) { return level - rail->short_of(beside, sign); });
     if (level - reading <= rail->tolerance_rad_s || neighbour > reading) continue;
     const PartialLoss loss = partial_loss(reading, neighbour, level, noise_rad_s);

@@ -111,8 +111,8 @@ void mark_partial(const RailDetector& rails, const RailDetector::State& state, d
     const std::optional<double> rail = rails.rail(state, j);
     if (!flagged || !rail) continue;
     const double reading = now.sample.angular_velocity_rad_s[j], sign = std::copysign(1.0, reading);
-    const double neighbour =
-        free_neighbour(before, after, j, *rail, [&](const Vector3d& beside) { return sign * beside[j]; });
+    const double neighbour = free_neighbour(std::abs(reading), *rail, j, before, after,
+                                            [&](const Vector3d& beside) { return sign * beside[j]; });
     if (neighbour > std::abs(reading)) continue;  // a dip in a plateau: how deep it is hidden nobody can say
     const PartialLoss loss = partial_loss(std::abs(reading), neighbour, *rail, noise_rad_s);
     if (!loss.partial) continue;

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <algorithm>
+
 #include "tumble/angular_velocity/rail_detector.hpp"
 
 namespace tumble {
@@ -22,19 +24,21 @@ struct PartialLoss {
 /// model: a slope that changes within the two windows; sigma allows for it (measured on impacts of tumbling bodies).
 PartialLoss partial_loss(double reading_rad_s, double neighbour_rad_s, double rail_rad_s, double noise_rad_s);
 
-/// The smaller of what the samples beside (null where there is none) read by `read`, or the rail where that one is
-/// flagged on the axis too: a rate of constant slope that passes the rail in this window was free in the one before,
-/// and readings that sink one by one along a rail are no rates. rails.md (R70).
+/// The smaller of what the samples beside (null where there is none) read by `read`, of one that is flagged on the axis
+/// only where the step to it is twice what `reading_rad_s` lies below the rail, so that most of its window was free;
+/// the rail where there is none. A rate of constant slope that passes the rail in this window was free in the one
+/// before; readings that sink one by one along a tilted rail, all of them flagged, are no rates. rails.md (R70).
 template <class Read>
-double free_neighbour(const ImuSample* before, const ImuSample* after, int axis, double rail_rad_s, const Read& read) {
+double free_neighbour(double reading_rad_s, double rail_rad_s, int axis, const ImuSample* before,
+                      const ImuSample* after, const Read& read) {
   double smallest = rail_rad_s;
-  bool free = false;
   for (const ImuSample* beside : {before, after}) {
-    if (beside == nullptr || read(beside->angular_velocity_rad_s) >= smallest) continue;
-    smallest = read(beside->angular_velocity_rad_s);
-    free = (beside->device_clip_flags >> axis & 1u) == 0;
+    if (beside == nullptr) continue;
+    const double there = read(beside->angular_velocity_rad_s);
+    const bool flagged = (beside->device_clip_flags >> axis & 1u) != 0;
+    if (!flagged || reading_rad_s - there > 2.0 * (rail_rad_s - reading_rad_s)) smallest = std::min(smallest, there);
   }
-  return free ? smallest : rail_rad_s;
+  return smallest;
 }
 
 }  // namespace tumble
