@@ -46,6 +46,34 @@ void take_gravity_out(std::vector<Eigen::Vector3d>& forces, const std::vector<st
   if (forces.size() > 1) forces.front() = forces[1];
 }
 
+/// The sample before which the first IMU's gyro changes most: that of an impact.
+std::size_t hardest_impact(const sim::ImuRecord& imu) {
+  std::size_t hardest = 0;
+  double change = 0.0;
+  for (std::size_t k = 1; k < imu.time_ns.size(); ++k) {
+    const double here = (imu.gyro_rad_s[k] - imu.gyro_rad_s[k - 1]).norm();
+    if (here > change) hardest = k, change = here;
+  }
+  return hardest;
+}
+
+/// All IMUs lose their samples for so long, about the hardest impact: neither the rate nor the force of it is read.
+void silence_imus(sim::Sensors& sensors, std::int64_t for_ns) {
+  if (sensors.imus.empty() || sensors.imus.front().time_ns.empty()) return;
+  const std::int64_t from_ns = sensors.imus.front().time_ns[hardest_impact(sensors.imus.front())] - for_ns / 2;
+  for (sim::ImuRecord& imu : sensors.imus) {
+    const std::vector<std::int64_t> time_ns = imu.time_ns;
+    const auto keep = [&](auto& rows) {
+      std::size_t kept = 0;
+      for (std::size_t k = 0; k < rows.size(); ++k) {
+        if (time_ns[k] < from_ns || time_ns[k] >= from_ns + for_ns) rows[kept++] = rows[k];
+      }
+      rows.resize(kept);
+    };
+    keep(imu.time_ns), keep(imu.gyro_rad_s), keep(imu.accel_m_s2), keep(imu.clip_flags), keep(imu.magnetic_field_t);
+  }
+}
+
 void stretch_ranges(sim::Sensors& sensors, float by) {
   for (sim::LidarRecord& lidar : sensors.lidars) {
     for (Eigen::Vector3f& position : lidar.position_L_m) position *= by;
@@ -123,6 +151,8 @@ const std::map<std::string, std::function<void(sim::Sensors&)>>& wrong_inputs() 
          for (sim::ImuRecord& imu : s.imus)
            for (std::int64_t& t : imu.time_ns) t /= 1000;
        }},
+      {"imus_silent_120_ms", [](sim::Sensors& s) { silence_imus(s, 120'000'000); }},
+      {"imus_silent_300_ms", [](sim::Sensors& s) { silence_imus(s, 300'000'000); }},
       {"lidar_20_ms", [](sim::Sensors& s) { shift_lidar(s, 20'000'000); }},
       {"lidar_100_ms", [](sim::Sensors& s) { shift_lidar(s, 100'000'000); }},
       {"lidar_ranges_long", [](sim::Sensors& s) { stretch_ranges(s, 1.1F); }},
