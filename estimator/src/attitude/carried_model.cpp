@@ -64,7 +64,7 @@ GyroRows gyro_rows(const Eigen::RowVector3d& m, const Node& node, const Constant
 }
 
 // how far the clipped elements are believed to lie beyond their rails, and the unreadable ones off their readings
-double excess(const NodeReadings& readings, const std::array<GyroRows, 3>& rows, int except) {
+double deficit(const NodeReadings& readings, const std::array<GyroRows, 3>& rows, int except) {
   double sum = 0.0;
   for (int i = 0; i < 3; ++i) {
     const ElementSums& element = readings.gyro[static_cast<std::size_t>(i)];
@@ -161,7 +161,7 @@ double add_gyro(const NodeReadings& readings, const Matrix3d& rows, const Readin
     const GyroRows& element = elements[static_cast<std::size_t>(i)];
     if (e.n > 0.0) {
       // the same error in each reading of the node, so that their number does not make it smaller
-      const double tilt = noise.tilt_share * excess(readings, elements, i);
+      const double tilt = noise.tilt_share * deficit(readings, elements, i);
       cost += add_free(e, element, 1.0 / (variance + e.n * (tilt * tilt + e.open * e.open)), block, corner);
     }
     if (e.clipped > 0.0) {

@@ -47,7 +47,7 @@ void align(Registration& registration, const Registration::Prior& prior, const S
 Registration::Prior from(const Registration::Result& found, const Registration::Prior& prior) {
   Registration::Prior out = prior;
   out.start = found.mean.state;
-  out.excess_start_rad_s = found.mean.excess_rad_s;
+  out.deficit_start_rad_s = found.mean.deficit_rad_s;
   return out;
 }
 

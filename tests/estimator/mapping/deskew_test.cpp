@@ -116,9 +116,9 @@ TEST(SweepTrajectory, WhatWaitsChangesNothing) {
   const std::vector<MotionSample> samples = {clipped, waiting};
   SweepTrajectory trajectory;
   ASSERT_TRUE(trajectory.build(MotionState{}, samples, 10'000'000, {0.0, 0.0, -9.8}).ok());
-  EXPECT_EQ(trajectory.excess_share_at_end().x(), 1.0);
+  EXPECT_EQ(trajectory.deficit_share_at_end().x(), 1.0);
   ASSERT_TRUE(trajectory.build(MotionState{}, samples, 20'000'000, {0.0, 0.0, -9.8}).ok());
-  EXPECT_EQ(trajectory.excess_share_at_start().x(), 0.01) << "one of the stretch does";
+  EXPECT_EQ(trajectory.deficit_share_at_start().x(), 0.01) << "one of the stretch does";
 }
 
 TEST(SweepTrajectory, SaysWhatItLacks) {

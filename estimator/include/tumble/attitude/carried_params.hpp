@@ -31,7 +31,7 @@ struct CarriedHandParams {
 
 /// What readings are off by beside their noise, clipped and recovered ones among them.
 struct CarriedReadingParams {
-  double tilt_share = 0.02;             ///< error of a free element per excess of a clipped one
+  double tilt_share = 0.02;             ///< error of a free element per deficit of a clipped one
   double rail_sigma_rad_s = 0.01;       ///< how sharp a rail is
   double accel_error_share = 0.02;      ///< more, per m/s^2 away from gravity
   double turn_error_sqrts = 1e-3;       ///< random walk of the attitude per rad/s turned
@@ -42,7 +42,7 @@ struct CarriedReadingParams {
   template <class Self, class Visitor>
   static void fields(Self& p, Visitor& visit) {
     visit(p.tilt_share,
-          {"tilt_share", "1", 0.0, 1.0, "error of a free element per excess of a clipped one", Rank::first});
+          {"tilt_share", "1", 0.0, 1.0, "error of a free element per deficit of a clipped one", Rank::first});
     visit(p.rail_sigma_rad_s, {"rail_sigma_rad_s", "rad/s", 1e-4, 1.0, "how sharp a rail is"});
     visit(p.accel_error_share,
           {"accel_error_share", "1", 0.0, 1.0, "noise of the specific force more, per m/s^2 away from gravity"});

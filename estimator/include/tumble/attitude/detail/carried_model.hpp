@@ -64,7 +64,7 @@ struct NodeReadings {
 struct ReadingNoise {
   double gyro_rad_s = 0.0;    ///< of one reading
   double window_rad_s = 0.0;  ///< of what a mean over a window differs from the rate at its centre by, one reading
-  double tilt_share = 0.0;    ///< of a free element while another clips, per rad/s of that one's excess
+  double tilt_share = 0.0;    ///< of a free element while another clips, per rad/s of that one's deficit
   double rail_rad_s = 0.0;    ///< of a rail
   double bound = 1.0;         ///< share of a gyro's bounds that counts as information
   double accel_m_s2 = 0.0;    ///< of one reading
