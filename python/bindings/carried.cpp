@@ -58,7 +58,7 @@ void bind_smoother(nb::module_& m) {
       .def_ro("iterations", &Report::iterations)
       .def_ro("converged", &Report::converged)
       .def_ro("cost", &Report::cost)
-      .def_ro("hand_surprise", &Report::hand_surprise, "2 and more: thrown, or a rough hand")
+      .def_ro("hand_mahalanobis", &Report::hand_mahalanobis, "2 and more: thrown, or a rough hand")
       .def_ro("turns_asked", &Report::turns_asked)
       .def_ro("turns_taken", &Report::turns_taken)
       .def_ro("turns_open", &Report::turns_open, "clipped stretches in which another number of turns stays possible");

@@ -11,13 +11,13 @@ using Eigen::Vector3d;
 
 namespace {
 
-constexpr double kTurnMax = 0.8;     // largest step of an attitude: beyond, the linearisation says little
-constexpr double kConverged = 1e-3;  // of attitudes [rad] and, ten times that, of rates [rad/s]
-constexpr int kFollowFirst = 3;      // iterations before the hand's power is read off the nodes
-constexpr int kFollowLast = 8;       // and after which it stays, so that the iteration ends
-constexpr double kSurpriseS = 0.25;  // over which the hand's mean acceleration is compared
-constexpr int kHalvings = 4;         // of a step after which the cost is larger
-constexpr double kRises = 0.2;       // by more than this: odds of 1.1, which no covariance shows
+constexpr double kTurnMax = 0.8;      // largest step of an attitude: beyond, the linearisation says little
+constexpr double kConverged = 1e-3;   // of attitudes [rad] and, ten times that, of rates [rad/s]
+constexpr int kFollowFirst = 3;       // iterations before the hand's power is read off the nodes
+constexpr int kFollowLast = 8;        // and after which it stays, so that the iteration ends
+constexpr double kHandMean_s = 0.25;  // over which the hand's mean acceleration is compared
+constexpr int kHalvings = 4;          // of a step after which the cost is larger
+constexpr double kRises = 0.2;        // by more than this: odds of 1.1, which no covariance shows
 constexpr Trouble kLost = Trouble::diverged;
 
 }  // namespace
@@ -211,7 +211,7 @@ Status Problem::solve(CarriedSmoother::Report& report) {
     (void)descend_from(*before, report.cost);
   }
   report.constants = constants_;
-  report.hand_surprise = hand_surprise();
+  report.hand_mahalanobis = hand_mahalanobis();
   return {};
 }
 
@@ -257,8 +257,8 @@ Status Problem::covariances(CarriedSmoother::Report& report) {
 
 // carried.md (C20): the mean over a window T of a process of deviation s and memory tau has the variance
 // s^2 2 tau/T (1 - tau/T (1 - exp(-T/tau)))
-double Problem::hand_surprise() const {
-  const auto window = static_cast<std::size_t>(std::max(1.0, kSurpriseS / params_.expert.node_s));
+double Problem::hand_mahalanobis() const {
+  const auto window = static_cast<std::size_t>(std::max(1.0, kHandMean_s / params_.expert.node_s));
   const double span = static_cast<double>(window) * params_.expert.node_s,
                ratio = params_.expert.hand.hand_tau_s / span;
   const double variance =

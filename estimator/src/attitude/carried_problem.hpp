@@ -161,7 +161,7 @@ class Problem {
   void go(double share);
   bool descend_from(const Place& before, double& cost);
   void follow_hand();
-  double hand_surprise() const;
+  double hand_mahalanobis() const;
 
   CarriedSmoother::Params params_;
   Eigen::Matrix3d rows_;
