@@ -61,19 +61,19 @@ struct MatchingParams {
   }
 };
 
-/// How much is spent on a registration, in steps: brief with all points; patient with some; coarse with few.
-struct RegistrationEffortParams {
-  int brief_iterations = 8;             ///< what has not settled by then is cheaper settled with some of the points
-  std::size_t patient_points = 1000;    ///< tell whether a start leads somewhere
+/// Stages of a registration: in full, with all points and few iterations; with a subsample until it converges; coarse.
+struct RegistrationStagesParams {
+  int full_iterations = 8;              ///< what has not settled by then is cheaper settled with some of the points
+  std::size_t subsample_points = 1000;  ///< tell whether a start leads somewhere
   int coarse_iterations = 15;           ///< of a start that may be far off
   std::size_t coarse_points = 300;      ///< serve one
   std::size_t coarse_matches_min = 50;  ///< fewer reject one
 
   template <class Self, class Visitor>
   static void fields(Self& p, Visitor& visit) {
-    visit(p.brief_iterations, {"brief_iterations", "1", 1, 200, "most iterations with all points"});
-    visit(p.patient_points,
-          {"patient_points", "1", 1, 1e9, "most points of a registration that runs to its convergence"});
+    visit(p.full_iterations, {"full_iterations", "1", 1, 200, "most iterations with all points"});
+    visit(p.subsample_points,
+          {"subsample_points", "1", 1, 1e9, "most points of a registration that runs to its convergence"});
     visit(p.coarse_iterations, {"coarse_iterations", "1", 1, 200, "most iterations from a start that may be far off"});
     visit(p.coarse_points, {"coarse_points", "1", 1, 1e9, "most points from such a start"});
     visit(p.coarse_matches_min, {"coarse_matches_min", "1", 0, 1e9, "fewer matches reject such a start"});
