@@ -112,7 +112,7 @@ TEST_F(Stack, OfARollingSphereLiveAndSmoothed) {
   }
 }
 
-/// With `trouble` a stretch of the IMU is missing, and sweeps of another scale follow, in which it finds no place:
+/// With `trouble` a segment of the IMU is missing, and sweeps of another scale follow, in which it finds no place:
 /// sweeps that were rejected.
 std::size_t tumble_over(const test::ThrownBody& body, bool trouble, TumblingOdometry& odometry) {
   std::vector<test::ThrownBody::Sweep> sweeps = body.sweeps();

@@ -202,7 +202,7 @@ void judge(const scenarios::Method& method, const scenarios::SimulatedDraw& draw
       health("calibration_mahalanobis"), health("held_share"), overlap, coverage, health("lidar_scale"),
       health("lidar_scale_sigma"), health("imu_turning_slope"), health("imu_rest_force_share"),
       health("rest_gravity_missed_rad"), health("rest_gravity_missed_sigma_rad"), health("rest_velocity_share"),
-      health("rest_velocity_allowed_share"), health("pivot_evidence"), health("pivot_stretches"), health("pivot_scale"),
+      health("rest_velocity_allowed_share"), health("pivot_evidence"), health("pivot_segments"), health("pivot_scale"),
       health("pivot_scale_sigma"),
       wrong && !says ? "  <- silently wrong" : (!wrong && says && harm == "none" ? "  <- cries wolf" : ""));
   if (!estimate.status.ok()) std::printf("  %s\n", estimate.status.message().c_str());

@@ -10,7 +10,7 @@ namespace tumble::mapping {
 
 namespace {
 
-/// What the trajectory is uncertain by inside of a stretch, as seen at a point: between its start and its end. Its part
+/// What the trajectory is uncertain by inside of a segment, as seen at a point: between its start and its end. Its part
 /// of mapping.md (R53).
 class PoseVariance {
  public:

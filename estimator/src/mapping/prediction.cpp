@@ -38,12 +38,12 @@ void carry_deficit(const Params& params, const Border& border, const SweepTrajec
   }
 }
 
-/// Largest standard deviation that the rate method reports of the axis while clipped inside of the stretch, at least
+/// Largest standard deviation that the rate method reports of the axis while clipped inside of the segment, at least
 /// the parameter's.
 double deficit_sigma(const Params& params, const MotionWindow& window, const SweepTrajectory& trajectory, int axis) {
   double sigma = params.expert.rails.deficit_sigma_min_rad_s;
   for (const MotionSample& sample : window.samples) {
-    // those after the stretch wait for the next one
+    // those after the segment wait for the next one
     if (seconds(sample.from_ns - trajectory.start_ns()) >= trajectory.duration_s()) break;
     if (sample.clipped_axes >> axis & 1) sigma = std::max(sigma, sample.rate_sigma_rad_s[axis]);
   }
@@ -118,7 +118,7 @@ Prediction predict(const Params& params, const Border& border, const MotionWindo
   impose(known, next);
   const std::uint8_t axes = params.expert.rails.estimate_deficit ? trajectory.clipped_axes() : 0;
   u::block(next.noise, u::motion) += inertial_noise(params, trajectory, window.samples, axes);
-  // a force that comes late in a stretch is not in the velocity that the stretch is fitted with: the next one hears of
+  // a force that comes late in a segment is not in the velocity that the segment is fitted with: the next one hears of
   // it as well
   u::block(next.noise, u::velocity) +=
       border.railed_velocity_m2_s2 + railed_velocity_variance(params, trajectory, window.samples);

@@ -11,7 +11,7 @@ namespace tumble {
 
 namespace {
 
-/// Largest standard deviation of each axis among the samples of the stretch in which it was clipped; those that wait
+/// Largest standard deviation of each axis among the samples of the segment in which it was clipped; those that wait
 /// for the next one say nothing of it.
 Eigen::Vector3d least_known(std::span<const MotionSample> samples, TimeNs end_ns) {
   Eigen::Vector3d sigma = Eigen::Vector3d::Zero();
@@ -36,7 +36,7 @@ Eigen::Vector3d signed_shares(const MotionSample& sample, const Eigen::Vector3d&
   return share;
 }
 
-/// Weights of the knots at a share of the stretch: linear between neighbours, mapping.md (R8).
+/// Weights of the knots at a share of the segment: linear between neighbours, mapping.md (R8).
 Eigen::Matrix<double, SweepTrajectory::kKnots, 1> knot_weights(double share) {
   Eigen::Matrix<double, SweepTrajectory::kKnots, 1> weights;
   const double place = std::clamp(share, 0.0, 1.0) * (SweepTrajectory::kKnots - 1);
@@ -94,7 +94,7 @@ Status SweepTrajectory::build(const MotionState& start, std::span<const MotionSa
   for (const MotionSample& sample : samples) {
     const TimeNs from = std::max(sample.from_ns, start.time_ns);
     const TimeNs to = std::min(sample.time_ns, end_ns);
-    // a stretch of no length still gets its one interval, so that it can be asked
+    // a segment of no length still gets its one interval, so that it can be asked
     if (to < from || (to == from && !(end_ns == start.time_ns && intervals_.empty()))) continue;
     const double dt = seconds(to - from);
     const Eigen::Vector3d share = signed_shares(sample, sigma);

@@ -133,7 +133,7 @@ TEST(RateStreamElements, WithALongLagItIsTheBatch) {
         apart.push_back((live[k].w_WI_I_rad_s - batch[k].w_WI_I_rad_s).cwiseQuotient(sigma).norm());
       }
       ASSERT_GT(apart.size(), 50u);
-      // edges of stretches: what stands before one is judged anew with each rail that becomes known
+      // edges of segments: what stands before one is judged anew with each rail that becomes known
       EXPECT_LE(judged_apart, 5) << tilt << " " << seed;
       EXPECT_LT(quantile(apart, 0.5), 0.3) << tilt << " " << seed;
       EXPECT_LT(quantile(apart, 0.9), 1.5) << tilt << " " << seed;

@@ -133,7 +133,7 @@ TEST(RestGravity, WhatTheRatesStateIsAllowed) {
 }
 
 // What a rail hid may have been the same throughout: the deviation of the turn is then that of the rate times the time.
-TEST(RestGravity, ErrorsOfAClippedStretchLastAsLongAsIt) {
+TEST(RestGravity, ErrorsOfAClippedSegmentLastAsLongAsIt) {
   const RestGravity::State read = after({}, kNone);
   const RestGravity::State hidden = after({.source = RateSource::bounded_only}, kNone);
   EXPECT_NEAR(hidden.miss_sigma_rad, std::sqrt(3.0) * 0.01 * 3.0, 0.005);

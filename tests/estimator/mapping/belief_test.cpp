@@ -17,7 +17,7 @@ namespace {
 namespace u = unknowns;
 using Matrix = Registration::Matrix;
 
-constexpr double kForce_m_s2 = 4.0, kStretch_s = 0.5;
+constexpr double kForce_m_s2 = 4.0, kSegment_s = 0.5;
 
 /// Half a second in which the IMU does not turn and feels a force along x; gravity is left to the belief.
 std::vector<MotionSample> pushed() {
@@ -93,7 +93,7 @@ TEST(Unknowns, BlocksCoverEachUnknownOnce) {
 TEST(Belief, AtTheEndOfAPushIsTheClosedForm) {
   const Belief start = uncertain();
   const Belief end = carried(start, pushed(), 500'000'000);
-  const double t = kStretch_s, g = -9.80665;
+  const double t = kSegment_s, g = -9.80665;
   const Eigen::Vector3d force(kForce_m_s2, 0.0, g);
   EXPECT_LT((end.mean.state.p_WI_m - (start.mean.state.v_WI_m_s * t + 0.5 * t * t * force)).norm(), 1e-12);
   EXPECT_LT((end.mean.state.v_WI_m_s - (start.mean.state.v_WI_m_s + t * force)).norm(), 1e-12);

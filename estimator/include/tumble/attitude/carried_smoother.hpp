@@ -61,9 +61,9 @@ class CarriedSmoother {
     /// that is thrown (specific force about 0) shows 2 and more; so does a hand that is rough: it warns, it decides
     /// nothing.
     double hand_mahalanobis = 0.0;
-    /// Clipped stretches in which the body may have turned once more, or less, than the descent says: how many were
+    /// Clipped segments in which the body may have turned once more, or less, than the descent says: how many were
     /// long and unknown enough to be asked, in how many another number of turns was the better one and was taken (a
-    /// stretch counts anew in each round), and in how many others stay possible, at odds of 1 to 1000 or better: there
+    /// segment counts anew in each round), and in how many others stay possible, at odds of 1 to 1000 or better: there
     /// the covariance holds their spread.
     int turns_asked = 0, turns_taken = 0, turns_open = 0;
     /// Turns that were to be taken and from which the whole could not be solved: the answer without them stands, and

@@ -44,15 +44,15 @@ struct MotionState {
   PoseState pose() const;
 };
 
-/// Motion of the IMU over a stretch of time from a known start, by strapdown integration; can be asked at any instant.
+/// Motion of the IMU over a segment of its run from a known start, by strapdown integration; asked at any instant.
 ///
 /// Attitude: R(t) = R_k Exp(w_k (t - t_k)), exact for a rate that is constant in body axes over each sample. Position:
 /// p(t) = p_0 + v_0 t + g t^2 / 2 + S(t) with S the double integral of the specific force in W, whose mean over each
 /// sample is R_k J_l(w_k dt) f_k (exact for a force constant in body axes, as the centripetal force of a spin is).
 ///
 /// The saturation deficit e is a correction of the clipped axes, linear in time between kKnots knots at equal steps
-/// from the start to the end of the stretch: the rate used is w_j + s_j e_j(t) where axis j was clipped, with the sign
-/// of w_j and the magnitude sigma_j / (largest sigma_j among the stretch's clipped samples), so that what is known well
+/// from the start to the end of the segment: the rate used is w_j + s_j e_j(t) where axis j was clipped, with the sign
+/// of w_j and the magnitude sigma_j / (largest sigma_j among the segment's clipped samples), so that what is known well
 /// moves little; 1 where nothing is known of any. Over a sample e is what it is in the middle of it. Not modelled:
 /// sculling within a sample, the earth's rotation.
 class SweepTrajectory {
@@ -107,7 +107,7 @@ class SweepTrajectory {
   /// The same as at(), and the velocity in W of a point that is fixed at x_I in the IMU's axes.
   Instant at(double t_s, const Eigen::Vector3d& x_I_m, std::size_t& hint, Eigen::Vector3d& velocity_m_s) const;
 
-  /// Full state at t_s within the stretch, its covariance propagated from the start's without noise added.
+  /// Full state at t_s within the segment, its covariance propagated from the start's without noise added.
   MotionState state(double t_s) const;
 
   /// First-order effect on the state (position, attitude, velocity) at t_s of the state at the start, of the deficit
@@ -123,7 +123,7 @@ class SweepTrajectory {
   Eigen::Vector3d deficit_share_at_start() const { return intervals_.front().deficit_share.cwiseAbs(); }
   Eigen::Vector3d deficit_share_at_end() const { return intervals_.back().deficit_share.cwiseAbs(); }
 
-  /// Bit j set: axis j was clipped somewhere in the stretch.
+  /// Bit j set: axis j was clipped somewhere in the segment.
   std::uint8_t clipped_axes() const { return clipped_axes_; }
 
  private:
