@@ -150,7 +150,7 @@ void report_end(const CalibrationVerdict& calibration, const Localisation& local
     held += sweep.verdict == SweepVerdict::registered;
   }
   const double share = moving > 0 ? static_cast<double>(held) / static_cast<double>(moving) : 1.0;
-  estimate.health["held_share"] = share;
+  estimate.health["well_constrained_share"] = share;
   estimate.health["sigma_largest_m"] = localisation.largest_sigma_m();
   estimate.health["innovation_second"] = localisation.second_innovation();
   const bool elsewhere = !calibration.converged && calibration.moved > kBelieved;

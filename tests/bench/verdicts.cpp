@@ -199,7 +199,7 @@ void judge(const scenarios::Method& method, const scenarios::SimulatedDraw& draw
       draw.scenario.c_str(), static_cast<unsigned long long>(draw.seed), harm.c_str(), to_string(outcome.status),
       judged.error, judged.deviations, judged.before, judged.root_chi2, wrong ? "wrong" : "good", says ? "told" : "-",
       health("lidar_calibration_mahalanobis"), health("innovation_median"), health("innovation_90"),
-      health("calibration_mahalanobis"), health("held_share"), overlap, coverage, health("lidar_scale"),
+      health("calibration_mahalanobis"), health("well_constrained_share"), overlap, coverage, health("lidar_scale"),
       health("lidar_scale_sigma"), health("imu_turning_slope"), health("imu_rest_force_share"),
       health("rest_gravity_missed_rad"), health("rest_gravity_missed_sigma_rad"), health("rest_velocity_share"),
       health("rest_velocity_allowed_share"), health("pivot_evidence"), health("pivot_segments"), health("pivot_scale"),

@@ -235,7 +235,7 @@ bool Problem::descend_from(const Place& before, double& cost) {
 // carried.md (C17), (C18), of the jerk of (C19) and with bounds that tell nothing of how far beyond them a rate lies
 Status Problem::covariances(CarriedSmoother::Report& report) {
   for (std::size_t i = 0; i < jerk_.size(); ++i)
-    jerk_[i] = std::max(params_.expert.jerk_doubt, jerk_seen_[i] / params_.jerk_rad_s3_sqrts);
+    jerk_[i] = std::max(params_.expert.jerk_inflation, jerk_seen_[i] / params_.jerk_rad_s3_sqrts);
   const ReadingNoise assumed = std::exchange(noise_, stated_noise(params_, noise_, period_s_));
   (void)linearise();
   noise_ = assumed;

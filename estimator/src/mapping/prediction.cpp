@@ -86,7 +86,7 @@ void Prediction::compose(const Belief& at_border) {
   errors += noise;
 }
 
-void Prediction::hold_still(double sigma_m_s) {
+void Prediction::zero_velocity_update(double sigma_m_s) {
   prior.mean.state.v_WI_m_s.setZero();
   u::rows(by_last, u::velocity).setZero();
   u::rows(noise, u::velocity).setZero();
@@ -98,7 +98,7 @@ void impose(const InertialPrior&, Prediction&) {}
 
 /// mapping.md (R30).
 void impose(const KnownVelocity& known, Prediction& prediction) {
-  prediction.hold_still(known.sigma_m_s);
+  prediction.zero_velocity_update(known.sigma_m_s);
   const Eigen::Vector3d v_WI_m_s = prediction.prior.mean.state.q_WI * known.v_WI_I_m_s;
   prediction.prior.mean.state.v_WI_m_s = v_WI_m_s;
   u::rows(prediction.by_last, u::velocity) = -so3::hat(v_WI_m_s) * u::rows(prediction.by_last, u::attitude);
@@ -110,11 +110,11 @@ Prediction predict(const Params& params, const Border& border, const MotionWindo
   next.prior.mean.state = border.belief.mean.state;
   next.prior.mean.calibration = border.belief.mean.calibration;
   carry_deficit(params, border, trajectory, next);
-  if (window.samples.front().at_rest) next.hold_still(params.expert.standstill.start_sigma_m_s);
+  if (window.samples.front().at_rest) next.zero_velocity_update(params.expert.standstill.start_sigma_m_s);
   // surfaces that hold the sensor tell a slow drive from a rest by themselves
   const bool creeps = border.belief.mean.state.v_WI_m_s.norm() < params.expert.standstill.creep_max_m_s;
   if (window.resting_sweeps >= params.expert.standstill.sweeps_min && !border.held && creeps)
-    next.hold_still(params.expert.standstill.sigma_m_s);
+    next.zero_velocity_update(params.expert.standstill.sigma_m_s);
   impose(known, next);
   const std::uint8_t axes = params.expert.rails.estimate_deficit ? trajectory.clipped_axes() : 0;
   u::block(next.noise, u::motion) += inertial_noise(params, trajectory, window.samples, axes);
@@ -129,7 +129,7 @@ Prediction predict(const Params& params, const Border& border, const MotionWindo
 }
 
 void predict_rest(const Params& params, const Border& border, Prediction& prediction) {
-  prediction.hold_still(params.expert.standstill.sigma_m_s);
+  prediction.zero_velocity_update(params.expert.standstill.sigma_m_s);
   prediction.compose(border.belief);
 }
 

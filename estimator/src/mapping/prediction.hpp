@@ -37,7 +37,7 @@ struct Prediction {
   /// From the weight and the errors of what is believed at the border, once all else is settled.
   void compose(const Belief& at_border);
   /// Known to be at rest: velocity zero, and no longer correlated with the rest. Before compose().
-  void hold_still(double sigma_m_s);
+  void zero_velocity_update(double sigma_m_s);
 };
 
 /// Predicts the unknowns of a sweep; `trajectory` is what the IMU makes of the belief at the border.

@@ -44,7 +44,7 @@ CarriedSmoother::Params params() {
   CarriedSmoother::Params out;
   out.hand_m_s2 = 1.0;
   out.gyro_bias_sigma_rad_s = 1e-3;
-  out.expert.jerk_doubt = 1.0;
+  out.expert.jerk_inflation = 1.0;
   out.expert.iterations_max = 100;  // a filter that was fed with blind readings is no good start
   return out;
 }

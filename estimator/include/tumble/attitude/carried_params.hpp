@@ -78,7 +78,7 @@ struct CarriedExpertParams {
   double gap_max_s = 1.0;
   /// What motions of a kind differ in their jerk is not known beforehand: covariances are those of a root density so
   /// many times larger.
-  double jerk_doubt = 4.0;
+  double jerk_inflation = 4.0;
   RestDetector::Params rest = {};
   CarriedHandParams hand = {};
   CarriedReadingParams readings = {};
@@ -89,8 +89,8 @@ struct CarriedExpertParams {
     visit(p.node_s, {"node_s", "s", 1e-3, 0.1, "between two nodes of the smoother", Rank::first});
     visit(p.iterations_max, {"iterations_max", "1", 1, 1000, "most steps of Gauss-Newton", Rank::first});
     visit(p.gap_max_s, {"gap_max_s", "s", 1e-300, 1e4, "longest time between two samples before the run is refused"});
-    visit(p.jerk_doubt, {"jerk_doubt", "1", 1.0, 100.0,
-                         "covariances are those of a root density of the jerk so many times larger", Rank::first});
+    visit(p.jerk_inflation, {"jerk_inflation", "1", 1.0, 100.0,
+                             "covariances are those of a root density of the jerk so many times larger", Rank::first});
     visit.group("rest_", p.rest);
     visit.group("", p.hand);
     visit.group("", p.readings);
