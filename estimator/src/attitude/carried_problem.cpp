@@ -29,7 +29,8 @@ Motion::Params motion_params(const CarriedSmoother::Params& p, double jerk) {
   out.turn_error_sqrts = p.expert.readings.turn_error_sqrts;
   out.hand_m_s2 = p.hand_m_s2, out.hand_tau_s = p.expert.hand.hand_tau_s;
   out.velocity_m_s = p.velocity_m_s, out.velocity_tau_s = p.expert.hand.velocity_tau_s;
-  out.place_m = p.place_m, out.place_tau_s = p.expert.hand.place_tau_s, out.place_leak_s = p.expert.hand.place_leak_s;
+  out.position_m = p.position_m, out.position_tau_s = p.expert.hand.position_tau_s,
+  out.position_leak_s = p.expert.hand.position_leak_s;
   return out;
 }
 

@@ -8,20 +8,20 @@ namespace tumble {
 
 /// What a hand does, in time.
 struct CarriedHandParams {
-  double hand_tau_s = 0.1;      ///< its memory
-  double velocity_tau_s = 0.3;  ///< and memory
-  double place_tau_s = 1.0;     ///< and memory of that
-  double place_leak_s = 10.0;   ///< in which a place is forgotten
-  double hand_follow = 0.8;     ///< how far the hand's density follows its power about that time
-  double hand_window_s = 2.0;   ///< over which that power is taken
-  double hand_floor = 1.0;      ///< least share of the assumed density
+  double hand_tau_s = 0.1;        ///< its memory
+  double velocity_tau_s = 0.3;    ///< and memory
+  double position_tau_s = 1.0;    ///< and memory of that
+  double position_leak_s = 10.0;  ///< in which a position is forgotten
+  double hand_follow = 0.8;       ///< how far the hand's density follows its power about that time
+  double hand_window_s = 2.0;     ///< over which that power is taken
+  double hand_floor = 1.0;        ///< least share of the assumed density
 
   template <class Self, class Visitor>
   static void fields(Self& p, Visitor& visit) {
     visit(p.hand_tau_s, {"hand_tau_s", "s", 1e-3, 10.0, "memory of the carried point's acceleration", Rank::first});
     visit(p.velocity_tau_s, {"velocity_tau_s", "s", 1e-3, 1e3, "memory of the carried point's velocity"});
-    visit(p.place_tau_s, {"place_tau_s", "s", 1e-3, 1e3, "memory of the carried point's place"});
-    visit(p.place_leak_s, {"place_leak_s", "s", 0.1, 1e4, "in which a place is forgotten"});
+    visit(p.position_tau_s, {"position_tau_s", "s", 1e-3, 1e3, "memory of the carried point's position"});
+    visit(p.position_leak_s, {"position_leak_s", "s", 0.1, 1e4, "in which a position is forgotten"});
     visit(p.hand_follow,
           {"hand_follow", "1", 0.0, 1.0, "how far the hand's density follows the motion's own power", Rank::first});
     visit(p.hand_window_s, {"hand_window_s", "s", 0.01, 1e3, "over which that power is taken"});
@@ -109,7 +109,7 @@ struct CarriedParams {
   double jerk_rad_s3_sqrts = 200.0;  ///< root density of the angular jerk
   double hand_m_s2 = 5.0;            ///< deviation of the carried point's acceleration
   double velocity_m_s = 1.0;         ///< deviation of the carried point's velocity
-  double place_m = 1.0;              ///< deviation of its place
+  double position_m = 1.0;           ///< deviation of its position
 
   using Expert = CarriedExpertParams;
   Expert expert = {};  ///< what few need
@@ -131,7 +131,7 @@ struct CarriedParams {
           {"jerk_rad_s3_sqrts", "rad/s^3 sqrt(s)", 1e-2, 1e6, "root density of the angular jerk", Rank::first});
     visit(p.hand_m_s2, {"hand_m_s2", "m/s^2", 1e-3, 1e3, "deviation of the carried point's acceleration", Rank::first});
     visit(p.velocity_m_s, {"velocity_m_s", "m/s", 1e-3, 1e3, "deviation of the carried point's velocity", Rank::first});
-    visit(p.place_m, {"place_m", "m", 1e-3, 1e3, "deviation of the carried point's place", Rank::first});
+    visit(p.position_m, {"position_m", "m", 1e-3, 1e3, "deviation of the carried point's position", Rank::first});
     visit.group("", p.expert);
   }
 };

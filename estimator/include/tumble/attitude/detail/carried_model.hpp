@@ -96,7 +96,7 @@ class Motion {
     double turn_error_sqrts = 0.0;   ///< random walk of the attitude per rad/s turned: scale, misalignment
     double hand_m_s2 = 0.0, hand_tau_s = 0.0;
     double velocity_m_s = 0.0, velocity_tau_s = 0.0;
-    double place_m = 0.0, place_tau_s = 0.0, place_leak_s = 10.0;
+    double position_m = 0.0, position_tau_s = 0.0, position_leak_s = 10.0;
   };
   explicit Motion(const Params& params);
 
