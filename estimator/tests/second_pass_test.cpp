@@ -165,7 +165,7 @@ TEST(SecondPass, RefusesParametersOutOfTheirBounds) {
   params.expert.again.sweeps = 1;  // would never catch up
   EXPECT_THROW(TumblingOdometry{params}, InvalidParams);
   params = stated;
-  params.expert.again.doubt = 0.5;
+  params.expert.again.inflation = 0.5;
   EXPECT_THROW(TumblingOdometry{params}, InvalidParams);
 }
 

@@ -86,7 +86,7 @@ void roll(RollingOdometry& odometry) {
   for (std::size_t i = 0; i < readings[0].size(); ++i) {
     for (std::size_t k = 0; k < now.size(); ++k) {
       now[k] = readings[k][i];
-      // blows, and a turn that is none of a rolling sphere: modes are in doubt
+      // impacts, and a turn that is none of a rolling sphere: modes are in doubt
       if (i > 400 && i < 700 && i % 37 < 9)
         now[k].specific_force_m_s2 += Eigen::Vector3d(8.0, 3.0 * double(i % 4), -5.0);
       if (i > 550 && i < 800) now[k].angular_velocity_rad_s.x() += 0.4;
@@ -112,7 +112,7 @@ TEST_F(Stack, OfARollingSphereLiveAndSmoothed) {
   }
 }
 
-/// With `trouble` a stretch of the IMU is missing, and sweeps of another scale follow, in which it finds no place:
+/// With `trouble` a segment of the IMU is missing, and sweeps of another scale follow, in which it finds no place:
 /// sweeps that were rejected.
 std::size_t tumble_over(const test::ThrownBody& body, bool trouble, TumblingOdometry& odometry) {
   std::vector<test::ThrownBody::Sweep> sweeps = body.sweeps();

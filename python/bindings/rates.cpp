@@ -115,7 +115,8 @@ void bind_batch(nb::module_& m) {
       .def_ro("calibration", &RateReport::calibration, "what was learnt of the rig: can be given to the next run")
       .def_ro("calibration_mahalanobis", &RateReport::calibration_mahalanobis,
               "how far the rig's constants moved from what was known; far beyond 1 the prior is wrong")
-      .def_ro("rig_held", &RateReport::rig_held, "nothing was learnt, the constants were held")
+      .def_ro("calibration_at_prior", &RateReport::calibration_at_prior,
+              "nothing was learnt, the constants stayed at their prior")
       .def_ro("rail", &RateReport::rail, "in use: gyro x y z [rad/s], accelerometer [m/s^2]; None: not seen")
       .def_prop_ro(
           "planes", [](const RateReport& r) { return as_list(r.planes); },

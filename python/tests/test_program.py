@@ -167,7 +167,7 @@ def test_carried_stream(twirl):
     own, long = through(), through(lag_s=1.5, window_s=1.8)
     raw = off(samples[1], truth)
     assert off(own.rate, truth) < 0.35 * raw
-    assert off(long.rate, batch.rate) < 0.1 * raw  # different turns in a few stretches are why this is no tighter
+    assert off(long.rate, batch.rate) < 0.1 * raw  # different turns in a few segments are why this is no tighter
     assert np.count_nonzero((own.clipped_axes != 0) != clipped) <= 0.05 * np.count_nonzero(clipped)
     within = np.abs(own.rate - truth) < 3.0 * np.sqrt(own.covariance.diagonal(axis1=1, axis2=2))
     assert within[clipped].mean() > 0.9

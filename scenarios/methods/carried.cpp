@@ -42,7 +42,7 @@ Status run_carried(const sim::Sensors& sensors, const sim::Values& parameters, s
 void report_carried(const CarriedSmoother::Report& report, std::map<std::string, double>& health) {
   health["iterations"] = report.iterations;
   health["converged"] = report.converged ? 1.0 : 0.0;
-  health["hand_surprise"] = report.hand_surprise;
+  health["hand_mahalanobis"] = report.hand_mahalanobis;
   health["turns_asked"] = report.turns_asked;
   health["turns_taken"] = report.turns_taken;
   health["turns_open"] = report.turns_open;

@@ -143,7 +143,7 @@ Status check_turning_about_pivots(const sim::Sensors& sensors, std::span<const I
   const PivotCheck pivots(params);
   const PivotCheck::Found found = pivots.find(samples, rates);
   estimate.health["pivot_evidence"] = found.evidence;
-  estimate.health["pivot_stretches"] = static_cast<double>(found.counted);
+  estimate.health["pivot_segments"] = static_cast<double>(found.counted);
   if (std::isfinite(found.scale_sigma)) {
     estimate.health["pivot_scale"] = found.scale;
     estimate.health["pivot_scale_sigma"] = found.scale_sigma;

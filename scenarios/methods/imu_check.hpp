@@ -33,7 +33,7 @@ Status check_turning_between_rests(const sim::Sensors& sensors, std::span<const 
                                    std::span<const RateState> rates, Estimate& estimate);
 
 /// Whether a body that is held turns as `rates` say, one for each sample, those of an estimate of rates or what an
-/// attitude was turned by (PivotCheck): `pivot_evidence` for another reading of the gyro and from how many stretches,
+/// attitude was turned by (PivotCheck): `pivot_evidence` for another reading of the gyro and from how many segments,
 /// `pivot_scale` by which the rates explain most, with its deviation, and `imu_implausible`. Rates that are not
 /// `measured` do not count. O(N), a millisecond for a second at 100 Hz.
 Status check_turning_about_pivots(const sim::Sensors& sensors, std::span<const ImuSample> samples,

@@ -16,7 +16,7 @@ namespace tumble::scenarios {
 /// `rates`, those of a smoother that believes in flight and contact, with what it tells of its run, are joined with
 /// those of the other. It is asked only where it may matter: where a clipped sample is not clearly in flight or
 /// contact. Adds the shares of the regimes to `health`, `regime_carried_asked` with them. Returns the largest
-/// probability that a hand held the body throughout a stretch of clipped samples; 0 where nothing was judged.
+/// probability that a hand held the body throughout a segment of clipped samples; 0 where nothing was judged.
 double join_regimes(const sim::Sensors& sensors, std::span<const ImuSample> samples, const RateReport& report,
                     std::vector<RateState>& rates, std::map<std::string, double>& health);
 

@@ -69,7 +69,7 @@ void report_health(const RateReport& report, std::map<std::string, double>& heal
   health["converged"] = report.converged ? 1.0 : 0.0;
   health["restarts"] = report.restarts;
   health["calibration_mahalanobis"] = report.calibration_mahalanobis;
-  health["rig_held"] = report.rig_held ? 1.0 : 0.0;
+  health["calibration_at_prior"] = report.calibration_at_prior ? 1.0 : 0.0;
   health["flight_share"] = report.flight_share;
   health["readings_void"] = static_cast<double>(report.void_readings);
   health["rails_disagreeing"] =
@@ -202,7 +202,8 @@ Estimate run_rate_tumble(const sim::Sensors& sensors, const sim::Values& paramet
       tell_frozen_axes(sensors, samples, estimate);
     }
     estimate.health["imus"] = 1.0 + static_cast<double>(smoothed.auxiliary_imus);
-    if (estimate.status.ok() && !smoothed.report.rig_held && found != nullptr) *found = learnt(smoothed.report);
+    if (estimate.status.ok() && !smoothed.report.calibration_at_prior && found != nullptr)
+      *found = learnt(smoothed.report);
   }
   count_sources(estimate.rates, estimate.health);
   return estimate;

@@ -106,8 +106,8 @@ Estimate run_rate_tumble_lag(const sim::Sensors& sensors, const sim::Values& par
   const RateStream::State& state = all.rate;
   // one whose constants were dropped may not have learnt anything since
   const RigConstants::Matrix before = stream.start().rig_covariance;
-  const bool held = !(state.rig_covariance.topLeftCorner<3, 3>().trace() < before.topLeftCorner<3, 3>().trace());
-  estimate.health["rig_held"] = held ? 1.0 : 0.0;
+  const bool at_prior = !(state.rig_covariance.topLeftCorner<3, 3>().trace() < before.topLeftCorner<3, 3>().trace());
+  estimate.health["calibration_at_prior"] = at_prior ? 1.0 : 0.0;
   estimate.health["rig_resets"] = static_cast<double>(state.rig_resets);
   estimate.health["device_unlike"] = state.device.front().open.unlike;
   estimate.health["steps_skipped"] = static_cast<double>(state.failures);
@@ -120,7 +120,7 @@ Estimate run_rate_tumble_lag(const sim::Sensors& sensors, const sim::Values& par
   estimate.health["regime_carried_joined"] = static_cast<double>(all.joined);
   estimate.health["regime_carried_starts"] = static_cast<double>(all.starts);
   estimate.health["carried_steps_skipped"] = static_cast<double>(all.carried.failures);
-  if (estimate.status.ok() && !held && found != nullptr) {
+  if (estimate.status.ok() && !at_prior && found != nullptr) {
     *found = learnt_by(stream, params.rate, state);
     if (given != nullptr) (*found)->device_errors = given->device_errors;  // the stream does not estimate them
   }

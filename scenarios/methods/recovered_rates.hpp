@@ -17,7 +17,7 @@ struct RecoveredRates {
   std::vector<Eigen::Matrix3d> covariances_rad2_s2;  ///< one per sample, sensor axes; zero of those that are as read
   std::vector<RateSource> sources;                   ///< one per sample, of rate/tumble; all `measured` without it
   bool answered = false;                             ///< a reading clips, and rate/tumble has an answer
-  /// Largest probability that a hand held the body throughout a stretch of clipped samples; 0 where nothing was asked.
+  /// Largest probability that a hand held the body throughout a segment of clipped samples; 0 where nothing was asked.
   double carried = 0.0;
 };
 

@@ -30,7 +30,8 @@ struct LearntRig {
   void keep(const RailPlanes& planes, Triad triad = Triad::gyro);
 };
 
-/// What a run has learnt. When the run held its constants (RateReport::rig_held) that is what it was given.
+/// What a run has learnt. When the run left its constants at their prior (RateReport::calibration_at_prior) that is
+/// what it was given.
 LearntRig learnt(const RateReport& report);
 
 /// Gives it to the next run: constants with their covariance times `trust` (>= 1: rigs are taken apart and put together

@@ -27,7 +27,7 @@ TimeNs window_start(std::span<const ImuSample> samples, std::size_t k) {
   return samples.size() > 1 ? 2 * samples[0].time_ns - samples[1].time_ns : samples[0].time_ns;
 }
 
-/// Calls `add(k, from, to)` for each window that touches the stretch; the first is stretched back to its start.
+/// Calls `add(k, from, to)` for each window that touches the segment; the first is stretched back to its start.
 template <typename Add>
 void for_windows(std::span<const ImuSample> samples, TimeNs from_ns, TimeNs to_ns, Add add) {
   const auto first = std::upper_bound(samples.begin(), samples.end(), from_ns,

@@ -150,7 +150,7 @@ void report_end(const CalibrationVerdict& calibration, const Localisation& local
     held += sweep.verdict == SweepVerdict::registered;
   }
   const double share = moving > 0 ? static_cast<double>(held) / static_cast<double>(moving) : 1.0;
-  estimate.health["held_share"] = share;
+  estimate.health["well_constrained_share"] = share;
   estimate.health["sigma_largest_m"] = localisation.largest_sigma_m();
   estimate.health["innovation_second"] = localisation.second_innovation();
   const bool elsewhere = !calibration.converged && calibration.moved > kBelieved;
@@ -215,7 +215,7 @@ Estimate run_passes(const sim::LidarRecord& lidar, std::span<const ImuSample> sa
   Estimate run = before;
   run_sweeps(lidar, samples, odometry, params.time_offset_s, chain.along, run);
   if (!chain.calibration) return run;
-  double surprise = 0.0;
+  double mahalanobis = 0.0;
   int passes = 1;
   const auto again = [&] {
     run = before;
@@ -228,12 +228,12 @@ Estimate run_passes(const sim::LidarRecord& lidar, std::span<const ImuSample> sa
     params.time_offset_s = learnt.time_offset_s;
   };
   while (run.status.ok() && tells_calibration(run)) {
-    surprise = given_calibration(params, given).moved(odometry.calibration());
-    if (surprise <= kBelieved || passes > kSearches) break;
+    mahalanobis = given_calibration(params, given).moved(odometry.calibration());
+    if (mahalanobis <= kBelieved || passes > kSearches) break;
     start_from(odometry.calibration());
     again();
   }
-  const bool settled = run.status.ok() && tells_calibration(run) && surprise <= kBelieved;
+  const bool settled = run.status.ok() && tells_calibration(run) && mahalanobis <= kBelieved;
   if (settled) {
     const auto sigma = odometry.calibration_weight().diagonal().cwiseSqrt().eval();
     start_from(odometry.calibration());
@@ -244,7 +244,7 @@ Estimate run_passes(const sim::LidarRecord& lidar, std::span<const ImuSample> sa
   }
   if (passes > 1) run.health["passes"] = passes;
   verdict = {given_calibration(given, given).moved(odometry.calibration()), settled};
-  run.health["calibration_surprise"] = verdict.moved;
+  run.health["lidar_calibration_mahalanobis"] = verdict.moved;
   run.health["calibration_unconverged"] = settled ? 0.0 : 1.0;
   return run;
 }
@@ -362,7 +362,7 @@ void conclude_sweeps(const LidarInertialOdometry& odometry, const GivenCalibrati
   gather_poses(estimate);
   report_innovations(estimate);
   const CalibrationVerdict calibration{given.moved(odometry.calibration()), false};
-  estimate.health["calibration_surprise"] = calibration.moved;
+  estimate.health["lidar_calibration_mahalanobis"] = calibration.moved;
   report_end(calibration, localisation, estimate);
   report_scale(scale, estimate);
   draw_map(odometry, estimate);

@@ -46,7 +46,7 @@ void settle(std::vector<PoseState> last_word, LidarInertialOdometry::SweepReport
 
 /// Poses, map and verdict of a run whose sweeps and their ends the estimate holds; `too_few` when none was registered.
 /// `localisation`: of the sweeps as the mapper first told of them. A calibration that has moved by more than five of
-/// the deviations with which it was given was given wrong (health `calibration_surprise`).
+/// the deviations with which it was given was given wrong (health `lidar_calibration_mahalanobis`).
 void conclude_sweeps(const LidarInertialOdometry& odometry, const GivenCalibration& given, const SweepScale& scale,
                      const Localisation& localisation, Estimate& estimate);
 

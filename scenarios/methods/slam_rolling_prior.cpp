@@ -39,7 +39,7 @@ struct AlongParams {
   double grip_sigma_share = 4e-3, still_sigma_m_s = 3e-4, loose_sigma_share = 0.1, loose_sigma_m_s = 0.03;
   double moving_m_s = 0.03;
   double correction_m = 0.03, correction_rad = 0.015, loose_correction_m = 0.1;
-  double stretch_m = 0.5, stretch_sigma_m = 3e-3;
+  double segment_m = 0.5, segment_sigma_m = 3e-3;
   double mended_sigmas = 4.0, mended_share = 0.01;
 
   template <class Self, class Visitor>
@@ -63,10 +63,10 @@ struct AlongParams {
     visit(p.correction_rad, {"along_correction_rad", "rad", 1e-6, 3.0, "and one that turns it by more"});
     visit(p.loose_correction_m,
           {"along_loose_correction_m", "m", 0.0, 100.0, "so much more is believed while the radius is in doubt"});
-    visit(p.stretch_m,
-          {"along_stretch_m", "m", 0.01, 100.0, "of rolled way, over which the lidar measures the radius"});
-    visit(p.stretch_sigma_m, {"along_stretch_sigma_m", "m", 1e-6, 10.0,
-                              "of a stretch at the least: neither the centre nor the registration is better known"});
+    visit(p.segment_m,
+          {"along_segment_m", "m", 0.01, 100.0, "of rolled way, over which the lidar measures the radius"});
+    visit(p.segment_sigma_m, {"along_segment_sigma_m", "m", 1e-6, 10.0,
+                              "of a segment at the least: neither the centre nor the registration is better known"});
     visit(p.mended_sigmas, {"along_mended_sigmas", "1", 0.0, 1e3,
                             "standard deviations, beyond which the lidar's radius takes the place of the stated one"});
     visit(p.mended_share, {"along_mended_share", "1", 0.0, 1.0,
@@ -119,15 +119,15 @@ struct Radius {
   double m = 0.0, sigma_m = 0.0;
 };
 
-/// The radius by which rolling of `radius_m` goes as far as the registered sweeps do, over stretches on which the
+/// The radius by which rolling of `radius_m` goes as far as the registered sweeps do, over segments on which the
 /// contact held. None when there are too few.
 std::optional<Radius> radius_by_lidar(const Estimate& rolled, const Estimate& registered, const sim::Sensors& sensors,
                                       double radius_m, const AlongParams& params) {
   const Eigen::Isometry3d T_IG =
       sensors.imus.front().T_BI.inverse(Eigen::Isometry) * Eigen::Translation3d(rolled.centre_B_m);
   double squares = 0.0, products = 0.0;
-  std::vector<Eigen::Vector2d> stretches;  // rolled, registered
-  bool open = false;                       // a stretch has begun there:
+  std::vector<Eigen::Vector2d> segments;  // rolled, registered
+  bool open = false;                      // a segment has begun there:
   Eigen::Vector3d from_rolled = Eigen::Vector3d::Zero(), from_registered = Eigen::Vector3d::Zero();
   std::size_t k = 0;
   for (const LidarInertialOdometry::SweepReport& sweep : registered.sweeps) {
@@ -138,25 +138,25 @@ std::optional<Radius> radius_by_lidar(const Estimate& rolled, const Estimate& re
     const Eigen::Vector3d p_rolled = rolled.poses[k].p_WA_m;
     const Eigen::Vector3d p_registered =
         (Eigen::Translation3d(sweep.pose.p_WA_m) * sweep.pose.q_WA * T_IG).translation();
-    if (open && (p_rolled - from_rolled).norm() < params.stretch_m) continue;
+    if (open && (p_rolled - from_rolled).norm() < params.segment_m) continue;
     if (open) {
-      const Eigen::Vector2d stretch((p_rolled - from_rolled).norm(), (p_registered - from_registered).norm());
-      squares += stretch.x() * stretch.x();
-      products += stretch.x() * stretch.y();
-      stretches.push_back(stretch);
+      const Eigen::Vector2d segment((p_rolled - from_rolled).norm(), (p_registered - from_registered).norm());
+      squares += segment.x() * segment.x();
+      products += segment.x() * segment.y();
+      segments.push_back(segment);
     }
     open = true;
     from_rolled = p_rolled;
     from_registered = p_registered;
   }
-  if (stretches.size() < 2) return std::nullopt;
+  if (segments.size() < 2) return std::nullopt;
   const double ratio = products / squares;
   double residuals = 0.0;
-  for (const Eigen::Vector2d& stretch : stretches) {
-    residuals += (stretch.y() - ratio * stretch.x()) * (stretch.y() - ratio * stretch.x());
+  for (const Eigen::Vector2d& segment : segments) {
+    residuals += (segment.y() - ratio * segment.x()) * (segment.y() - ratio * segment.x());
   }
-  const double scatter_m = std::sqrt(residuals / static_cast<double>(stretches.size() - 1));
-  return Radius{radius_m * ratio, radius_m * std::max(scatter_m, params.stretch_sigma_m) / std::sqrt(squares)};
+  const double scatter_m = std::sqrt(residuals / static_cast<double>(segments.size() - 1));
+  return Radius{radius_m * ratio, radius_m * std::max(scatter_m, params.segment_sigma_m) / std::sqrt(squares)};
 }
 
 constexpr const char* kRadius = "radius_m";

@@ -35,7 +35,7 @@ SlamParams with_calibration(SlamParams params);
 /// Few matches are believed where they agree with the prior: where it rests on rates that are known throughout. With
 /// the clipped gyro it leads astray (`hill` 8, `slam/tumble_gyro_only`: 272 m off), and baselines stay what they were.
 SlamParams with_few_matches(SlamParams params);
-/// With the excess of clipped axes estimated in the registration.
+/// With the saturation deficit of clipped axes estimated in the registration.
 SlamParams with_saturation_deficit(SlamParams params);
 
 /// The parameters of a method on the chain; what the recording states, and of `fixed` nothing.

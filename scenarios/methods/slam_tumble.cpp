@@ -42,13 +42,12 @@ Estimate run(const sim::Sensors& sensors, const sim::Values& parameters, const O
 }  // namespace
 
 Method slam_tumble() {
-  return rig_slam(
-      {.name = "tumble",
-       .doc =
-           "The chain of icp with the rates of rate/tumble, the excess of clipped axes estimated in the registration.",
-       .ours = true,
-       .settings = {&chain_settings(), &rate_settings()}},
-      run);
+  return rig_slam({.name = "tumble",
+                   .doc = "The chain of icp with the rates of rate/tumble, the saturation deficit of clipped axes "
+                          "estimated in the registration.",
+                   .ours = true,
+                   .settings = {&chain_settings(), &rate_settings()}},
+                  run);
 }
 
 }  // namespace tumble::scenarios

@@ -39,13 +39,12 @@ Status railed_rates(const sim::Sensors& sensors, std::span<const ImuSample> samp
 }
 
 Method slam_tumble_gyro_only() {
-  return rig_slam(
-      {.name = "tumble_gyro_only",
-       .doc =
-           "The chain of tumble with the clipped gyro: the excess of clipped axes comes from the registration alone.",
-       .ours = true,
-       .settings = {&settings()}},
-      run);
+  return rig_slam({.name = "tumble_gyro_only",
+                   .doc = "The chain of tumble with the clipped gyro: the saturation deficit of clipped axes comes "
+                          "from the registration alone.",
+                   .ours = true,
+                   .settings = {&settings()}},
+                  run);
 }
 
 }  // namespace tumble::scenarios

@@ -41,8 +41,8 @@ class FieldHasher : public Hasher {
     constexpr std::size_t kLength = (std::size_t{1} << 20) / sizeof(Row);
     text(name);
     count(rows.size());
-    rows.for_stretches(kLength,
-                       [&](std::size_t, std::span<const Row> stretch) { bytes(stretch.data(), stretch.size_bytes()); });
+    rows.for_segments(kLength,
+                      [&](std::size_t, std::span<const Row> segment) { bytes(segment.data(), segment.size_bytes()); });
   }
   template <class Row>
   void optional_rows(const char* name, const std::vector<Row>& given, const char* unit, const char* columns,

@@ -48,7 +48,7 @@ Eigen::Isometry3d true_mounting(const sim::Truth& truth, const std::string& fram
 /// read back exactly; `origin_ns` is added to the times. Without the instants that a reference does not know.
 void export_tum(const sim::Truth& truth, const std::filesystem::path& file, std::int64_t origin_ns = 0,
                 const std::string& frame = "body");
-/// The same a stretch at a time.
+/// The same a segment at a time.
 void export_tum(const StoredTruth& truth, const std::filesystem::path& file, std::int64_t origin_ns = 0,
                 const std::string& frame = "body");
 

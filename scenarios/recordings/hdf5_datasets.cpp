@@ -47,7 +47,7 @@ Handle space_of(std::size_t rows, std::size_t columns) {
 }
 
 /// Rows from `first` on of what the dataset has in the file.
-Handle stretch_of(const Handle& dataset, std::size_t first, std::size_t rows, std::size_t columns) {
+Handle segment_of(const Handle& dataset, std::size_t first, std::size_t rows, std::size_t columns) {
   Handle space(H5Dget_space(dataset.get()), H5Sclose);
   const std::array<hsize_t, 2> start = {first, 0}, count = {rows, columns};
   H5Sselect_hyperslab(space.get(), H5S_SELECT_SET, start.data(), nullptr, count.data(), nullptr);
@@ -106,17 +106,17 @@ void Group::write_rows(const std::string& name, const void* data, std::size_t ro
   describe_rows(std::move(dataset), name, unit, column_names);
 }
 
-void Group::write_stretch(const Handle& dataset, const std::string& name, std::size_t first, const void* data,
+void Group::write_segment(const Handle& dataset, const std::string& name, std::size_t first, const void* data,
                           std::size_t rows, std::size_t columns, Scalar scalar) const {
-  const Handle memory = space_of(rows, columns), space = stretch_of(dataset, first, rows, columns);
+  const Handle memory = space_of(rows, columns), space = segment_of(dataset, first, rows, columns);
   if (H5Dwrite(dataset.get(), memory_type(scalar), memory.get(), space.get(), H5P_DEFAULT, data) < 0) {
     fail(name, "cannot be written" + last_error());
   }
 }
 
-void Group::read_stretch(const Handle& dataset, const std::string& name, std::size_t first, void* data,
+void Group::read_segment(const Handle& dataset, const std::string& name, std::size_t first, void* data,
                          std::size_t rows, std::size_t columns, Scalar scalar) const {
-  const Handle memory = space_of(rows, columns), space = stretch_of(dataset, first, rows, columns);
+  const Handle memory = space_of(rows, columns), space = segment_of(dataset, first, rows, columns);
   if (H5Dread(dataset.get(), memory_type(scalar), memory.get(), space.get(), H5P_DEFAULT, data) < 0) {
     fail(name, "cannot be read" + last_error());
   }

@@ -133,8 +133,8 @@ class Group {
   void write(const std::string& name, const ColumnFile<Row>& rows, const std::string& unit, const std::string& columns,
              bool compressed) const {
     Handle dataset = create_rows(name, rows.size(), RowLayout<Row>::columns, RowLayout<Row>::scalar, compressed);
-    rows.for_stretches(rows_in_chunk(sizeof(Row)), [&](std::size_t first, std::span<const Row> stretch) {
-      write_stretch(dataset, name, first, stretch.data(), stretch.size(), RowLayout<Row>::columns,
+    rows.for_segments(rows_in_chunk(sizeof(Row)), [&](std::size_t first, std::span<const Row> segment) {
+      write_segment(dataset, name, first, segment.data(), segment.size(), RowLayout<Row>::columns,
                     RowLayout<Row>::scalar);
     });
     describe_rows(std::move(dataset), name, unit, columns);
@@ -151,12 +151,12 @@ class Group {
   void read(const std::string& name, ColumnFile<Row>& rows) const {
     const Handle dataset = open_dataset(name);
     const std::size_t count = count_rows(dataset, name, RowLayout<Row>::columns, RowLayout<Row>::scalar);
-    std::vector<Row> stretch;
-    for (std::size_t first = 0; first < count; first += stretch.size()) {
-      stretch.resize(std::min(rows_in_chunk(sizeof(Row)), count - first));
-      read_stretch(dataset, name, first, stretch.data(), stretch.size(), RowLayout<Row>::columns,
+    std::vector<Row> segment;
+    for (std::size_t first = 0; first < count; first += segment.size()) {
+      segment.resize(std::min(rows_in_chunk(sizeof(Row)), count - first));
+      read_segment(dataset, name, first, segment.data(), segment.size(), RowLayout<Row>::columns,
                    RowLayout<Row>::scalar);
-      rows.append(std::span(std::as_const(stretch)));
+      rows.append(std::span(std::as_const(segment)));
     }
   }
   void write_texts(const std::string& name, const std::vector<std::string>& texts) const;
@@ -169,9 +169,9 @@ class Group {
                      bool compressed) const;
   void describe_rows(Handle dataset, const std::string& name, const std::string& unit,
                      const std::string& column_names) const;
-  void write_stretch(const Handle& dataset, const std::string& name, std::size_t first, const void* data,
+  void write_segment(const Handle& dataset, const std::string& name, std::size_t first, const void* data,
                      std::size_t rows, std::size_t columns, Scalar scalar) const;
-  void read_stretch(const Handle& dataset, const std::string& name, std::size_t first, void* data, std::size_t rows,
+  void read_segment(const Handle& dataset, const std::string& name, std::size_t first, void* data, std::size_t rows,
                     std::size_t columns, Scalar scalar) const;
   Handle open_dataset(const std::string& name) const;
   std::size_t count_rows(const Handle& dataset, const std::string& name, std::size_t columns, Scalar scalar) const;

@@ -115,7 +115,7 @@ bool is_repoimu(const std::filesystem::path& path);
 /// A flight log of AirbrakesV2 (NCSU High-Powered Rocketry Club, MIT): columns by name, timestamp_seconds,
 /// raw_acceleration_{x,y,z}_gs, raw_angular_rate_{x,y,z}_deg_per_s, magnetic_field_{x,y,z}_microteslas if there; others
 /// are left alone. There is no reference: what its own filter estimated is no truth. Rows that repeat a stamp are left
-/// out and counted; of stretches more than a second apart the longest is kept, and said. Throws BadInput as above.
+/// out and counted; of segments more than a second apart the longest is kept, and said. Throws BadInput as above.
 Imported import_airbrakes(const std::filesystem::path& path);
 
 /// Whether the file's header is one of AirbrakesV2.

@@ -18,24 +18,24 @@ void PointStore::take(sim::LidarRecord& record) {
 namespace {
 
 template <class Row>
-std::vector<Row> stretch(const std::vector<Row>& rows, std::size_t first, std::size_t last) {
+std::vector<Row> segment(const std::vector<Row>& rows, std::size_t first, std::size_t last) {
   const auto begin = rows.begin() + static_cast<std::ptrdiff_t>(first);
   return {begin, begin + static_cast<std::ptrdiff_t>(last - first)};
 }
 
 template <class Row>
-std::vector<Row> stretch(const ColumnFile<Row>& rows, std::size_t first, std::size_t last) {
+std::vector<Row> segment(const ColumnFile<Row>& rows, std::size_t first, std::size_t last) {
   return rows.rows(first, last);
 }
 
 /// `points`: a PointStore, or the record itself.
 template <class Points>
 void take_points(const Points& points, std::size_t first, std::size_t last, sim::LidarRecord& out) {
-  out.position_L_m = stretch(points.position_L_m, first, last);
-  out.range_m = stretch(points.range_m, first, last);
-  out.intensity = stretch(points.intensity, first, last);
-  out.offset_ns = stretch(points.offset_ns, first, last);
-  out.ring = stretch(points.ring, first, last);
+  out.position_L_m = segment(points.position_L_m, first, last);
+  out.range_m = segment(points.range_m, first, last);
+  out.intensity = segment(points.intensity, first, last);
+  out.offset_ns = segment(points.offset_ns, first, last);
+  out.ring = segment(points.ring, first, last);
 }
 
 }  // namespace

@@ -133,8 +133,8 @@ template <class Row, class Judge>
 std::string first_wrong(const ColumnFile<Row>& rows, const Judge& judge) {
   constexpr std::size_t kLength = (std::size_t{1} << 20) / sizeof(Row);
   std::string problem;
-  rows.for_stretches(kLength, [&](std::size_t first, std::span<const Row> stretch) {
-    if (problem.empty()) problem = first_wrong(stretch, judge, first);
+  rows.for_segments(kLength, [&](std::size_t first, std::span<const Row> segment) {
+    if (problem.empty()) problem = first_wrong(segment, judge, first);
   });
   return problem;
 }

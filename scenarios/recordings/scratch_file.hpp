@@ -43,7 +43,7 @@ class ScratchFile {
   std::uint64_t bytes_ = 0;
 };
 
-/// A column of a recording in a ScratchFile: as a std::vector<Row>, by stretches. Without a folder it is empty and
+/// A column of a recording in a ScratchFile: as a std::vector<Row>, by segments. Without a folder it is empty and
 /// stays so.
 template <class Row>
 class ColumnFile {
@@ -62,9 +62,9 @@ class ColumnFile {
     read(first, out);
     return out;
   }
-  /// Calls `take(first, rows)` for stretches of `length` rows, the last of which may be shorter.
+  /// Calls `take(first, rows)` for segments of `length` rows, the last of which may be shorter.
   template <class Take>
-  void for_stretches(std::size_t length, Take&& take) const {
+  void for_segments(std::size_t length, Take&& take) const {
     std::vector<Row> rows;
     for (std::size_t first = 0; first < size(); first += rows.size()) {
       rows.resize(std::min(length, size() - first));
@@ -76,7 +76,7 @@ class ColumnFile {
   template <class Change>
   void change(Change&& change) {
     constexpr std::size_t kLength = (std::size_t{1} << 20) / sizeof(Row);
-    for_stretches(kLength, [&](std::size_t first, std::span<const Row> rows) {
+    for_segments(kLength, [&](std::size_t first, std::span<const Row> rows) {
       std::vector<Row> changed(rows.begin(), rows.end());
       for (Row& row : changed) change(row);
       file_->write(first * sizeof(Row), std::as_bytes(std::span(changed)));

@@ -31,8 +31,8 @@ constexpr const auto& edges() {
   if constexpr (kAxis == Axis::count) return kCountEdges;
 }
 
-/// Of each sample: how long the stretch of clipped samples is that it belongs to; 0 where it is not clipped.
-std::vector<double> stretch_lengths_s(const ScoredEstimate& scored) {
+/// Of each sample: how long the segment of clipped samples is that it belongs to; 0 where it is not clipped.
+std::vector<double> segment_lengths_s(const ScoredEstimate& scored) {
   const ClippingTruth& truth = clipping_truth(scored);
   const double period_s = 1e-9 * static_cast<double>(scored.sensors().imus.front().period_ns);
   std::vector<double> lengths(truth.size(), 0.0);
@@ -51,7 +51,7 @@ std::vector<double> stretch_lengths_s(const ScoredEstimate& scored) {
 template <Axis kAxis>
 double measure(const ScoredEstimate& scored, const PairedRate& pair) {
   if constexpr (kAxis == Axis::depth) return clipping_truth(scored).depth_rad_s(pair.sample);
-  if constexpr (kAxis == Axis::length) return scored.once(stretch_lengths_s)[pair.sample];
+  if constexpr (kAxis == Axis::length) return scored.once(segment_lengths_s)[pair.sample];
   if constexpr (kAxis == Axis::count) return static_cast<double>(std::popcount(pair.clipped_axes()));
 }
 
@@ -95,7 +95,7 @@ std::vector<MetricInfo> binned_rate_quantities() {
        Sense::lower},
       {"rate_error_p99_rad_s", Unit::rad_s, "99th percentile of the same", Sense::lower},
       {"clip_depth_rad_s", Unit::rad_s, "largest loss of an axis to the rail"},
-      {"clip_length_s", Unit::s, "length of the stretch of clipped samples"},
+      {"clip_length_s", Unit::s, "length of the segment of clipped samples"},
       {"clipped_axes", Unit::number, "number of clipped axes"},
   };
 }
@@ -104,7 +104,7 @@ std::vector<Metric> binned_rate_metrics() {
   std::vector<Metric> all;
   add_bins<Axis::depth>("clip_depth_rad_s", "whose axis with the largest loss lost so much to the rail", all,
                         std::make_index_sequence<kDepthEdges.size() - 1>());
-  add_bins<Axis::length>("clip_length_s", "in stretches of such length", all,
+  add_bins<Axis::length>("clip_length_s", "in segments of such length", all,
                          std::make_index_sequence<kLengthEdges.size() - 1>());
   add_bins<Axis::count>("clipped_axes", "with so many axes clipped", all,
                         std::make_index_sequence<kCountEdges.size() - 1>());

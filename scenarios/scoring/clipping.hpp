@@ -16,7 +16,7 @@ namespace tumble::scenarios {
 /// same errors, no rail) by more than one standard deviation of the gyro's white noise per sample, sqrt(density^2 /
 /// period), or 1e-6 rad/s if that is larger. What the rail takes away below the noise is nobody's loss. Behind tilted
 /// sensing elements (sim/imu/elements.hpp) this holds of the axes beside a clipped element too, which lose entries of
-/// the inverse of the elements' matrix times its excess: they count as clipped where that shows above the noise.
+/// the inverse of the elements' matrix times its deficit: they count as clipped where that shows above the noise.
 ///
 /// Where the truth is another instrument's (rates without unclipped twins: FORMAT.md, "References"), clipped are the
 /// axes at a rail that the reference confirms (reference_clipping.hpp), and samples that it does not know are not

@@ -23,7 +23,7 @@ struct MotionSummary {
   std::array<std::size_t, 3> axis_clipped_samples = {};  ///< per axis x, y, z
   std::size_t several_axes_samples = 0;                  ///< with two axes or more
   double clip_depth_max_rad_s = 0.0;                     ///< largest loss of an axis to the rail (ClippingTruth)
-  double clip_length_max_s = 0.0;                        ///< longest stretch of clipped samples in a row
+  double clip_length_max_s = 0.0;                        ///< longest segment of clipped samples in a row
   std::size_t accel_clipped_samples = 0;  ///< with a clipped accelerometer axis, by the same tolerance of its own noise
 };
 

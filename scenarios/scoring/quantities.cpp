@@ -37,7 +37,7 @@ std::vector<MetricInfo> motion_quantities() {
       {"motion_clipped_share", Unit::share, "of the moving samples, with a clipped gyro axis"},
       {"motion_clipped_samples", Unit::number, "number of those"},
       {"motion_clip_depth_max_rad_s", Unit::rad_s, "largest loss to the rail"},
-      {"motion_clip_length_max_s", Unit::s, "longest stretch clipped"},
+      {"motion_clip_length_max_s", Unit::s, "longest segment clipped"},
       {"motion_several_axes_share", Unit::share, "of the clipped samples, with two axes or more"},
       {"motion_accel_clipped_share", Unit::share, "of the moving samples, with a clipped accelerometer axis"},
   };

@@ -49,8 +49,8 @@ bool clipped_max(const ScoredEstimate& scored, double& value) {
   return quantile_of(scored.once(error_norms).clipped_rad_s, 1.0, value);
 }
 
-// A stretch: samples in a row with a clipped axis. Its error is the norm of the mean of its error vectors, an offset.
-bool stretch_max(const ScoredEstimate& scored, double& value) {
+// A segment: samples in a row with a clipped axis. Its error is the norm of the mean of its error vectors, an offset.
+bool segment_max(const ScoredEstimate& scored, double& value) {
   std::vector<double> offsets;
   Eigen::Vector3d sum = Eigen::Vector3d::Zero();
   double length = 0.0;
@@ -158,11 +158,11 @@ std::vector<Metric> rate_metrics() {
       {{"rate_error_clipped_max_rad_s", Unit::rad_s, "largest norm of the rate error at clipped samples", Sense::lower},
        Kind::rate,
        clipped_max},
-      {{"rate_error_stretch_max_rad_s", Unit::rad_s,
-        "largest, over stretches of clipped samples in a row, of the norm of the mean error: what offsets a map",
+      {{"rate_error_segment_max_rad_s", Unit::rad_s,
+        "largest, over segments of clipped samples in a row, of the norm of the mean error: what offsets a map",
         Sense::lower},
        Kind::rate,
-       stretch_max},
+       segment_max},
       {{"rate_coverage_3sigma_flight", Unit::share,
         "rate_coverage_3sigma of the samples in which the robot touched nothing", Sense::two_sided, Place::detail,
         kNormal3Sigma, Compared::by_difference},

@@ -39,7 +39,7 @@ std::vector<Score> score(Kind kind, const Estimate& estimate, const ScoringInput
 OutcomeStatus verdict(Kind kind, const ScoredEstimate& scored);
 OutcomeStatus verdict(Kind kind, const Estimate& estimate, const ScoringInput& input);
 
-/// Whether a trajectory is finite and ends nearer to the truth than the path is long, over the stretch that it answers,
+/// Whether a trajectory is finite and ends nearer to the truth than the path is long, over the segment that it answers,
 /// however short that is: what `verdict` asks of poses but for the holes.
 bool trajectory_holds(const ScoredEstimate& scored);
 

@@ -72,7 +72,7 @@ void state_no_rail(sim::ImuRecord& imu) {
   for (std::uint8_t& flags : imu.clip_flags) flags = static_cast<std::uint8_t>(flags & ~kGyroFlags);
 }
 
-/// Clipped readings give way to the unclipped ones with a constant error per stretch of clipping: what a rate method
+/// Clipped readings give way to the unclipped ones with a constant error per segment of clipping: what a rate method
 /// with that error would hand to a mapper. Nothing says any more that the gyro has clipped.
 void rate_error(sim::Sensors& sensors, const sim::Truth& truth, const sim::Situation& situation, double size) {
   const ClippingTruth clipping(sensors, truth);
@@ -122,7 +122,7 @@ std::span<const GivenError> given_errors() {
                  false,
                  radius},
       GivenError{{"rate_error_rad_s", 0.0, 0.0, 1000.0, "rad/s",
-                  "clipped readings give way to unclipped ones with an error of this size, constant over each stretch "
+                  "clipped readings give way to unclipped ones with an error of this size, constant over each segment "
                   "of clipping; every method takes them for readings"},
                  false,
                  rate_error},

@@ -20,7 +20,7 @@ namespace tumble::scenarios {
 /// | `motion_clips` | 1 when any sample of the primary gyro is clipped |
 /// | `motion_clipped_share` | of the moving samples, with a clipped gyro axis |
 /// | `motion_clipped_samples` | number of those |
-/// | `motion_clip_depth_max_rad_s`, `motion_clip_length_max_s` | largest loss to the rail, longest stretch clipped |
+/// | `motion_clip_depth_max_rad_s`, `motion_clip_length_max_s` | largest loss to the rail, longest segment clipped |
 /// | `motion_several_axes_share` | of the clipped samples, with two axes or more; NaN without clipped samples |
 /// | `motion_accel_clipped_share` | of the moving samples, with a clipped accelerometer axis |
 ///

@@ -16,7 +16,7 @@ namespace tumble::sim {
 ///   - while no element meets its rail the reading is u, bit for bit: neither M nor o can be seen;
 ///   - while element j alone is at its rail r, m_j . y = +r - o_j or -r - o_j: the rail is a plane in the readings,
 ///     tilted against the axes, not the same for the two signs;
-///   - the axes beside it are wrong too, by entries of M^-1 times the excess, while m_i . y = m_i . u still holds for
+///   - the axes beside it are wrong too, by entries of M^-1 times the deficit, while m_i . y = m_i . u still holds for
 ///     the free elements.
 /// Seen on real devices: planes tilted by 0.02 and 0.05, offsets of 0.05 rad/s between the signs (RepoIMU, the wand and
 /// the pendulum; scenarios/certificate/tilted_rail.cpp has the figures).

@@ -144,13 +144,13 @@ double ellipsoid_distance(const Vector3d& size, const Vector3d& point) {
   const double scale = size.maxCoeff();
   const Vector3d a = size / scale, y = point.cwiseAbs() / scale;
   const Vector3d a2 = a.cwiseAbs2();
-  const auto excess = [&](double t) {
+  const auto outside = [&](double t) {
     return a.cwiseProduct(y).cwiseQuotient(a2 + Vector3d::Constant(t)).squaredNorm() - 1;
   };
   double low = -a2.minCoeff(), high = a.cwiseProduct(y).norm();
   for (int i = 0; i < 100 && high - low > 1e-15 * (1.0 + std::abs(high)); ++i) {
     const double middle = 0.5 * (low + high);
-    (excess(middle) > 0.0 ? low : high) = middle;
+    (outside(middle) > 0.0 ? low : high) = middle;
   }
   Vector3d nearest = a2.cwiseProduct(y).cwiseQuotient(a2 + Vector3d::Constant(high));
   // a point on a plane of symmetry, close to the centre: the coordinate of the shortest axis is free, the surface sets

@@ -36,7 +36,7 @@ std::vector<Terrain> terrains(const engine::World& world) {
   return found;
 }
 
-/// A stretch of time in the ground.
+/// An interval of time in the ground.
 struct Spell {
   std::size_t steps = 0;
   double deepest_m = 0.0;

@@ -11,7 +11,7 @@ constexpr std::int64_t kWindow_ns = 10'000'000;
 constexpr double kGripSpeed_m_s = 0.02;
 
 struct Sums {
-  double weight = 0.0, slip = 0.0, excess = 0.0;
+  double weight = 0.0, slip = 0.0, overspin = 0.0;
 };
 
 /// Weighted slip speed of one contact, and by how much the speed of turning exceeds the speed of travelling there.
@@ -35,7 +35,7 @@ std::vector<ContactLabel> label_contacts(const Truth& truth) {
     Sums& sum = at[static_cast<std::size_t>(contact.time_ns / truth.period_ns)];
     sum.weight += one.weight;
     sum.slip += one.slip;
-    sum.excess += one.excess;
+    sum.overspin += one.overspin;
   }
   const std::size_t reach = static_cast<std::size_t>(kWindow_ns / truth.period_ns);
   std::vector<ContactLabel> labels(count, ContactLabel::air);
@@ -44,13 +44,13 @@ std::vector<ContactLabel> label_contacts(const Truth& truth) {
     for (std::size_t j = k > reach ? k - reach : 0; j <= std::min(k + reach, count - 1); ++j) {
       sum.weight += at[j].weight;
       sum.slip += at[j].slip;
-      sum.excess += at[j].excess;
+      sum.overspin += at[j].overspin;
     }
     if (sum.weight <= 0.0) continue;
     if (sum.slip < kGripSpeed_m_s * sum.weight)
       labels[k] = ContactLabel::grip;
     else
-      labels[k] = sum.excess > 0.0 ? ContactLabel::slip : ContactLabel::slide;
+      labels[k] = sum.overspin > 0.0 ? ContactLabel::slip : ContactLabel::slide;
   }
   return labels;
 }

@@ -33,13 +33,13 @@ Eigen::Matrix3d rows_of(const std::vector<Eigen::Vector3d>& elements) {
 }
 
 void count(const Eigen::Matrix3d& rows, const Eigen::Vector3d& lost, double range, unsigned called, Count& out) {
-  const Eigen::Vector3d excess = (rows * lost).cwiseAbs() / range;
+  const Eigen::Vector3d deficit = (rows * lost).cwiseAbs() / range;
   for (int j = 0; j < 3; ++j) {
     const bool call = (called >> j & 1u) != 0;
-    out.deep += excess[j] > kDeep;
-    out.found += call && excess[j] > kDeep;
+    out.deep += deficit[j] > kDeep;
+    out.found += call && deficit[j] > kDeep;
     out.called += call;
-    out.right += call && excess[j] > kNothing;
+    out.right += call && deficit[j] > kNothing;
   }
 }
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // rail_measures AXIS RAIL FILE...: what a gyro does at its rail of RAIL rad/s on AXIS (x, y, z), a line a file: share
 // of rows that repeat the readings before; of the gyro's own readings those at the rail; how long they stay there; the
-// true rate there; how far the readings of one sign, inside of stretches, scatter there, before and after a plane
+// true rate there; how far the readings of one sign, inside of segments, scatter there, before and after a plane
 // through them. FILE is a simulated recording (.h5) or one of RepoIMU (.csv), whose rate is the cameras'. Not a test.
 #include <Eigen/Dense>
 #include <algorithm>
@@ -107,7 +107,7 @@ Plane fit(const std::vector<Vector3d>& readings, int axis) {
 
 void print(const std::string& file, const Readings& readings, int axis, double rail_rad_s) {
   constexpr double kNear_rad_s = 0.3;  // elements' scale, offset and tilt move the rail by about so much
-  std::vector<double> rates, stretches_s;
+  std::vector<double> rates, segments_s;
   std::vector<Vector3d> inside[2];
   std::size_t at_rail = 0, run = 0;
   const std::vector<Vector3d>& gyro = readings.gyro;
@@ -121,7 +121,7 @@ void print(const std::string& file, const Readings& readings, int axis, double r
       if (readings.rate[k].allFinite()) rates.push_back(readings.rate[k].norm());
       if (k > 0 && railed(k - 1) && railed(k + 1)) inside[gyro[k][axis] > 0.0].push_back(gyro[k]);
     } else if (run > 0) {
-      stretches_s.push_back(static_cast<double>(run) * step_s);
+      segments_s.push_back(static_cast<double>(run) * step_s);
       run = 0;
     }
   }
@@ -132,8 +132,8 @@ void print(const std::string& file, const Readings& readings, int axis, double r
   };
   std::printf("%5.1f %5.1f %6.2f %4zu  %5.2f %5.2f  %5.1f %5.1f %5.1f  %4zu %7.4f %7.4f %7.4f %7.4f  %s\n",
               100.0 * readings.gyro_repeats, 100.0 * readings.accel_repeats,
-              100.0 * static_cast<double>(at_rail) / static_cast<double>(gyro.size()), stretches_s.size(),
-              quantile(stretches_s, 0.5), quantile(stretches_s, 1.0), quantile(rates, 0.5), quantile(rates, 0.9),
+              100.0 * static_cast<double>(at_rail) / static_cast<double>(gyro.size()), segments_s.size(),
+              quantile(segments_s, 0.5), quantile(segments_s, 1.0), quantile(rates, 0.5), quantile(rates, 0.9),
               quantile(rates, 0.99), plane.readings, plane.before, plane.after, plane.slope_1, plane.slope_2,
               file.c_str());
 }
@@ -147,7 +147,7 @@ int main(int argc, char** argv) {
     return 2;
   }
   std::printf(
-      "repeats [%%]  at rail      stretch [s]  true rate [rad/s]  plane of one sign: scatter [rad/s] and slopes\n"
+      "repeats [%%]  at rail      segment [s]  true rate [rad/s]  plane of one sign: scatter [rad/s] and slopes\n"
       " gyro accel    [%%]    n   med.  max.   med.  90 %%  99 %%     n  before   after\n");
   try {
     for (int i = 3; i < argc; ++i) {

@@ -225,9 +225,9 @@ Figures figures(const Request& request, const std::vector<sim::Recording>& recor
                 static_cast<unsigned long long>(request.first + i), name.c_str(), errors.size(),
                 scenarios::quantile(errors, 0.5), scenarios::quantile(errors, 0.9), 100.0 * within(own),
                 100.0 * rails.found_share(), rails.deep, 100.0 * rails.right_share());
-    std::printf(" delay %.2f ms, rounds %.0f, surprise %.1f, held %.0f, calibrated %.2f, together %.2f\n",
+    std::printf(" delay %.2f ms, rounds %.0f, mahalanobis %.1f, held %.0f, calibrated %.2f, together %.2f\n",
                 1e3 * health("accel_delay_s"), health("error_rounds"), health("calibration_mahalanobis"),
-                health("rig_held"), health("device_calibrated"), health("triads_together"));
+                health("calibration_at_prior"), health("device_calibrated"), health("triads_together"));
   }
   const std::vector<double> all = normalised(pool);
   out.median = scenarios::quantile(pool.clipped_rad_s(), 0.5);

@@ -53,11 +53,11 @@ bool converged(const scenarios::Estimate& estimate) {
   return true;
 }
 
-// Of the stretch that is being read.
+// Of the segment that is being read.
 struct Sum {
   Eigen::Vector3d error = Eigen::Vector3d::Zero();
   double contact = 0.0, accel = 0.0, variance = 0.0;
-  RatePool::Stretch stretch;
+  RatePool::Segment segment;
 };
 
 void print_share(std::span<const double> normalised) {
@@ -79,13 +79,13 @@ void RatePool::add(std::uint64_t seed, const sim::Recording& recording, const sc
                     std::sqrt(3e9 / static_cast<double>(std::max<std::int64_t>(1, record.period_ns)));
   Sum sum;
   const auto close = [&] {
-    const double count = static_cast<double>(sum.stretch.samples);
+    const double count = static_cast<double>(sum.segment.samples);
     if (count > 0.0) {
-      sum.stretch.mean_rad_s = (sum.error / count).norm();
-      sum.stretch.contact_share = sum.contact / count;
-      sum.stretch.accel_clipped_share = sum.accel / count;
-      sum.stretch.sigma_rad_s = std::sqrt(sum.variance / count);
-      stretches_.push_back(sum.stretch);
+      sum.segment.mean_rad_s = (sum.error / count).norm();
+      sum.segment.contact_share = sum.contact / count;
+      sum.segment.accel_clipped_share = sum.accel / count;
+      sum.segment.sigma_rad_s = std::sqrt(sum.variance / count);
+      segments_.push_back(sum.segment);
     }
     sum = {};
   };
@@ -109,9 +109,9 @@ void RatePool::add(std::uint64_t seed, const sim::Recording& recording, const sc
     called_measured_ += answered && estimate.rates[at].source == RateSource::measured;
     const bool contact = in_contact(recording, record.time_ns[k]);
     (contact ? contact_ : flight_).push_back(error.norm());
-    if (sum.stretch.samples++ == 0) sum.stretch.seed = seed;
-    sum.stretch.end_s = 1e-9 * static_cast<double>(record.time_ns[k]);
-    sum.stretch.largest_rad_s = std::max(sum.stretch.largest_rad_s, error.norm());
+    if (sum.segment.samples++ == 0) sum.segment.seed = seed;
+    sum.segment.end_s = 1e-9 * static_cast<double>(record.time_ns[k]);
+    sum.segment.largest_rad_s = std::max(sum.segment.largest_rad_s, error.norm());
     sum.error += error;
     sum.contact += contact ? 1.0 : 0.0;
     sum.accel += accel_clipped(recording, k) ? 1.0 : 0.0;
@@ -177,7 +177,7 @@ void print_runs(std::span<const RatePool> pools) {
   const auto reference =
       std::find_if(pools.begin(), pools.end(), [](const RatePool& pool) { return pool.name() == "tumble"; });
   std::printf(
-      "\nruns whose mean error exceeds the first method's by more than the noise; offset of stretches [rad/s]; ");
+      "\nruns whose mean error exceeds the first method's by more than the noise; offset of segments [rad/s]; ");
   std::printf("error over that of tumble\n");
   std::printf("%-16s %8s %8s | %8s %8s %8s %8s | %8s %8s %8s %8s\n", "method", "clipped", "free", "median", "p99",
               "max", ">0.5", "median", "mean", "rms", "p99");
@@ -189,7 +189,7 @@ void print_runs(std::span<const RatePool> pools) {
       free += !(run.free_mean_rad_s <= first.free_mean_rad_s + run.noise_rad_s);
     }
     std::vector<double> offsets;
-    for (const RatePool::Stretch& stretch : pool.stretches()) offsets.push_back(stretch.mean_rad_s);
+    for (const RatePool::Segment& segment : pool.segments()) offsets.push_back(segment.mean_rad_s);
     const auto beyond = std::count_if(offsets.begin(), offsets.end(), [](double x) { return !(x <= 0.5); });
     std::printf("%-16s %8d %8d | %8.4f %8.3f %8.3f %8td |", pool.name().c_str(), clipped, free, quantile(offsets, 0.5),
                 quantile(offsets, 0.99), quantile(offsets, 1.0), beyond);
@@ -203,14 +203,14 @@ void print_runs(std::span<const RatePool> pools) {
 }
 
 void print_worst(const RatePool& pool, std::size_t count) {
-  std::vector<RatePool::Stretch> worst(pool.stretches().begin(), pool.stretches().end());
+  std::vector<RatePool::Segment> worst(pool.segments().begin(), pool.segments().end());
   std::sort(worst.begin(), worst.end(), [](const auto& a, const auto& b) { return a.mean_rad_s > b.mean_rad_s; });
   worst.resize(std::min(count, worst.size()));
   if (worst.empty()) return;
-  std::printf("\n%s, of %zu stretches those with the largest offset\n", pool.name().c_str(), pool.stretches().size());
+  std::printf("\n%s, of %zu segments those with the largest offset\n", pool.name().c_str(), pool.segments().size());
   std::printf("%8s %8s %8s %8s %8s %8s %8s %10s\n", "seed", "end s", "samples", "offset", "largest", "sigma", "contact",
               "acc. rail");
-  for (const RatePool::Stretch& s : worst) {
+  for (const RatePool::Segment& s : worst) {
     std::printf("%8llu %8.2f %8zu %8.3f %8.3f %8.3f %8.2f %10.2f\n", static_cast<unsigned long long>(s.seed), s.end_s,
                 s.samples, s.mean_rad_s, s.largest_rad_s, s.sigma_rad_s, s.contact_share, s.accel_clipped_share);
   }

@@ -13,11 +13,11 @@
 
 namespace tumble::bench {
 
-/// Errors of one method of kind `rate`, over many runs. Clipped, stretch and contact as the scores define them
+/// Errors of one method of kind `rate`, over many runs. Clipped, segment and contact as the scores define them
 /// (ClippingTruth; samples in a row with a clipped axis; any contact within the window of the sample).
 class RatePool {
  public:
-  struct Stretch {
+  struct Segment {
     std::uint64_t seed = 0;
     double end_s = 0.0;
     std::size_t samples = 0;
@@ -50,14 +50,14 @@ class RatePool {
   std::span<const double> normalised_contact() const { return normalised_contact_; }
   /// Clipped samples that are neither called clipped nor doubted.
   std::size_t called_measured() const { return called_measured_; }
-  std::span<const Stretch> stretches() const { return stretches_; }
+  std::span<const Segment> segments() const { return segments_; }
   std::span<const Run> runs() const { return runs_; }
   double cpu_us_per_sample() const { return 1e6 * cpu_s_ / static_cast<double>(clipped_.size() + free_.size()); }
 
  private:
   std::string name_;
   std::vector<double> clipped_, free_, flight_, contact_, normalised_flight_, normalised_contact_;
-  std::vector<Stretch> stretches_;
+  std::vector<Segment> segments_;
   std::vector<Run> runs_;
   std::size_t called_measured_ = 0;
   double cpu_s_ = 0.0;
@@ -69,10 +69,10 @@ void print_errors(std::span<const RatePool> pools);
 void print_contact(std::span<const RatePool> pools);
 /// Coverage of three standard deviations with its 95 % interval, and the mean normalised squared error.
 void print_honesty(std::span<const RatePool> pools);
-/// Runs worse than the first pool by more than the gyro's noise, offsets of stretches, and every error as a multiple
+/// Runs worse than the first pool by more than the gyro's noise, offsets of segments, and every error as a multiple
 /// of that of the pool `tumble`.
 void print_runs(std::span<const RatePool> pools);
-/// The stretches with the largest offsets.
+/// The segments with the largest offsets.
 void print_worst(const RatePool& pool, std::size_t count);
 
 }  // namespace tumble::bench

@@ -2,7 +2,7 @@
 // rate_statistics SCENARIO FIRST LAST [--method NAME]... [--keep FOLDER] [--worst N] [--exact-mounting] [--learnt]:
 // simulates the draws without
 // lidar, runs methods of kind `rate` and prints their errors pooled over all clipped samples of all draws, coverage and
-// normalised squared error in flight and in contact, and the worst clipped stretches. The first method is what the
+// normalised squared error in flight and in contact, and the worst clipped segments. The first method is what the
 // others are held against; where `tumble` is among them, the last part holds all to it. FOLDER keeps recordings, so
 // that a second call need not simulate. With --exact-mounting methods are given the true lever arm; with --learnt
 // `tumble` and `tumble_lag` start from what `tumble` learns in another tumble of the same rig. Not a test: 2 to 3 s of

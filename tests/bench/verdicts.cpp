@@ -193,16 +193,16 @@ void judge(const scenarios::Method& method, const scenarios::SimulatedDraw& draw
   };
   std::printf(
       "%-10s %6llu %-22s %-9s error %9.4f deviations %8.2f (before %7.2f, root of chi2 %7.2f) %-5s "
-      "%-5s surprise %7.3g innovation %7.3g %7.3g rig %7.3g "
+      "%-5s mahalanobis %7.3g innovation %7.3g %7.3g rig %7.3g "
       "held %5.2f map %6.4f covers %6.4f scale %6.3f +- %6.3f slope %5.2f rest %5.3f missed %5.2f of %5.2f velocity "
       "%5.2f of %5.2f pivot %6.2f of %2.0f scale %6.4f +- %6.4f%s\n",
       draw.scenario.c_str(), static_cast<unsigned long long>(draw.seed), harm.c_str(), to_string(outcome.status),
       judged.error, judged.deviations, judged.before, judged.root_chi2, wrong ? "wrong" : "good", says ? "told" : "-",
-      health("calibration_surprise"), health("innovation_median"), health("innovation_90"),
-      health("calibration_mahalanobis"), health("held_share"), overlap, coverage, health("lidar_scale"),
+      health("lidar_calibration_mahalanobis"), health("innovation_median"), health("innovation_90"),
+      health("calibration_mahalanobis"), health("well_constrained_share"), overlap, coverage, health("lidar_scale"),
       health("lidar_scale_sigma"), health("imu_turning_slope"), health("imu_rest_force_share"),
       health("rest_gravity_missed_rad"), health("rest_gravity_missed_sigma_rad"), health("rest_velocity_share"),
-      health("rest_velocity_allowed_share"), health("pivot_evidence"), health("pivot_stretches"), health("pivot_scale"),
+      health("rest_velocity_allowed_share"), health("pivot_evidence"), health("pivot_segments"), health("pivot_scale"),
       health("pivot_scale_sigma"),
       wrong && !says ? "  <- silently wrong" : (!wrong && says && harm == "none" ? "  <- cries wolf" : ""));
   if (!estimate.status.ok()) std::printf("  %s\n", estimate.status.message().c_str());

@@ -12,7 +12,7 @@ namespace tumble::tools {
 
 namespace {
 
-/// The camera looks at where the robot is over so long a time: it follows, and does not shake with each blow.
+/// The camera looks at where the robot is over so long a time: it follows, and does not shake with each impact.
 constexpr double kFollow_s = 0.4;
 constexpr int kFollowSamples = 9;
 /// What stands at the end of the last frame until it begins anew.

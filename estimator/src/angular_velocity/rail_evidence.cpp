@@ -14,25 +14,25 @@ namespace {
 using Eigen::Vector2d;
 using Eigen::Vector3d;
 
-// Share of the stretches of a motion that keep their rate to the noise (spins, turntables): no stretch proves more by
+// Share of the segments of a motion that keep their rate to the noise (spins, turntables): no segment proves more by
 // its length than that it is one of them.
 constexpr double kConstantShare = 0.05;
-// A round top must bend by so many deviations within a stretch before flatness speaks against it.
+// A round top must bend by so many deviations within a segment before flatness speaks against it.
 constexpr double kBend = 3.0;
 // Levels that a constant rate may have near the largest, as a share of it.
 constexpr double kLevelShare = 0.2;
 // Readings of a window from which noise is told: residuals of a parabola; quantile of the windows taken for noise.
 constexpr std::size_t kNoiseWindow = 9;
 constexpr double kNoiseQuantile = 0.2;
-// What the smoothness of the other axes at the end of a stretch may tell at most.
+// What the smoothness of the other axes at the end of a segment may tell at most.
 constexpr double kKinkAlone = 2.5;
 // The other axes must move by so many deviations about an end for their smoothness to tell anything.
 constexpr double kMoving = 10.0;
-// Log likelihood from which a stretch counts that is thinner than noise, whatever its ends look like.
+// Log likelihood from which a segment counts that is thinner than noise, whatever its ends look like.
 constexpr double kThinAlone = 8.0;
 // Readings closer than this share of the level are equal (as RailDetector has it): scatter below it tells no more.
 constexpr double kEqualShare = 2e-5;
-// Of the scatter of a stretch: samples that its level, its slope and its two ends (windows that met the rail in a part
+// Of the scatter of a segment: samples that its level, its slope and its two ends (windows that met the rail in a part
 // only) take.
 constexpr std::size_t kThinTaken = 4;
 // A reading within so many deviations of the noise of a facet is at it; no more than this share of the level.
@@ -52,21 +52,21 @@ double window_noise(std::span<const Vector3d> window, int axis) {
   return std::sqrt(squares / (20.0 * static_cast<double>(count)));
 }
 
-struct Stretch {
+struct Segment {
   std::size_t first, last;  // of rates
   std::size_t size() const { return last - first + 1; }
 };
 
 // The run of neighbours that begins with inlier `at`, which moves to the first one after it.
-Stretch next_stretch(std::span<const std::size_t> inliers, std::size_t& at) {
-  Stretch out{inliers[at], inliers[at]};
+Segment next_segment(std::span<const std::size_t> inliers, std::size_t& at) {
+  Segment out{inliers[at], inliers[at]};
   for (++at; at < inliers.size() && inliers[at] == out.last + 1; ++at) ++out.last;
   return out;
 }
 
-// How much less the inside of a stretch scatters about a straight line than readings of a rate do, as a log likelihood
+// How much less the inside of a segment scatters about a straight line than readings of a rate do, as a log likelihood
 // ratio, rails.md (R65): noise belongs to a rate, what clips behind it has none. Nothing where digits hide the noise.
-double thinness(const DistinctReadings& readings, const RailFacet& facet, const Stretch& s) {
+double thinness(const DistinctReadings& readings, const RailFacet& facet, const Segment& s) {
   if (s.size() <= kThinTaken) return 0.0;
   const std::size_t first = s.first + 1, count = s.size() - 2;
   const double middle = 0.5 * static_cast<double>(count - 1);
@@ -90,14 +90,14 @@ double thinness(const DistinctReadings& readings, const RailFacet& facet, const 
   return scatter < noise ? free * (std::log(noise / scatter) - 0.5 * (1.0 - std::pow(scatter / noise, 2))) : 0.0;
 }
 
-// A stretch between what its neighbours let a round top bend by, and what it bends.
-struct StretchShape {
+// A segment between what its neighbours let a round top bend by, and what it bends.
+struct SegmentShape {
   double bend = 0.0, flat = 0.0;
   bool bends() const { return bend >= kBend * flat; }
 };
 
 // Nothing of a single reading, or where both ends of the recording are too near.
-std::optional<StretchShape> shape_of(const DistinctReadings& readings, const RailFacet& facet, const Stretch& s) {
+std::optional<SegmentShape> shape_of(const DistinctReadings& readings, const RailFacet& facet, const Segment& s) {
   const std::vector<Vector3d>& rates = readings.rates;
   const auto value = [&](std::size_t k) { return facet.sign * facet.row.dot(rates[k]); };
   // depth of the second neighbour outside of either end
@@ -110,14 +110,14 @@ std::optional<StretchShape> shape_of(const DistinctReadings& readings, const Rai
     low = std::min(low, value(k));
     high = std::max(high, value(k));
   }
-  // a parabola through both neighbours bends by this within the stretch: rails.md (R61)
+  // a parabola through both neighbours bends by this within the segment: rails.md (R61)
   const double n = static_cast<double>(s.size()), inside = (n - 1.0) / (n + 3.0);
-  return StretchShape{depth * inside * inside, std::max(high - low, 2.0 * facet.deviation)};
+  return SegmentShape{depth * inside * inside, std::max(high - low, 2.0 * facet.deviation)};
 }
 
-// The kink at one end of a stretch, rails.md (R64): second differences about it of the rail's own axis and of those
+// The kink at one end of a segment, rails.md (R64): second differences about it of the rail's own axis and of those
 // beside it, which an impact would bend too.
-double kink_evidence(const DistinctReadings& readings, const RailFacet& facet, const Stretch& s, bool after) {
+double kink_evidence(const DistinctReadings& readings, const RailFacet& facet, const Segment& s, bool after) {
   const std::vector<Vector3d>& rates = readings.rates;
   if (s.size() < 3 || (after ? s.last + 3 >= rates.size() : s.first < 3)) return 0.0;
   const double noise = readings.noise[facet.axis];
@@ -132,8 +132,8 @@ double kink_evidence(const DistinctReadings& readings, const RailFacet& facet, c
   return std::clamp(-std::log(5.0 * ratio), -0.5, kKinkAlone);
 }
 
-// What a stretch tells of the facet's slopes and level.
-Eigen::Matrix3d information_of(const DistinctReadings& readings, const RailFacet& facet, const Stretch& s) {
+// What a segment tells of the facet's slopes and level.
+Eigen::Matrix3d information_of(const DistinctReadings& readings, const RailFacet& facet, const Segment& s) {
   Vector3d mean = Vector3d::Zero();
   for (std::size_t k = s.first; k <= s.last; ++k) mean += readings.rates[k] / static_cast<double>(s.size());
   Vector3d A;
@@ -175,22 +175,22 @@ DistinctReadings distinct_readings(std::span<const Vector3d> readings, std::vect
   return out;
 }
 
-double stretch_evidence(const DistinctReadings& readings, const Eigen::Matrix2d& slope_information,
+double segment_evidence(const DistinctReadings& readings, const Eigen::Matrix2d& slope_information,
                         std::span<const std::size_t> inliers, RailFacet& facet) {
   const double thickness = 2.5 * facet.deviation, noise = readings.noise[facet.axis];
   const double of_level = std::log(kLevelShare * facet.level / thickness);
   double odds = 0.0;
-  facet.stretches = 0;
+  facet.segments = 0;
   Eigen::Matrix3d H = Eigen::Matrix3d::Zero();
   H.topLeftCorner<2, 2>() = slope_information;
   for (std::size_t at = 0; at < inliers.size();) {
-    const Stretch s = next_stretch(inliers, at);
-    const std::optional<StretchShape> shape = shape_of(readings, facet, s);
+    const Segment s = next_segment(inliers, at);
+    const std::optional<SegmentShape> shape = shape_of(readings, facet, s);
     if (!shape) continue;
     // thinner than the gyro's noise: no reading of a rate is
     const double thin = thinness(readings, facet, s);
     if (!shape->bends() && thin < kThinAlone) continue;
-    ++facet.stretches;
+    ++facet.segments;
     odds += std::max(0.0, thin);
     if (!shape->bends()) continue;
     // flatness and recurrence: rails.md (R62), (R63)
@@ -204,7 +204,7 @@ double stretch_evidence(const DistinctReadings& readings, const Eigen::Matrix2d&
     return facet.sign * facet.row.dot(readings.rates[k]) > facet.level + facet.tolerance;
   });
   odds -= kBeyond * std::max(0.0, static_cast<double>(beyond) - kStray * static_cast<double>(inliers.size()));
-  if (facet.stretches == 0) return -std::numeric_limits<double>::infinity();
+  if (facet.segments == 0) return -std::numeric_limits<double>::infinity();
   // nor is a reading told from the rail that is nearer to it than noise, from a facet that is off by as much elsewhere
   facet.tolerance = std::max(facet.tolerance, std::min(kAtRail * noise, kAtRailShareMax * facet.level));
   // what choosing the level and the slopes freely was worth, prior over posterior volume: rails.md (R66)

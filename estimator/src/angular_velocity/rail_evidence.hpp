@@ -25,13 +25,13 @@ struct RailFacet {
   Eigen::Vector3d row = Eigen::Vector3d::Zero();
   double level = 0.0;
   double deviation = 0.0, tolerance = 0.0;
-  int stretches = 0;  ///< runs of inliers that no round top explains
+  int segments = 0;  ///< runs of inliers that no round top explains
 };
 
 /// Log likelihood ratio of the facet's samples: at a rail, against tops of a motion or constant rates. Counts the
-/// stretches of `facet`. `slope_information`: of what was known of the slopes before. `inliers`: the readings at the
+/// segments of `facet`. `slope_information`: of what was known of the slopes before. `inliers`: the readings at the
 /// facet, of DistinctReadings::rates, rising.
-double stretch_evidence(const DistinctReadings& readings, const Eigen::Matrix2d& slope_information,
+double segment_evidence(const DistinctReadings& readings, const Eigen::Matrix2d& slope_information,
                         std::span<const std::size_t> inliers, RailFacet& facet);
 
 }  // namespace tumble

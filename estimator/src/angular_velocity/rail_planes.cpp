@@ -101,7 +101,7 @@ RailPlane joined(const RailPlaneFinder::Params& params, const DistinctReadings& 
     weights += side->samples;
     const std::size_t i = side->sign > 0 ? 1 : 0;
     out.samples[i] = side->samples;
-    out.stretches[i] = side->facet.stretches;
+    out.segments[i] = side->facet.segments;
     out.tolerance_rad_s = std::max(out.tolerance_rad_s, side->facet.tolerance);
     out.log_odds = std::max(out.log_odds, side->log_odds);
   }
@@ -142,7 +142,7 @@ struct SideSearch {
         Side tried = rails::fit_facet(readings, *extreme, prior, slopes, start * extreme->slab, workspace);
         if (tried.samples < params.samples_min) continue;
         tried.log_odds = level_log_odds(params, readings, known, tried) +
-                         stretch_evidence(readings, prior.information, workspace.inliers, tried.facet);
+                         segment_evidence(readings, prior.information, workspace.inliers, tried.facet);
         if (tried.log_odds > side.log_odds) side = tried;
       }
     }

@@ -16,7 +16,7 @@ namespace {
 using Eigen::Vector3d;
 
 // A reading this near the largest of its axis may be at a rail; which of them are kept; readings beside one that its
-// stretch is judged by.
+// segment is judged by.
 constexpr double kNearShare = 0.9, kKeepShare = 0.85;
 constexpr std::size_t kBeside = 4;
 // Readings kept whatever they are: the latest, and the first, which tell the noise.

@@ -81,7 +81,7 @@ void members(Self& s, Visitor& visit) {
   visit("plane.offset_rad_s", s.offset_rad_s);
   visit("plane.covariance", s.covariance);
   visit("plane.samples", s.samples);
-  visit("plane.stretches", s.stretches);
+  visit("plane.segments", s.segments);
   visit("plane.deviation_rad_s", s.deviation_rad_s);
   visit("plane.tolerance_rad_s", s.tolerance_rad_s);
   visit("plane.log_odds", s.log_odds);

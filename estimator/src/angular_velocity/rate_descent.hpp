@@ -63,7 +63,7 @@ struct RateSolution {
 
 /// The descent, again from wider and narrower thresholds of contact where most clipped samples pass for contact: with
 /// a lever arm that is far off the first may end in a minimum in which nothing is flight. False when a system is not
-/// positive definite. Fills what `health` says of iterations, restarts, convergence and surprise.
+/// positive definite. Fills what `health` says of iterations, restarts, convergence and the Mahalanobis distance.
 bool solve(const RateSmoother::Params& params, const RateModel& model, std::span<const RateObservation> observations,
            RateSolution& solution, RateReport& health);
 

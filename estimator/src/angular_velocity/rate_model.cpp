@@ -81,7 +81,7 @@ double normalised(const RateFactor& f, Eigen::Matrix3d spread, double sigma, con
 
 // Mahalanobis distance of one part of the constants, over the root of its size: rate_smoother.md (R4)
 template <int kFirst, int kCount>
-double surprise(const RigConstants::Vector& moved, const RigConstants::Matrix& covariance) {
+double mahalanobis(const RigConstants::Vector& moved, const RigConstants::Matrix& covariance) {
   const Eigen::Matrix<double, kCount, 1> part = moved.segment<kCount>(kFirst);
   const Eigen::Matrix<double, kCount, kCount> spread = covariance.block<kCount, kCount>(kFirst, kFirst);
   return std::sqrt(part.dot(spread.llt().solve(part)) / kCount);
@@ -328,8 +328,9 @@ void RateModel::add_rig_prior(const RigConstants& rig, arrow::Corner& corner) co
 
 double RateModel::calibration_mahalanobis(const RigConstants& rig) const {
   const RigConstants::Vector moved = rig.vector() - prior_constants_.vector();
-  const double lever = surprise<0, 3>(moved, prior_covariance_), gyro = surprise<3, 3>(moved, prior_covariance_),
-               accel = surprise<6, 3>(moved, prior_covariance_), inertia = surprise<9, 5>(moved, prior_covariance_);
+  const double lever = mahalanobis<0, 3>(moved, prior_covariance_), gyro = mahalanobis<3, 3>(moved, prior_covariance_),
+               accel = mahalanobis<6, 3>(moved, prior_covariance_),
+               inertia = mahalanobis<9, 5>(moved, prior_covariance_);
   return std::max({lever, gyro, accel, inertia});
 }
 

@@ -57,7 +57,7 @@ bool far_apart(const SensorErrors& a, const SensorErrors& b) {
 }
 
 // What one device in a thousand moves three constants by, in deviations of all that may move them.
-constexpr double kSurpriseOfDevice = 2.33;
+constexpr double kMahalanobisOfDevice = 2.33;
 
 // The rig as it was known; the gyro's elements, which flight cannot be taken for, stay free.
 RateModelParams held(const RateModelParams& params, const RateModel& model) {
@@ -70,8 +70,8 @@ RateModelParams held(const RateModelParams& params, const RateModel& model) {
 }
 
 // How far the constants moved, rate_smoother.md (R4), where the device's errors may have moved them too.
-double surprise_of(const RateModelParams& known, const RateModel& model, double period_s,
-                   std::span<const RateObservation> observations, const RateSolution& solution) {
+double mahalanobis_of(const RateModelParams& known, const RateModel& model, double period_s,
+                      std::span<const RateObservation> observations, const RateSolution& solution) {
   RateIteration again(observations);
   if (!again.factorise(model, solution.estimates, solution.rig)) return model.calibration_mahalanobis(solution.rig);
   const arrow::BorderErrors moved = again.moved_by_errors(model, solution.estimates, solution.rig).of_rig;
@@ -89,20 +89,21 @@ Status descend_held(const RateSmoother::Params& params, const RateModelParams& k
   if (!solve(params, fit.model, observations, fit.solution, health)) {
     return {Trouble::diverged, "iteration", static_cast<double>(health.iterations), 0.0};
   }
-  health.rig_held = health.calibration_mahalanobis > params.calibration_mahalanobis_max;
-  if (health.rig_held && struck) {
-    health.calibration_mahalanobis = surprise_of(known, fit.model, period_s, observations, fit.solution);
-    health.rig_held = health.calibration_mahalanobis > std::max(params.calibration_mahalanobis_max, kSurpriseOfDevice);
+  health.calibration_at_prior = health.calibration_mahalanobis > params.calibration_mahalanobis_max;
+  if (health.calibration_at_prior && struck) {
+    health.calibration_mahalanobis = mahalanobis_of(known, fit.model, period_s, observations, fit.solution);
+    health.calibration_at_prior =
+        health.calibration_mahalanobis > std::max(params.calibration_mahalanobis_max, kMahalanobisOfDevice);
   }
   health.calibration = {fit.solution.rig, fit.solution.rig_covariance};
-  if (!health.rig_held) return {};
-  const double surprise = health.calibration_mahalanobis;
+  if (!health.calibration_at_prior) return {};
+  const double mahalanobis = health.calibration_mahalanobis;
   health.calibration = {fit.model.prior_constants(), fit.model.prior_covariance()};
   fit.model = RateModel(held(known, fit.model), period_s);
   if (!solve(params, fit.model, observations, fit.solution, health)) {
     return {Trouble::diverged, "iteration", static_cast<double>(health.iterations), 0.0};
   }
-  health.calibration_mahalanobis = surprise;
+  health.calibration_mahalanobis = mahalanobis;
   // held is not known: what was open of the rig stays open in the rates
   constexpr int kOpen = RigConstants::kElements;
   fit.solution.rig_covariance.topLeftCorner<kOpen, kOpen>() =
@@ -256,7 +257,7 @@ Status descend_rounds(const Rounds& rounds, std::span<RateObservation> observati
   told.errors = start.errors;
   for (health.error_rounds = 1;; ++health.error_rounds) {
     if (Status status = descend_corrected(rounds, told.errors, observations, fit, health); !status.ok()) return status;
-    if (health.rig_held && told_before) {
+    if (health.calibration_at_prior && told_before) {
       // it may be another device
       told_before = false;
       told.learnt = {};
@@ -266,7 +267,7 @@ Status descend_rounds(const Rounds& rounds, std::span<RateObservation> observati
       continue;
     }
     const bool first = health.error_rounds == 1 && rounds.estimated;
-    if (health.rig_held && first && told.errors.accel_delay_s != start.other_delay_s) {
+    if (health.calibration_at_prior && first && told.errors.accel_delay_s != start.other_delay_s) {
       told.errors.accel_delay_s = start.other_delay_s;
       health.error_rounds = 0;
       continue;
@@ -274,7 +275,8 @@ Status descend_rounds(const Rounds& rounds, std::span<RateObservation> observati
     if (Status status = take_evidence(rounds, told.errors, fit, health); !status.ok()) return status;
     told.found = fit_about(given, fit.moved.evidence, rounds.sizes, told.learnt);
     told.believed = plausible(told.found.known.errors, given, rounds.stated());
-    if (health.rig_held || !told.believed || health.error_rounds >= rounds.params.expert.error_rounds_max) return {};
+    if (health.calibration_at_prior || !told.believed || health.error_rounds >= rounds.params.expert.error_rounds_max)
+      return {};
     if (!far_apart(told.found.known.errors, told.errors)) return {};
     told.errors = told.found.known.errors;
   }
@@ -317,7 +319,7 @@ Status fit_rounds(const RateSmoother::Params& params, const RateModelParams& kno
   health.together = rounds.own_clocks ? 0.0 : told.found.together;
   const SensorErrorSizes sizes = leave_open(rounds, fit, told, health);
   const SensorErrorSizes stated = as_stated(rounds.stated());
-  if (health.rig_held || !told.believed || !rounds.estimated) {
+  if (health.calibration_at_prior || !told.believed || !rounds.estimated) {
     // what a run without flight tells of the device is nothing, beyond what devices have it is wrong: all is left open
     told.found = fit_sensor_errors({}, rounds.estimated ? sizes : stated);
     told.found.known.errors = told.errors;
@@ -325,7 +327,7 @@ Status fit_rounds(const RateSmoother::Params& params, const RateModelParams& kno
     move_by(told.found.known.errors.vector() - told.errors.vector(), fit);
   }
   health.sensor_errors = told.found.known;
-  if (health.rig_held) return {};
+  if (health.calibration_at_prior) return {};
   health.calibration.constants = fit.solution.rig;
   // the device's errors stay with the device: the next run meets them as this one did, and counts them anew
   const SensorErrors::Matrix of_device = fit_sensor_errors({}, stated).known.covariance;

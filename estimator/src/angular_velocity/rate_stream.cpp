@@ -309,7 +309,7 @@ bool RateStream::step(State& state) const {
   state.rig_covariance = rig_covariance;
   consider_errors(rig_step, state);
   state.rig.add(rig_step);
-  const arrow::BorderMatrix doubted = widened(state);
+  const arrow::BorderMatrix doubted = inflated(state);
   arrow::StateVector x;
   arrow::Conditional conditional;
   for (std::size_t k = count; k-- > 0;) {
@@ -332,11 +332,11 @@ bool RateStream::step(State& state) const {
 }
 
 // rate_stream.md (R93)
-RigConstants::Matrix RateStream::widened(const State& state) const {
+RigConstants::Matrix RateStream::inflated(const State& state) const {
   if (params_.model.calibration) return state.rig_covariance;
   const double samples =
-      static_cast<double>(state.learnt_from) * model_.said_once_share() / params_.expert.doubt.samples;
-  const double largest = std::sqrt(1.0 + params_.expert.doubt.covariance / (1.0 + samples));
+      static_cast<double>(state.learnt_from) * model_.said_once_share() / params_.expert.inflation.samples;
+  const double largest = std::sqrt(1.0 + params_.expert.inflation.covariance / (1.0 + samples));
   RigConstants::Vector factor;
   for (int i = 0; i < RigConstants::kSize; ++i) {
     // nothing is known less than beforehand; the gyro's bias is told by rest, not by flight

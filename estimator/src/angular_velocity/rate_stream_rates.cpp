@@ -32,14 +32,14 @@ Eigen::Matrix3d RateStream::doubted(std::size_t at, const State& state) const {
   Eigen::Matrix3d out = knot.covariance_rad2_s2;
   if (knot.estimate.flight_weight >= 0.5) return out;
   const double samples =
-      static_cast<double>(state.learnt_from) * model_.said_once_share() / params_.expert.doubt.samples;
-  const double share = params_.model.calibration ? 0.0 : params_.expert.doubt.contact / (1.0 + samples);
+      static_cast<double>(state.learnt_from) * model_.said_once_share() / params_.expert.inflation.samples;
+  const double share = params_.model.calibration ? 0.0 : params_.expert.inflation.contact / (1.0 + samples);
   for (int j = 0; j < 3; ++j) {
     if ((knot.observation.unseen() & knot.observation.clipping.gyro & 1u << j) == 0) continue;
     const double read = std::abs(knot.observation.sample.angular_velocity_rad_s[j]);
     const double beyond = std::max(0.0, std::abs(knot.estimate.knot.rate_rad_s[j]) - read);
     const double least =
-        std::max(share * beyond, params_.expert.doubt.slopes * (hidden_by_slopes(at, j, state) - beyond));
+        std::max(share * beyond, params_.expert.inflation.slopes * (hidden_by_slopes(at, j, state) - beyond));
     out(j, j) = std::max(out(j, j), least * least);
   }
   return out;

@@ -45,7 +45,7 @@ std::optional<HeldReadings> find_held(std::span<const ImuSample> samples, Triad 
 struct Neighbours {
   const ImuSample *before = nullptr, *after = nullptr;
 };
-/// Of each sample: a reading said twice has the same neighbours both times. Whole stretches of equal readings (rest, a
+/// Of each sample: a reading said twice has the same neighbours both times. Whole segments of equal readings (rest, a
 /// level plateau) are stepped over likewise. O(N).
 std::vector<Neighbours> other_readings(std::span<const ImuSample> samples, Triad triad);
 

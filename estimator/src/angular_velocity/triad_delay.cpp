@@ -36,8 +36,8 @@ constexpr double kGainMin = 0.4;
 // of the best is known, as a share of the slower triad's period.
 constexpr double kStruckRate_rad_s = 1.0, kCorrelationMin = 0.6, kStruckSigma = 0.15;
 constexpr std::size_t kStruckMin = 30;
-// A force that strikes, and how many of the stretches must have met it; one that a body has that nothing holds up, and
-// in what share of the stretches: what is struck and never flies is in a hand.
+// A force that strikes, and how many of the segments must have met it; one that a body has that nothing holds up, and
+// in what share of the segments: what is struck and never flies is in a hand.
 constexpr double kStroke_m_s2 = 30.0, kFlying_m_s2 = 5.0, kFlyingShareMin = 0.1;
 constexpr std::size_t kStrokesMin = 10;
 constexpr int kStruckPerSample = 8;

@@ -19,7 +19,7 @@ struct TriadDelay {
 /// instants of which they tell.
 ///
 /// Where the body is struck: whatever strikes it turns it, so that the angular acceleration is large where the specific
-/// force is. The delay at which the roots of both, taken over the same stretches of time between free readings of the
+/// force is. The delay at which the roots of both, taken over the same intervals of time between free readings of the
 /// gyro, correlate best; believed from 0.6 on (30 readings faster than 1 rad/s, 10 of them beyond 30 m/s^2 and a tenth
 /// below 5: what is struck and never flies is in a hand), to 0.15 of the slower triad's period. Else where it flies:
 /// the delay at which the most of the accelerometer's readings are what a rigid body has at a lever arm, alpha x t + w

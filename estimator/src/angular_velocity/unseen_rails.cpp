@@ -14,7 +14,7 @@ namespace {
 // this share of the step to the sample beside them.
 constexpr double kUnseenTilt = 0.06, kUnseenOfStep = 0.5;
 
-// Readings within this share below the largest of a stretch are at its top: what a tilt of 0.06 (kUnseenTilt) makes of
+// Readings within this share below the largest of a segment are at its top: what a tilt of 0.06 (kUnseenTilt) makes of
 // motion beside of a sixth of the rail. Elements differ by no more than so many deviations.
 constexpr double kTopShare = 0.01, kElementsApart = 3.0;
 

@@ -16,7 +16,7 @@ namespace tumble {
 void doubt_unseen_rails(const RailPlanes& planes, const LeastRails& least, double noise_rad_s, const ImuSample* before,
                         RateObservation& now, const ImuSample* after);
 
-/// The same of whole stretches: readings that stay at a top near the rails of the other elements, of an element whose
+/// The same of whole segments: readings that stay at a top near the rails of the other elements, of an element whose
 /// own rail was not seen on that side, may hide what the motion had risen to between the slopes at which they were
 /// entered and left. `offset_share`: of the rail, how far elements differ (RailPlaneFinder::Params). Nothing for a
 /// device that flags what it clips, or where no rail was seen, or where the element was read far beyond. Sets

@@ -67,7 +67,7 @@ bool slope_of(const GyroReadings& rates, const Eigen::Matrix3d& rows, std::size_
   return true;
 }
 
-// Across a stretch that an element hides: white jerk of density q changes its angular acceleration by q T within T, on
+// Across a segment that an element hides: white jerk of density q changes its angular acceleration by q T within T, on
 // the mean of squares. What free readings beside it bend says little of a motion that turns about beyond the rail:
 // carried.md (C39)
 void add_across(const GyroReadings& rates, const Eigen::Matrix3d& rows, double noise_rad_s, double node_s,

@@ -64,7 +64,7 @@ GyroRows gyro_rows(const Eigen::RowVector3d& m, const Node& node, const Constant
 }
 
 // how far the clipped elements are believed to lie beyond their rails, and the unreadable ones off their readings
-double excess(const NodeReadings& readings, const std::array<GyroRows, 3>& rows, int except) {
+double deficit(const NodeReadings& readings, const std::array<GyroRows, 3>& rows, int except) {
   double sum = 0.0;
   for (int i = 0; i < 3; ++i) {
     const ElementSums& element = readings.gyro[static_cast<std::size_t>(i)];
@@ -161,7 +161,7 @@ double add_gyro(const NodeReadings& readings, const Matrix3d& rows, const Readin
     const GyroRows& element = elements[static_cast<std::size_t>(i)];
     if (e.n > 0.0) {
       // the same error in each reading of the node, so that their number does not make it smaller
-      const double tilt = noise.tilt_share * excess(readings, elements, i);
+      const double tilt = noise.tilt_share * deficit(readings, elements, i);
       cost += add_free(e, element, 1.0 / (variance + e.n * (tilt * tilt + e.open * e.open)), block, corner);
     }
     if (e.clipped > 0.0) {
@@ -256,7 +256,7 @@ Motion::Motion(const Params& params) : params_(params) {
   hand_ = row.transpose() * row / (density * h);
   row << -0.5 * h, -1.0, 0.0, -0.5 * h, 1.0, 0.0;
   way_ = row.transpose() * row / (density * h * h * h / 12.0 + 1e-10);
-  const double leak = std::exp(-h / params.place_leak_s);
+  const double leak = std::exp(-h / params.position_leak_s);
   row << 0.0, -0.5 * h, -leak, 0.0, -0.5 * h, 1.0;
   way_ += row.transpose() * row / (density * std::pow(h, 5) / 120.0 + 1e-10);
 }
@@ -305,7 +305,7 @@ double Motion::add_step(const Node& from, const Node& to, double hand, System::B
 // carried.md (C9)
 double Motion::add_bounds(const Node& node, System::Block& block) const {
   const double velocity = params_.velocity_m_s * params_.velocity_m_s * params_.velocity_tau_s;
-  const double place = params_.place_m * params_.place_m * params_.place_tau_s;
+  const double place = params_.position_m * params_.position_m * params_.position_tau_s;
   return add_zero(node.v_W_m_s, params_.step_s / velocity, kVelocity, block) +
          add_zero(node.p_W_m, params_.step_s / place, kPlace, block);
 }
@@ -313,7 +313,7 @@ double Motion::add_bounds(const Node& node, System::Block& block) const {
 double Motion::add_first(const Node& node, System::Block& block) const {
   const Vector3d up_I = node.q_WI.conjugate() * Vector3d::UnitZ();
   block.diagonal.topLeftCorner<3, 3>() += 1e6 * up_I * up_I.transpose() + 0.1 * Matrix3d::Identity();
-  const double hand = params_.hand_m_s2, velocity = params_.velocity_m_s, place = params_.place_m;
+  const double hand = params_.hand_m_s2, velocity = params_.velocity_m_s, place = params_.position_m;
   return add_zero(node.w_WI_I_rad_s, 1e-4, kRate, block) +
          add_zero(node.angular_acceleration_rad_s2, 1e-6, kAngular, block) +
          add_zero(node.a_W_m_s2, 1.0 / (hand * hand), kHand, block) +

@@ -11,13 +11,13 @@ using Eigen::Vector3d;
 
 namespace {
 
-constexpr double kTurnMax = 0.8;     // largest step of an attitude: beyond, the linearisation says little
-constexpr double kConverged = 1e-3;  // of attitudes [rad] and, ten times that, of rates [rad/s]
-constexpr int kFollowFirst = 3;      // iterations before the hand's power is read off the nodes
-constexpr int kFollowLast = 8;       // and after which it stays, so that the iteration ends
-constexpr double kSurpriseS = 0.25;  // over which the hand's mean acceleration is compared
-constexpr int kHalvings = 4;         // of a step after which the cost is larger
-constexpr double kRises = 0.2;       // by more than this: odds of 1.1, which no covariance shows
+constexpr double kTurnMax = 0.8;      // largest step of an attitude: beyond, the linearisation says little
+constexpr double kConverged = 1e-3;   // of attitudes [rad] and, ten times that, of rates [rad/s]
+constexpr int kFollowFirst = 3;       // iterations before the hand's power is read off the nodes
+constexpr int kFollowLast = 8;        // and after which it stays, so that the iteration ends
+constexpr double kHandMean_s = 0.25;  // over which the hand's mean acceleration is compared
+constexpr int kHalvings = 4;          // of a step after which the cost is larger
+constexpr double kRises = 0.2;        // by more than this: odds of 1.1, which no covariance shows
 constexpr Trouble kLost = Trouble::diverged;
 
 }  // namespace
@@ -29,7 +29,8 @@ Motion::Params motion_params(const CarriedSmoother::Params& p, double jerk) {
   out.turn_error_sqrts = p.expert.readings.turn_error_sqrts;
   out.hand_m_s2 = p.hand_m_s2, out.hand_tau_s = p.expert.hand.hand_tau_s;
   out.velocity_m_s = p.velocity_m_s, out.velocity_tau_s = p.expert.hand.velocity_tau_s;
-  out.place_m = p.place_m, out.place_tau_s = p.expert.hand.place_tau_s, out.place_leak_s = p.expert.hand.place_leak_s;
+  out.position_m = p.position_m, out.position_tau_s = p.expert.hand.position_tau_s,
+  out.position_leak_s = p.expert.hand.position_leak_s;
   return out;
 }
 
@@ -211,7 +212,7 @@ Status Problem::solve(CarriedSmoother::Report& report) {
     (void)descend_from(*before, report.cost);
   }
   report.constants = constants_;
-  report.hand_surprise = hand_surprise();
+  report.hand_mahalanobis = hand_mahalanobis();
   return {};
 }
 
@@ -235,7 +236,7 @@ bool Problem::descend_from(const Place& before, double& cost) {
 // carried.md (C17), (C18), of the jerk of (C19) and with bounds that tell nothing of how far beyond them a rate lies
 Status Problem::covariances(CarriedSmoother::Report& report) {
   for (std::size_t i = 0; i < jerk_.size(); ++i)
-    jerk_[i] = std::max(params_.expert.jerk_doubt, jerk_seen_[i] / params_.jerk_rad_s3_sqrts);
+    jerk_[i] = std::max(params_.expert.jerk_inflation, jerk_seen_[i] / params_.jerk_rad_s3_sqrts);
   const ReadingNoise assumed = std::exchange(noise_, stated_noise(params_, noise_, period_s_));
   (void)linearise();
   noise_ = assumed;
@@ -257,8 +258,8 @@ Status Problem::covariances(CarriedSmoother::Report& report) {
 
 // carried.md (C20): the mean over a window T of a process of deviation s and memory tau has the variance
 // s^2 2 tau/T (1 - tau/T (1 - exp(-T/tau)))
-double Problem::hand_surprise() const {
-  const auto window = static_cast<std::size_t>(std::max(1.0, kSurpriseS / params_.expert.node_s));
+double Problem::hand_mahalanobis() const {
+  const auto window = static_cast<std::size_t>(std::max(1.0, kHandMean_s / params_.expert.node_s));
   const double span = static_cast<double>(window) * params_.expert.node_s,
                ratio = params_.expert.hand.hand_tau_s / span;
   const double variance =

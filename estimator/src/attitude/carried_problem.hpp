@@ -52,7 +52,7 @@ inline constexpr double kLongest = 1.5;  ///< periods: the longest window
 std::vector<double> seen_jerk(const GyroReadings& rates, const Eigen::Matrix3d& rows, double noise_rad_s, double node_s,
                               std::size_t nodes);
 
-/// Rates with the clipped stretches of each element replaced by cubics: value and slope continued from both sides, held
+/// Rates with the clipped segments of each element replaced by cubics: value and slope continued from both sides, held
 /// beyond the rail and within kFillMost of it.
 std::vector<Eigen::Vector3d> filled_rates(std::span<const ImuSample> samples, const ClippedElements& clipped);
 
@@ -161,7 +161,7 @@ class Problem {
   void go(double share);
   bool descend_from(const Place& before, double& cost);
   void follow_hand();
-  double hand_surprise() const;
+  double hand_mahalanobis() const;
 
   CarriedSmoother::Params params_;
   Eigen::Matrix3d rows_;

@@ -86,8 +86,8 @@ void add_gyro_reading(double z, double t, int sign, ElementSums& e) {
   e.zt += z * t;
 }
 
-/// The clipped stretch [begin, end) of one element, whose readings are `raw`.
-void fill_stretch(std::span<const ImuSample> samples, const std::vector<double>& raw, std::size_t begin,
+/// The clipped segment [begin, end) of one element, whose readings are `raw`.
+void fill_segment(std::span<const ImuSample> samples, const std::vector<double>& raw, std::size_t begin,
                   std::size_t end, int sign, std::vector<double>& filled) {
   if (begin < 2 || end + 1 >= raw.size()) return;
   const std::size_t a = begin - 1, b = end;
@@ -105,14 +105,14 @@ void fill_stretch(std::span<const ImuSample> samples, const std::vector<double>&
 
 /// From `begin` on: as long as an element stands at one rail, readings that say nothing among them, or as long as it is
 /// free (sign 0).
-struct HiddenStretch {
+struct HiddenSegment {
   std::size_t end = 0;
   int sign = 0;
 };
 
-HiddenStretch hidden_stretch(std::span<const ClipSigns> signs, std::size_t element, std::size_t begin,
+HiddenSegment hidden_segment(std::span<const ClipSigns> signs, std::size_t element, std::size_t begin,
                              const std::vector<double>& raw) {
-  HiddenStretch out{begin, 0};
+  HiddenSegment out{begin, 0};
   if (signs[begin].gyro[element] == 0) {
     while (out.end < signs.size() && signs[out.end].gyro[element] == 0) ++out.end;
     return out;
@@ -301,9 +301,9 @@ std::vector<Vector3d> filled_rates(std::span<const ImuSample> samples, const Cli
     for (std::size_t k = 0; k < count; ++k) raw[k] = rates[k][axis];
     filled = raw;
     for (std::size_t begin = 0; begin < count;) {
-      const HiddenStretch stretch = hidden_stretch(clipped.signs, j, begin, raw);
-      if (stretch.sign != 0) fill_stretch(samples, raw, begin, stretch.end, stretch.sign, filled);
-      begin = stretch.end;
+      const HiddenSegment segment = hidden_segment(clipped.signs, j, begin, raw);
+      if (segment.sign != 0) fill_segment(samples, raw, begin, segment.end, segment.sign, filled);
+      begin = segment.end;
     }
     for (std::size_t k = 0; k < count; ++k) rates[k][axis] = filled[k];
   }

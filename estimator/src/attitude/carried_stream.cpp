@@ -46,7 +46,7 @@ CarriedStream::CarriedStream(const Params& params)
     : params_((CarriedSmoother(params.body), params)),
       rests_(params.body.expert.rest),
       motion_(carried::motion_params(params.body)),
-      doubted_(carried::motion_params(params.body, params.body.expert.jerk_doubt)),
+      doubted_(carried::motion_params(params.body, params.body.expert.jerk_inflation)),
       noise_(carried::reading_noise(params.body, params.period_s)),
       g_W_m_s2_(0.0, 0.0, -params.body.gravity_m_s2) {
   require_fields(params);

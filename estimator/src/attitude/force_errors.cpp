@@ -85,7 +85,7 @@ void ForceErrors::update(State& state) const {
       PHt.head(used).noalias() = P * row.head(used);
       const double s = row.dot(PHt) + variance;
       const double innovation = state.difference_m_s2(axis, k) / samples - row.dot(state.x);
-      if (squared(innovation) > squared(params_.doubt) * s) continue;  // a blow within the samples
+      if (squared(innovation) > squared(params_.doubt) * s) continue;  // an impact within the samples
       state.x += PHt * (innovation / s);
       P.noalias() -= PHt.head(used) * (PHt.head(used) / s).transpose();
     }

@@ -26,7 +26,7 @@ constexpr double kArmSquareMin_m2_s3 = 1.0;  // 1 m/s^2 for a second: a bias of 
 constexpr double kHeld_s = 0.03;
 constexpr double kWindowMax_s = 0.05;  // over a longer one a central difference says nothing
 
-constexpr double kSuspect_s = 0.04;         // blows come in rows, and what one takes a filter gives back later
+constexpr double kSuspect_s = 0.04;         // impacts come in rows, and what one takes a filter gives back later
 constexpr double kAccelerationShare = 0.3;  // of its change from sample to sample, that an acceleration is in doubt by
 
 }  // namespace
@@ -267,7 +267,7 @@ void ImuMerge::close_windows(const Flags& present, const Vectors& rates, const V
   ++state.windows;
 }
 
-/// A blow may take a unit to its rail for less than a sample. On a rigid body one unit tells what the others feel,
+/// An impact may take a unit to its rail for less than a sample. On a rigid body one unit tells what the others feel,
 /// along the line between the two without the angular acceleration. The one that most others agree with is believed,
 /// among equals the one whose force changed least. imu_merge.md (I6).
 void ImuMerge::leave_out_subsample_saturated(const Readings& samples, const Flags& present, const Vectors& forces,

@@ -42,15 +42,15 @@ Readings all_readings() {
   return out;
 }
 
-/// What a stretch says of the scale: Newton's step from 1, and the curvature of the residual.
+/// What a segment says of the scale: Newton's step from 1, and the curvature of the residual.
 struct ScaleVote {
   double step, weight;
 };
 
-/// What stretches have said so far, and the one that is open.
-class Stretches {
+/// What segments have said so far, and the one that is open.
+class Segments {
  public:
-  Stretches(const PivotCheckParams& params, const Readings& readings) : params_(params), readings_(readings) {}
+  Segments(const PivotCheckParams& params, const Readings& readings) : params_(params), readings_(readings) {}
 
   void add(double dt_s, const Eigen::Vector3d& rate_rad_s, const Eigen::Vector3d& force_m_s2) {
     for (std::size_t k = 0; k < kReadings; ++k) {
@@ -58,11 +58,11 @@ class Stretches {
     }
     length_s_ += dt_s;
     turned_rad_ += dt_s * rate_rad_s.norm();
-    if (length_s_ >= params_.stretch_s) close();
+    if (length_s_ >= params_.segment_s) close();
   }
-  /// Ends the stretch that is open, which counts when it is half as long as a whole one.
+  /// Ends the segment that is open, which counts when it is half as long as a whole one.
   void close() {
-    if (length_s_ >= 0.5 * params_.stretch_s && turned_rad_ >= params_.turned_least_rad) take();
+    if (length_s_ >= 0.5 * params_.segment_s && turned_rad_ >= params_.turned_least_rad) take();
     sums_ = {};
     length_s_ = turned_rad_ = 0.0;
   }
@@ -123,7 +123,7 @@ class Stretches {
 void conclude_scale(const std::vector<ScaleVote>& votes, PivotCheck::Found& found) {
   double weight = 0.0, sum = 0.0, spread = 0.0;
   for (const ScaleVote& vote : votes) weight += vote.weight, sum += vote.weight * vote.step;
-  found.scale_stretches = votes.size();
+  found.scale_segments = votes.size();
   if (votes.size() < 2) return;
   const double step = sum / weight;
   for (const ScaleVote& vote : votes) {
@@ -131,7 +131,7 @@ void conclude_scale(const std::vector<ScaleVote>& votes, PivotCheck::Found& foun
     spread += off * off;
   }
   found.scale = 1.0 + step;
-  found.scale_sigma = std::sqrt(2.0 * spread) / weight;  // each moment is in two stretches
+  found.scale_sigma = std::sqrt(2.0 * spread) / weight;  // each moment is in two segments
 }
 
 }  // namespace
@@ -142,8 +142,8 @@ PivotCheck::PivotCheck(const Params& params) : params_(params) {
 
 PivotCheck::Found PivotCheck::find(std::span<const ImuSample> samples, std::span<const RateState> rates) const {
   static const Readings readings = all_readings();
-  // two series, the second half a stretch behind, so that no stretch's border hides what happens there
-  std::array<Stretches, 2> series = {Stretches(params_, readings), Stretches(params_, readings)};
+  // two series, the second half a segment behind, so that no segment's border hides what happens there
+  std::array<Segments, 2> series = {Segments(params_, readings), Segments(params_, readings)};
   double mean_s = 0.0, since_s = 0.0;
   Eigen::Vector3d turned = Eigen::Vector3d::Zero(), gained = Eigen::Vector3d::Zero();
   const double rail_m_s2 = (1.0 - kBesideRail) * params_.accel_range_m_s2;
@@ -155,7 +155,7 @@ PivotCheck::Found PivotCheck::find(std::span<const ImuSample> samples, std::span
                          (samples[k].device_clip_flags & kAccelFlags) != 0;
     if (dt_s > params_.gap_max_s || at_rail || rates[k].source != RateSource::measured ||
         !check_sample(samples[k]).ok()) {
-      for (Stretches& stretches : series) stretches.close();
+      for (Segments& segments : series) segments.close();
       mean_s = since_s = 0.0;
       turned.setZero(), gained.setZero();
       continue;
@@ -166,11 +166,11 @@ PivotCheck::Found PivotCheck::find(std::span<const ImuSample> samples, std::span
     if (mean_s < params_.reading_s - 0.5 * dt_s) continue;
     since_s += mean_s;
     series[0].add(mean_s, turned / mean_s, gained / mean_s);
-    if (since_s > 0.5 * params_.stretch_s) series[1].add(mean_s, turned / mean_s, gained / mean_s);
+    if (since_s > 0.5 * params_.segment_s) series[1].add(mean_s, turned / mean_s, gained / mean_s);
     mean_s = 0.0;
     turned.setZero(), gained.setZero();
   }
-  for (Stretches& stretches : series) stretches.close();
+  for (Segments& segments : series) segments.close();
 
   Found found;
   for (std::size_t k = 1; k < kCompared; ++k) {
@@ -193,15 +193,15 @@ PivotCheck::Found PivotCheck::find(std::span<const ImuSample> samples, std::span
 Status PivotCheck::verdict(const Found& found) const {
   const double least = std::max(params_.evidence_least, params_.evidence_of_each * static_cast<double>(found.counted));
   const auto better = static_cast<double>(found.better), worse = static_cast<double>(found.worse);
-  if (found.evidence > least && better >= params_.stretches_least && better >= params_.better_over_worse * worse) {
+  if (found.evidence > least && better >= params_.segments_least && better >= params_.better_over_worse * worse) {
     return {Trouble::out_of_range, "evidence, of turning about a point, for a gyro named or scaled otherwise",
             found.evidence, least};
   }
   const double off = std::abs(found.scale - 1.0);
   const double bound = std::max(params_.scale_off, params_.scale_deviations * found.scale_sigma);
-  const double stretches_least =
-      std::max(params_.scale_stretches_least, params_.scale_share_least * static_cast<double>(found.explained));
-  if (static_cast<double>(found.scale_stretches) >= stretches_least && off > bound) {
+  const double segments_least =
+      std::max(params_.scale_segments_least, params_.scale_share_least * static_cast<double>(found.explained));
+  if (static_cast<double>(found.scale_segments) >= segments_least && off > bound) {
     return {Trouble::out_of_range, "scale by which rates explain a turning about a point", found.scale,
             found.scale < 1.0 ? 1.0 - bound : 1.0 + bound};
   }

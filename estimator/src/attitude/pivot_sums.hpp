@@ -10,7 +10,7 @@
 
 namespace tumble {
 
-/// A stretch of motion as turning about a point of the body that keeps its velocity. imu_merge.md (I24).
+/// A segment of motion as turning about a point of the body that keeps its velocity. imu_merge.md (I24).
 struct PivotFit {
   double residual_m_s = 0.0;  ///< root mean square of what is left of the velocity's three components together
   double gravity_m_s2 = 0.0;  ///< size of the force that does not turn
@@ -20,7 +20,7 @@ struct PivotFit {
 /// Normal equations of imu_merge.md (I24) by one reading of the gyro.
 class PivotSums {
  public:
-  /// A mean reading over `dt_s`, whose middle is `at_s` after the stretch began. O(1).
+  /// A mean reading over `dt_s`, whose middle is `at_s` after the segment began. O(1).
   void add(double at_s, double dt_s, const Eigen::Vector3d& rate_rad_s, const Eigen::Vector3d& force_m_s2) {
     const Eigen::Quaterniond half = so3::exp(0.5 * dt_s * rate_rad_s);
     const Eigen::Quaterniond middle = turned_ * half;

@@ -53,8 +53,8 @@ void RegimeSmoother::join(std::span<const ImuSample> samples, std::vector<RateSt
     report.shares.contact += each * share.contact;
     report.shares.carried += each * share.carried;
   }
-  const std::vector<double> by_stretch = carried_stretches(shares, report.rate, rates);
-  report.carried_clipped_max = *std::max_element(by_stretch.begin(), by_stretch.end());
+  const std::vector<double> by_segment = carried_segments(shares, report.rate, rates);
+  report.carried_clipped_max = *std::max_element(by_segment.begin(), by_segment.end());
   if (report.carried_clipped_max < params_.carried_min) return;
 
   ClippingFinder::Params finding;
@@ -67,18 +67,18 @@ void RegimeSmoother::join(std::span<const ImuSample> samples, std::vector<RateSt
   known.mark_near(other);
   report.carried_asked = true;
   for (std::size_t k = 0; k < rates.size(); ++k) {
-    if (by_stretch[k] <= params_.carried_min) continue;
+    if (by_segment[k] <= params_.carried_min) continue;
     const bool only_doubted = rates[k].clipped_axes == 0 && rates[k].source != RateSource::measured;
-    rates[k] = either(rates[k], other[k], by_stretch[k]);
+    rates[k] = either(rates[k], other[k], by_segment[k]);
     // no clipping was found there, whoever holds the body
     if (only_doubted) rates[k].clipped_axes = 0, rates[k].source = RateSource::bounded_only;
   }
 }
 
-/// Probability that the body was carried within `near_s` of a sample, as far as the stretch of clipped or doubted
+/// Probability that the body was carried within `near_s` of a sample, as far as the segment of clipped or doubted
 /// samples reaches that it lies in or near to; 0 away from all. carried.md (C41)
-std::vector<double> RegimeSmoother::carried_stretches(std::span<const RegimeShares> shares, const RateReport& report,
-                                                      std::span<const RateState> rates) const {
+std::vector<double> RegimeSmoother::carried_segments(std::span<const RegimeShares> shares, const RateReport& report,
+                                                     std::span<const RateState> rates) const {
   std::vector<double> out(rates.size(), 0.0);
   const TimeNs near_ns = static_cast<TimeNs>(1e9 * params_.near_s);
   for (std::size_t k = 0; k < rates.size();) {
@@ -90,7 +90,7 @@ std::vector<double> RegimeSmoother::carried_stretches(std::span<const RegimeShar
     for (; k < rates.size() && rates[k].time_ns <= rates[last].time_ns + near_ns; ++k)
       if (unread(report, rates[k], k)) last = k;
     const TimeNs from_ns = rates[first].time_ns - near_ns, to_ns = rates[last].time_ns + near_ns;
-    std::size_t i = first, a = first, b = first;  // of the stretch, a to b lie within reach of i
+    std::size_t i = first, a = first, b = first;  // of the segment, a to b lie within reach of i
     while (i > 0 && rates[i - 1].time_ns >= from_ns) --i;
     for (; i < rates.size() && rates[i].time_ns <= to_ns; ++i) {
       while (a < last && rates[a].time_ns < rates[i].time_ns - near_ns) ++a;

@@ -163,7 +163,7 @@ void RegimeStream::judge(const RateState& rate, State& state) const {
 }
 
 // With which probability CarriedStream is right about the sample given out, s of carried.md (C41): the least over what
-// is near in the stretch of clipped samples that it lies in, or near to, as far as the window shows it; 0 away from
+// is near in the segment of clipped samples that it lies in, or near to, as far as the window shows it; 0 away from
 // all.
 double RegimeStream::share_of(const RateState& rate, State& state) const {
   const auto near_ns = static_cast<TimeNs>(std::llround(1e9 * params_.near_s));

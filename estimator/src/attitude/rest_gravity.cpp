@@ -48,10 +48,10 @@ void RestGravity::step(const ImuSample& sample, const RateState& rate, State& st
   if (!state.rests) {
     turn(sample, rate, dt_s, state);
     if (rate.source != RateSource::measured) {
-      state.stretch_s += dt_s;
-      state.stretch_rad2_s += dt_s * rate.covariance_rad2_s2.trace();
+      state.segment_s += dt_s;
+      state.segment_rad2_s += dt_s * rate.covariance_rad2_s2.trace();
     } else {
-      end_stretch(state);
+      end_segment(state);
       state.variance_rad2 += dt_s * params_.correlation_s * rate.covariance_rad2_s2.trace();
     }
     return;
@@ -63,7 +63,7 @@ void RestGravity::step(const ImuSample& sample, const RateState& rate, State& st
   state.turned.setIdentity();
   state.velocity_sum_m_s.setZero();
   state.way_s = state.hidden_m_s = 0.0;
-  state.way_rad = state.variance_rad2 = state.stretch_s = state.stretch_rad2_s = 0.0;
+  state.way_rad = state.variance_rad2 = state.segment_s = state.segment_rad2_s = 0.0;
 }
 
 /// A reading is a mean over its time, and stands in the middle of it: imu_merge.md (I22).
@@ -79,15 +79,15 @@ void RestGravity::turn(const ImuSample& sample, const RateState& rate, double dt
   if (at_range || (sample.device_clip_flags & kAccelFlags) != 0) state.hidden_m_s += dt_s * peak;
 }
 
-/// What a rail hid of a stretch hangs together as long as the stretch lasts: imu_merge.md (I19).
-void RestGravity::end_stretch(State& state) const {
-  state.variance_rad2 += std::max(params_.correlation_s, state.stretch_s) * state.stretch_rad2_s;
-  state.stretch_s = state.stretch_rad2_s = 0.0;
+/// What a rail hid of a segment hangs together as long as the segment lasts: imu_merge.md (I19).
+void RestGravity::end_segment(State& state) const {
+  state.variance_rad2 += std::max(params_.correlation_s, state.segment_s) * state.segment_rad2_s;
+  state.segment_s = state.segment_rad2_s = 0.0;
 }
 
 /// imu_merge.md (I19).
 void RestGravity::arrive(State& state) const {
-  end_stretch(state);
+  end_segment(state);
   if (state.from_m_s2.isZero(0.0) || state.way_rad < params_.turned_least_rad || state.way_s > params_.way_most_s)
     return;
   const Eigen::Vector3d here_m_s2 = state.rest.mean_force_m_s2();

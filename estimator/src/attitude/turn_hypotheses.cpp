@@ -22,16 +22,16 @@ using Matrix9 = Eigen::Matrix<double, 9, 9>;
 
 constexpr double kPi = std::numbers::pi;
 constexpr double kAngleShare = 1.0 / 3.0;  // of pi: a deviation of the angle that may hide a turn at six sigma
-constexpr double kAgainst = 3.0;           // deviations of the rail beyond it, on the mean of a stretch
+constexpr double kAgainst = 3.0;           // deviations of the rail beyond it, on the mean of a segment
 constexpr double kTurnCost = 100.0;        // of the jerk that makes a turn: ten deviations
-constexpr double kAround_s = 0.3;          // solved with a stretch, on either side
+constexpr double kAround_s = 0.3;          // solved with a segment, on either side
 constexpr double kLogOdds = 6.9;           // 1 to 1000: less likely turns are not counted
 constexpr double kTakeLogOdds = 3.0;       // 1 to 20: for a turn that is taken, costs leave out what the model misses
 constexpr int kTurnsMax = 2;               // more or less than the descent says
 constexpr int kRounds = 3;                 // of asking, solving the whole between them
 
 /// Nodes [first, last] in which `element` had no free reading and stood at its rail.
-struct Stretch {
+struct Segment {
   std::size_t element = 0, first = 0, last = 0;
 };
 
@@ -41,7 +41,7 @@ struct Hypothesis {
   double cost = 0.0;
 };
 
-/// What is left of a stretch when its turns have been asked for: the likely ones but that which stands, with their
+/// What is left of a segment when its turns have been asked for: the likely ones but that which stands, with their
 /// shares.
 struct Open {
   std::size_t from = 0;
@@ -55,20 +55,20 @@ double turn_cost(const Problem& problem, std::size_t steps) {
 }
 
 /// carried.md (C30)
-std::vector<Stretch> doubtful_stretches(const Problem& problem) {
-  std::vector<Stretch> out;
+std::vector<Segment> doubtful_segments(const Problem& problem) {
+  std::vector<Segment> out;
   const std::size_t count = problem.nodes().size();
   for (std::size_t j = 0; j < 3; ++j) {
     const Eigen::RowVector3d m = problem.rows().row(static_cast<Eigen::Index>(j));
     for (std::size_t i = 0; i < count; ++i) {
       if (!(problem.readings(i).gyro[j].clipped > 0.0)) continue;
-      Stretch stretch{j, i, i};
+      Segment segment{j, i, i};
       double angle_rad = 0.0, beyond_rad_s = 0.0, clipped = 0.0;
       for (; i < count; ++i) {
         const ElementSums& element = problem.readings(i).gyro[j];
         if (element.n > 0.0 && !(element.clipped > 0.0)) break;
         if (element.clipped > 0.0) {
-          stretch.last = i;
+          segment.last = i;
           clipped += 1.0;
           beyond_rad_s += element.sign * (m.dot(problem.gyro_rad_s(i)) - element.rail);
         }
@@ -76,10 +76,10 @@ std::vector<Stretch> doubtful_stretches(const Problem& problem) {
         angle_rad += problem.node_s() * std::sqrt(std::max(0.0, m.dot(covariance * m.transpose())));
       }
       // one that begins or ends with the recording has nothing behind it that would tell whole turns apart
-      if (stretch.first == 0 || stretch.last + 1 >= count) continue;
+      if (segment.first == 0 || segment.last + 1 >= count) continue;
       const bool against_rail = beyond_rad_s < kAgainst * problem.rail_sigma_rad_s() * clipped &&
-                                turn_cost(problem, stretch.last + 2 - stretch.first) < kTurnCost;
-      if (angle_rad > kAngleShare * kPi || against_rail) out.push_back(stretch);
+                                turn_cost(problem, segment.last + 2 - segment.first) < kTurnCost;
+      if (angle_rad > kAngleShare * kPi || against_rail) out.push_back(segment);
     }
   }
   return out;
@@ -115,10 +115,10 @@ double angle_between(std::span<const Node> from, std::span<const Node> to, const
 }
 
 /// The number of turns that the descent found and those about it that are possible.
-std::vector<Hypothesis> hypotheses(const Problem& whole, const Stretch& stretch, const Part& part) {
-  const Eigen::RowVector3d m = whole.rows().row(static_cast<Eigen::Index>(stretch.element));
-  const Vector3d axis = whole.rows().inverse().col(static_cast<Eigen::Index>(stretch.element)).normalized();
-  const std::size_t a = stretch.first - 1 - part.first, b = stretch.last + 1 - part.first;
+std::vector<Hypothesis> hypotheses(const Problem& whole, const Segment& segment, const Part& part) {
+  const Eigen::RowVector3d m = whole.rows().row(static_cast<Eigen::Index>(segment.element));
+  const Vector3d axis = whole.rows().inverse().col(static_cast<Eigen::Index>(segment.element)).normalized();
+  const std::size_t a = segment.first - 1 - part.first, b = segment.last + 1 - part.first;
   std::vector<Hypothesis> out;
   const auto keep = [&](Problem& problem) {
     Hypothesis found{{}, problem.settle()};
@@ -147,7 +147,7 @@ std::vector<Hypothesis> hypotheses(const Problem& whole, const Stretch& stretch,
   return out;
 }
 
-/// One stretch that was asked: what was found of its part's nodes, from `from` on, the best first, which of it is the
+/// One segment that was asked: what was found of its part's nodes, from `from` on, the best first, which of it is the
 /// number of turns that stands, where that is still among them, and whether another is to be taken.
 struct Asked {
   std::size_t from = 0;
@@ -187,29 +187,29 @@ Vector9 apart(const Node& from, const Node& to) {
   return out;
 }
 
-std::vector<Part> with_surroundings(const Problem& problem, std::span<const Stretch> stretches) {
+std::vector<Part> with_surroundings(const Problem& problem, std::span<const Segment> segments) {
   const auto around = static_cast<std::size_t>(std::llround(kAround_s / problem.node_s()));
   std::vector<Part> out;
-  for (const Stretch& stretch : stretches) {
-    const std::size_t from = stretch.first > around ? stretch.first - 1 - around : 0;
-    out.push_back({from, std::min(stretch.last + 1 + around, problem.nodes().size() - 1)});
+  for (const Segment& segment : segments) {
+    const std::size_t from = segment.first > around ? segment.first - 1 - around : 0;
+    out.push_back({from, std::min(segment.last + 1 + around, problem.nodes().size() - 1)});
   }
   return out;
 }
 
 /// Asks each part. The descent's own turns stand until others are clearly better; once they have fallen (`fallen`) the
 /// best of the others stands.
-std::vector<Asked> ask(const Problem& problem, std::span<const Stretch> stretches, std::span<const Part> parts,
+std::vector<Asked> ask(const Problem& problem, std::span<const Segment> segments, std::span<const Part> parts,
                        std::vector<bool>& fallen) {
   std::vector<Asked> out;
   for (std::size_t k = 0; k < parts.size(); ++k) {
     const Part& part = parts[k];
-    Asked asked{part.first, hypotheses(problem, stretches[k], part)};
+    Asked asked{part.first, hypotheses(problem, segments[k], part)};
     if (asked.found.empty()) continue;
     std::sort(asked.found.begin(), asked.found.end(),
               [](const Hypothesis& a, const Hypothesis& b) { return a.cost < b.cost; });
     const std::span<const Node> before = problem.nodes().subspan(part.first, part.last - part.first + 1);
-    const Eigen::RowVector3d m = problem.rows().row(static_cast<Eigen::Index>(stretches[k].element));
+    const Eigen::RowVector3d m = problem.rows().row(static_cast<Eigen::Index>(segments[k].element));
     for (std::size_t i = 0; i < asked.found.size() && !asked.held; ++i) {
       if (std::abs(angle_between(before, asked.found[i].nodes, m, problem.node_s())) <= kPi) asked.held = i;
     }
@@ -233,16 +233,16 @@ void ask_turns(Problem& problem, CarriedSmoother::Report& report) {
 }
 
 void ask_turns(Problem& problem, CarriedSmoother::Report& report, SolveAgain again) {
-  const std::vector<Stretch> stretches = doubtful_stretches(problem);
-  report.turns_asked = static_cast<int>(stretches.size());
-  if (stretches.empty()) return;
-  std::vector<Part> parts = with_surroundings(problem, stretches);
+  const std::vector<Segment> segments = doubtful_segments(problem);
+  report.turns_asked = static_cast<int>(segments.size());
+  if (segments.empty()) return;
+  std::vector<Part> parts = with_surroundings(problem, segments);
   std::vector<Open> open;
   std::vector<bool> fallen(parts.size(), false);
   // what the rest says of a part is linear: right where it stands, and so asked again once a turn was taken
   for (int round = 0; round < kRounds; ++round) {
     if (!problem.tell(parts)) break;
-    const std::vector<Asked> asked = ask(problem, stretches, parts, fallen);
+    const std::vector<Asked> asked = ask(problem, segments, parts, fallen);
     const auto taken = std::count_if(asked.begin(), asked.end(), [](const Asked& each) { return each.another; });
     open = left_open(asked, true);  // in the place of what the round before left open
     if (taken == 0) break;
@@ -262,11 +262,11 @@ void ask_turns(Problem& problem, CarriedSmoother::Report& report, SolveAgain aga
   }
   report.turns_open = static_cast<int>(open.size());
   // carried.md (C31)
-  for (const Open& stretch : open) {
-    for (const auto& [share, nodes] : stretch.others) {
+  for (const Open& segment : open) {
+    for (const auto& [share, nodes] : segment.others) {
       for (std::size_t i = 0; i < nodes.size(); ++i) {
-        const Vector9 d = apart(problem.nodes()[stretch.from + i], nodes[i]);
-        problem.widen(stretch.from + i, share * d * d.transpose());
+        const Vector9 d = apart(problem.nodes()[segment.from + i], nodes[i]);
+        problem.widen(segment.from + i, share * d * d.transpose());
       }
     }
   }

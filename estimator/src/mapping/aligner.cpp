@@ -8,9 +8,9 @@ namespace tumble::mapping {
 
 namespace {
 
-Registration::Params brief_params(const LidarInertialOdometry::Params& params) {
+Registration::Params full_params(const LidarInertialOdometry::Params& params) {
   Registration::Params out = registration_params(params);
-  out.iterations_max = std::min(params.expert.matching.iterations_max, params.expert.effort.brief_iterations);
+  out.iterations_max = std::min(params.expert.matching.iterations_max, params.expert.stages.full_iterations);
   return out;
 }
 
@@ -18,12 +18,12 @@ Registration::Params brief_params(const LidarInertialOdometry::Params& params) {
 Registration::Params coarse_params(const LidarInertialOdometry::Params& params) {
   Registration::Params out = registration_params(params);
   out.match_distance_m = std::min(2.0 * params.expert.matching.distance_m, 10.0);
-  out.iterations_max = std::min(params.expert.matching.iterations_max, params.expert.effort.coarse_iterations);
+  out.iterations_max = std::min(params.expert.matching.iterations_max, params.expert.stages.coarse_iterations);
   out.expert.kernel_min_m = 0.5;
   out.expert.rematch_m = 0.2;
   out.expert.step_m = 5e-3;
   out.expert.step_rad = 2e-3;
-  out.matches_min = std::min<std::size_t>(params.expert.matching.least, params.expert.effort.coarse_matches_min);
+  out.matches_min = std::min<std::size_t>(params.expert.matching.least, params.expert.stages.coarse_matches_min);
   out.expert.fitting_share_min = 0.2;
   out.expert.agreeing_min = out.matches_min;  // there is no prior for it to agree with
   return out;
@@ -47,28 +47,28 @@ void align(Registration& registration, const Registration::Prior& prior, const S
 Registration::Prior from(const Registration::Result& found, const Registration::Prior& prior) {
   Registration::Prior out = prior;
   out.start = found.mean.state;
-  out.excess_start_rad_s = found.mean.excess_rad_s;
+  out.deficit_start_rad_s = found.mean.deficit_rad_s;
   return out;
 }
 
 }  // namespace
 
 Aligner::Aligner(const LidarInertialOdometry::Params& params)
-    : brief_(brief_params(params)),
-      patient_(registration_params(params)),
+    : full_(full_params(params)),
+      subsampled_(registration_params(params)),
       coarse_(coarse_params(params)),
-      patient_points_(params.expert.effort.patient_points),
-      coarse_points_(params.expert.effort.coarse_points) {}
+      subsample_points_(params.expert.stages.subsample_points),
+      coarse_points_(params.expert.stages.coarse_points) {}
 
 void Aligner::in_full(const Registration::Prior& prior, const Scene& scene, SweepTrajectory& trajectory,
                       Registration::Result& found) {
-  align(brief_, prior, scene, scene.points, trajectory, found);
+  align(full_, prior, scene, scene.points, trajectory, found);
 }
 
 void Aligner::to_convergence(const Registration::Prior& prior, const Scene& scene, SweepTrajectory& trajectory,
                              Registration::Result& found) {
-  thin(scene.points, patient_points_, thinned_);
-  align(patient_, prior, scene, thinned_, trajectory, found);
+  thin(scene.points, subsample_points_, thinned_);
+  align(subsampled_, prior, scene, thinned_, trajectory, found);
   if (found.verdict != RegistrationVerdict::converged) return;
   const int iterations = found.iterations;
   const std::unique_ptr<const Registration::Prior> here(new Registration::Prior(from(found, prior)));

@@ -17,7 +17,7 @@ struct Scene {
   const VoxelMap& map;
 };
 
-/// Registers a sweep with more or less effort. Each tells by the verdict of `found` whether it led anywhere;
+/// Registers a sweep in stages. Each tells by the verdict of `found` whether it led anywhere;
 /// `trajectory` is then that of the result, else one that was tried.
 class Aligner {
  public:
@@ -35,11 +35,11 @@ class Aligner {
                  SweepTrajectory& trajectory, Registration::Result& found);
 
   /// That tells a return's own variance.
-  const Registration& registration() const { return brief_; }
+  const Registration& registration() const { return full_; }
 
  private:
-  Registration brief_, patient_, coarse_;
-  std::size_t patient_points_, coarse_points_;
+  Registration full_, subsampled_, coarse_;
+  std::size_t subsample_points_, coarse_points_;
   std::vector<SweepPoint> thinned_;  // memory
 };
 

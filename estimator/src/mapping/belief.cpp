@@ -51,7 +51,7 @@ Matrix unknowns_at(const SweepTrajectory& trajectory, double t_s) {
   const SweepTrajectory::Transition step = trajectory.transition(t_s);
   Matrix F = Matrix::Identity();
   u::block(F, u::motion) = step.by_start;
-  u::block(F, u::motion, u::excess) = step.by_excess_s;
+  u::block(F, u::motion, u::deficit) = step.by_deficit_s;
   u::block(F, u::motion, u::gravity) = step.by_gravity;
   return F;
 }

@@ -30,7 +30,7 @@ void sandwich(const Registration::Matrix& F, const Registration::Matrix& P, Regi
 /// what the whole product has there, for a third of it: each pose of a recording asks.
 Registration::Matrix pose_and_mounting(const Registration::Matrix& F, const Registration::Matrix& errors);
 
-/// Of the unknowns at the end of the stretch, which is at `end_ns`; the trajectory is that of the mean.
+/// Of the unknowns at the end of the segment, which is at `end_ns`; the trajectory is that of the mean.
 void at_end(const Belief& at_start, const SweepTrajectory& trajectory, const Registration::Matrix& end_by_start,
             TimeNs end_ns, Belief& end);
 

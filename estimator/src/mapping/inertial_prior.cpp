@@ -11,7 +11,7 @@ namespace tumble::mapping {
 /// mapping.md (R31), (R32), (R33), (R101).
 Eigen::Matrix<double, 9, 9> inertial_noise(const LidarInertialOdometry::Params& params,
                                            const SweepTrajectory& trajectory, std::span<const MotionSample> samples,
-                                           unsigned excess_axes) {
+                                           unsigned deficit_axes) {
   const double span = trajectory.duration_s() / InertialNoiseParams::kSpan_s;
   Eigen::Matrix<double, 9, 9> noise = Eigen::Matrix<double, 9, 9>::Zero();
   noise.diagonal().segment<3>(0).setConstant(std::pow(params.expert.prior.sigma_m * span, 2));
@@ -29,7 +29,7 @@ Eigen::Matrix<double, 9, 9> inertial_noise(const LidarInertialOdometry::Params& 
     const Eigen::Matrix3d R = trajectory.at(0.5 * (from + to), hint).q_WI.toRotationMatrix();
     Eigen::Vector3d variance = sample.rate_sigma_rad_s.cwiseAbs2();
     for (int axis = 0; axis < 3; ++axis) {
-      if (excess_axes >> axis & sample.clipped_axes >> axis & 1) variance[axis] = 0.0;
+      if (deficit_axes >> axis & sample.clipped_axes >> axis & 1) variance[axis] = 0.0;
     }
     const double dt = to - from, walk_m2_s3 = sample.bridges_gap ? gap_m2_s3 : 0.0;
     gap_m2 += dt * (2.0 * gap_m2_s + dt * (gap_m2_s2 + walk_m2_s3 * dt / 3.0));

@@ -9,15 +9,15 @@
 
 namespace tumble::mapping {
 
-/// What the inertial side may be wrong by over one stretch, as uncertainty of the state at its start: the registration
-/// refines a stretch by its start, so noise that arises inside is booked there. A rate error is taken as constant over
-/// the stretch (it comes from a rail, not from white noise), which makes the attitude's standard deviation the time
-/// integral of the rate's. Axes in `excess_axes` (bits) are left out: they are estimated by themselves.
+/// What the inertial side may be wrong by over one segment, as uncertainty of the state at its start: the registration
+/// refines a segment by its start, so noise that arises inside is booked there. A rate error is taken as constant over
+/// the segment (it comes from a rail, not from white noise), which makes the attitude's standard deviation the time
+/// integral of the rate's. Axes in `deficit_axes` (bits) are left out: they are estimated by themselves.
 Eigen::Matrix<double, 9, 9> inertial_noise(const LidarInertialOdometry::Params& params,
                                            const SweepTrajectory& trajectory, std::span<const MotionSample> samples,
-                                           unsigned excess_axes);
+                                           unsigned deficit_axes);
 
-/// Variance of the velocity gained over the stretch from what the accelerometer's rail hid, in W. One rail's excess is
+/// Variance of the velocity gained over the segment from what the accelerometer's rail hid, in W. One rail's deficit is
 /// taken as constant for as long as it lasts.
 Eigen::Matrix3d railed_velocity_variance(const LidarInertialOdometry::Params& params, const SweepTrajectory& trajectory,
                                          std::span<const MotionSample> samples);

@@ -12,7 +12,7 @@ namespace tumble::mapping {
 
 Status WindowSweep::motion(SweepTrajectory& trajectory) const {
   const Registration::Estimate& now = smoothed.mean;
-  return trajectory.build(now.state, samples, end_ns, now.calibration.gravity_W_m_s2, now.excess_rad_s);
+  return trajectory.build(now.state, samples, end_ns, now.calibration.gravity_W_m_s2, now.deficit_rad_s);
 }
 
 WindowSweep& LagWindow::enter() {

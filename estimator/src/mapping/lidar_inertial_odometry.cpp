@@ -93,7 +93,7 @@ Status LidarInertialOdometry::predict(std::span<const ImuSample> samples, std::s
       new mapping::Prediction(mapping::predict(my.params, my.border, motion, trajectory, my.known)));
   const Registration::Estimate& mean = at_start->prior.mean;  // what is known beside the last sweep is in it
   if (Status status =
-          trajectory.build(mean.state, track.samples(), end_ns, mean.calibration.gravity_W_m_s2, mean.excess_rad_s);
+          trajectory.build(mean.state, track.samples(), end_ns, mean.calibration.gravity_W_m_s2, mean.deficit_rad_s);
       !status.ok())
     return status;
   pose = my.pose_along(trajectory, trajectory.duration_s(), at_start->errors);

@@ -10,7 +10,7 @@ namespace tumble::mapping {
 
 namespace {
 
-/// What the trajectory is uncertain by inside of a stretch, as seen at a point: between its start and its end. Its part
+/// What the trajectory is uncertain by inside of a segment, as seen at a point: between its start and its end. Its part
 /// of mapping.md (R53).
 class PoseVariance {
  public:
@@ -19,7 +19,7 @@ class PoseVariance {
     namespace u = unknowns;
     const SweepTrajectory::Transition step = trajectory.transition(trajectory.duration_s());
     Eigen::Matrix<double, 9, Registration::kCalibration> F;
-    F << step.by_start, step.by_excess_s;
+    F << step.by_start, step.by_deficit_s;
     const Eigen::Matrix<double, 9, 9> end = F * u::block(covariance, u::moving) * F.transpose();
     start_m2_ = u::variances(covariance, u::position).mean();
     start_rad2_ = u::variances(covariance, u::attitude).mean();

@@ -18,7 +18,7 @@ Status LidarInertialOdometry::Impl::add_sweep(TimeNs start_ns, TimeNs end_ns, st
   if (Status status = level_at_first(); !status.ok()) return status;
 
   // where the IMU leads from the border on; `trajectory` is this motion until what stands takes its place
-  const auto& [state, calibration, excess] = border.belief.mean;
+  const auto& [state, calibration, deficit] = border.belief.mean;
   if (Status status = trajectory.build(state, track.samples(), end_ns, calibration.gravity_W_m_s2); !status.ok())
     return status;
   resting_sweeps = rests(track, trajectory, end_ns) ? resting_sweeps + 1 : 0;
@@ -40,8 +40,8 @@ Status LidarInertialOdometry::Impl::add_sweep(TimeNs start_ns, TimeNs end_ns, st
   const std::unique_ptr<const Belief> start(new Belief(update(motion, *placed, *prediction)));
   if (!placed->alignment) {
     const Registration::Estimate& mean = start->mean;
-    const Status status =
-        trajectory.build(mean.state, motion.samples, motion.end_ns, mean.calibration.gravity_W_m_s2, mean.excess_rad_s);
+    const Status status = trajectory.build(mean.state, motion.samples, motion.end_ns, mean.calibration.gravity_W_m_s2,
+                                           mean.deficit_rad_s);
     if (!status.ok()) return status;
   }
   // where the map had nothing to say the prior draws on: points that it leaves too uncertain stay out by themselves
@@ -109,7 +109,7 @@ void LidarInertialOdometry::Impl::place(const Prediction& prediction, const Moti
     report.conditioning = aligned.eigenvalues[5] > 0.0 ? aligned.eigenvalues[0] / aligned.eigenvalues[5] : 0.0;
     report.weakest_direction = aligned.directions.col(0);
     report.weakest_sigma_m = aligned.weakest_sigma_m;
-    report.saturation_deficit_rad_s = aligned.mean.excess_rad_s.rowwise().mean();
+    report.saturation_deficit_rad_s = aligned.mean.deficit_rad_s.rowwise().mean();
   }
   mapping::judge(params, tracking, scene.points.size(), prior_trusted, attempt, placed);
 }

@@ -11,7 +11,7 @@ PointMotion::PointMotion(const SweepTrajectory& trajectory, const SweepCalibrati
   turned_ = now_.q_WI * x_I;
   lever_ = now_.preintegrated_position_m + turned_;
   from_lidar_I_ = x_I - calibration.T_IL.translation();
-  if (clipped_) by_excess_ = trajectory.excess_derivative(t_s_, hint);
+  if (clipped_) by_deficit_ = trajectory.deficit_derivative(t_s_, hint);
 }
 
 void PointMotion::along(const Eigen::Vector3d& n, SweepUnknowns::Vector& derivative) const {
@@ -19,12 +19,12 @@ void PointMotion::along(const Eigen::Vector3d& n, SweepUnknowns::Vector& derivat
   derivative.segment<3>(0) = n;
   derivative.segment<3>(3) = lever_.cross(n);
   derivative.segment<3>(6) = t_s_ * n;
-  auto of_excess = derivative.segment<SweepTrajectory::kExcess>(SweepUnknowns::kExcess);
+  auto of_deficit = derivative.segment<SweepTrajectory::kDeficit>(SweepUnknowns::kDeficit);
   if (clipped_) {
-    of_excess =
-        by_excess_.preintegrated_position_m_s.transpose() * n + by_excess_.attitude_s.transpose() * turned_.cross(n);
+    of_deficit =
+        by_deficit_.preintegrated_position_m_s.transpose() * n + by_deficit_.attitude_s.transpose() * turned_.cross(n);
   } else {
-    of_excess.setZero();
+    of_deficit.setZero();
   }
   derivative.tail<SweepCalibration::kErrors>() << from_lidar_I_.cross(n_I), n_I, n.dot(velocity_m_s_),
       (0.5 * t_s_ * t_s_) * n;

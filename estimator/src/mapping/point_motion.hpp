@@ -29,7 +29,7 @@ class PointMotion {
   bool clipped_;
   SweepTrajectory::Instant now_;
   Eigen::Vector3d turned_, lever_, from_lidar_I_, velocity_m_s_;
-  SweepTrajectory::ExcessDerivative by_excess_;  // where an axis clips
+  SweepTrajectory::DeficitDerivative by_deficit_;  // where an axis clips
 };
 
 }  // namespace tumble::mapping

@@ -18,32 +18,32 @@ namespace {
 namespace u = unknowns;
 using Params = LidarInertialOdometry::Params;
 
-/// The excess of a clipped axis that is on the rail at the border goes on from where it was, and forgets as time goes:
+/// The deficit of a clipped axis that is on the rail at the border goes on from where it was, and forgets as time goes:
 /// mapping.md (R38).
-void carry_excess(const Params& params, const Border& border, const SweepTrajectory& trajectory, Prediction& next) {
+void carry_deficit(const Params& params, const Border& border, const SweepTrajectory& trajectory, Prediction& next) {
   constexpr int kLast = SweepTrajectory::kKnots - 1;
-  u::rows(next.by_last, u::excess).setZero();
+  u::rows(next.by_last, u::deficit).setZero();
   if (!params.expert.rails.estimate_deficit) return;
-  const Eigen::Vector3d share_at_start = trajectory.excess_share_at_start();
+  const Eigen::Vector3d share_at_start = trajectory.deficit_share_at_start();
   const double rho = knot_correlation(params, trajectory);
   for (int axis = 0; axis < 3; ++axis) {
-    if (!(share_at_start[axis] > 0.0 && border.excess_share[axis] > 0.0)) continue;
+    if (!(share_at_start[axis] > 0.0 && border.deficit_share[axis] > 0.0)) continue;
     double remains =
-        std::clamp(border.excess_share[axis] / share_at_start[axis], 0.0, params.expert.rails.excess_carry_max);
+        std::clamp(border.deficit_share[axis] / share_at_start[axis], 0.0, params.expert.rails.deficit_carry_max);
     for (int knot = 0; knot <= kLast; ++knot) {
-      next.prior.mean.excess_rad_s(axis, knot) = remains * border.belief.mean.excess_rad_s(axis, kLast);
-      next.by_last(u::excess_at(axis, knot), u::excess_at(axis, kLast)) = remains;
+      next.prior.mean.deficit_rad_s(axis, knot) = remains * border.belief.mean.deficit_rad_s(axis, kLast);
+      next.by_last(u::deficit_at(axis, knot), u::deficit_at(axis, kLast)) = remains;
       remains *= rho;
     }
   }
 }
 
-/// Largest standard deviation that the rate method reports of the axis while clipped inside of the stretch, at least
+/// Largest standard deviation that the rate method reports of the axis while clipped inside of the segment, at least
 /// the parameter's.
-double excess_sigma(const Params& params, const MotionWindow& window, const SweepTrajectory& trajectory, int axis) {
-  double sigma = params.expert.rails.excess_sigma_min_rad_s;
+double deficit_sigma(const Params& params, const MotionWindow& window, const SweepTrajectory& trajectory, int axis) {
+  double sigma = params.expert.rails.deficit_sigma_min_rad_s;
   for (const MotionSample& sample : window.samples) {
-    // those after the stretch wait for the next one
+    // those after the segment wait for the next one
     if (seconds(sample.from_ns - trajectory.start_ns()) >= trajectory.duration_s()) break;
     if (sample.clipped_axes >> axis & 1) sigma = std::max(sigma, sample.rate_sigma_rad_s[axis]);
   }
@@ -52,22 +52,22 @@ double excess_sigma(const Params& params, const MotionWindow& window, const Swee
 
 /// Knots as samples of a process that forgets: of the reported standard deviation, correlated from knot to knot,
 /// mapping.md (R36), (R37), (R39): the last where the first knot is carried.
-void add_excess_noise(const Params& params, const MotionWindow& window, const SweepTrajectory& trajectory,
-                      Prediction& next) {
+void add_deficit_noise(const Params& params, const MotionWindow& window, const SweepTrajectory& trajectory,
+                       Prediction& next) {
   if (!params.expert.rails.estimate_deficit) return;
   const double rho = knot_correlation(params, trajectory);
   for (int axis = 0; axis < 3; ++axis) {
     if (!(trajectory.clipped_axes() >> axis & 1)) continue;
-    const double sigma = excess_sigma(params, window, trajectory, axis);
-    const bool carried = next.by_last.row(u::excess_at(axis, 0)).squaredNorm() > 0.0;
+    const double sigma = deficit_sigma(params, window, trajectory, axis);
+    const bool carried = next.by_last.row(u::deficit_at(axis, 0)).squaredNorm() > 0.0;
     for (int a = 0; a < SweepTrajectory::kKnots; ++a) {
       for (int b = 0; b < SweepTrajectory::kKnots; ++b) {
         const double known = carried ? std::pow(rho, a + b) : 0.0;
-        next.noise(u::excess_at(axis, a), u::excess_at(axis, b)) +=
+        next.noise(u::deficit_at(axis, a), u::deficit_at(axis, b)) +=
             sigma * sigma * (std::pow(rho, std::abs(a - b)) - known);
       }
-      next.noise(u::excess_at(axis, a), u::excess_at(axis, a)) +=
-          params.expert.rails.excess_knot_share * params.expert.rails.excess_knot_share * sigma * sigma;
+      next.noise(u::deficit_at(axis, a), u::deficit_at(axis, a)) +=
+          params.expert.rails.deficit_knot_share * params.expert.rails.deficit_knot_share * sigma * sigma;
     }
   }
 }
@@ -75,7 +75,7 @@ void add_excess_noise(const Params& params, const MotionWindow& window, const Sw
 }  // namespace
 
 double knot_correlation(const Params& params, const SweepTrajectory& trajectory) {
-  return std::exp(-trajectory.duration_s() / (SweepTrajectory::kKnots - 1) / params.expert.rails.excess_time_s);
+  return std::exp(-trajectory.duration_s() / (SweepTrajectory::kKnots - 1) / params.expert.rails.deficit_time_s);
 }
 
 /// mapping.md (R29).
@@ -86,7 +86,7 @@ void Prediction::compose(const Belief& at_border) {
   errors += noise;
 }
 
-void Prediction::hold_still(double sigma_m_s) {
+void Prediction::zero_velocity_update(double sigma_m_s) {
   prior.mean.state.v_WI_m_s.setZero();
   u::rows(by_last, u::velocity).setZero();
   u::rows(noise, u::velocity).setZero();
@@ -98,7 +98,7 @@ void impose(const InertialPrior&, Prediction&) {}
 
 /// mapping.md (R30).
 void impose(const KnownVelocity& known, Prediction& prediction) {
-  prediction.hold_still(known.sigma_m_s);
+  prediction.zero_velocity_update(known.sigma_m_s);
   const Eigen::Vector3d v_WI_m_s = prediction.prior.mean.state.q_WI * known.v_WI_I_m_s;
   prediction.prior.mean.state.v_WI_m_s = v_WI_m_s;
   u::rows(prediction.by_last, u::velocity) = -so3::hat(v_WI_m_s) * u::rows(prediction.by_last, u::attitude);
@@ -109,27 +109,27 @@ Prediction predict(const Params& params, const Border& border, const MotionWindo
   Prediction next;
   next.prior.mean.state = border.belief.mean.state;
   next.prior.mean.calibration = border.belief.mean.calibration;
-  carry_excess(params, border, trajectory, next);
-  if (window.samples.front().at_rest) next.hold_still(params.expert.standstill.start_sigma_m_s);
+  carry_deficit(params, border, trajectory, next);
+  if (window.samples.front().at_rest) next.zero_velocity_update(params.expert.standstill.start_sigma_m_s);
   // surfaces that hold the sensor tell a slow drive from a rest by themselves
   const bool creeps = border.belief.mean.state.v_WI_m_s.norm() < params.expert.standstill.creep_max_m_s;
   if (window.resting_sweeps >= params.expert.standstill.sweeps_min && !border.held && creeps)
-    next.hold_still(params.expert.standstill.sigma_m_s);
+    next.zero_velocity_update(params.expert.standstill.sigma_m_s);
   impose(known, next);
   const std::uint8_t axes = params.expert.rails.estimate_deficit ? trajectory.clipped_axes() : 0;
   u::block(next.noise, u::motion) += inertial_noise(params, trajectory, window.samples, axes);
-  // a force that comes late in a stretch is not in the velocity that the stretch is fitted with: the next one hears of
+  // a force that comes late in a segment is not in the velocity that the segment is fitted with: the next one hears of
   // it as well
   u::block(next.noise, u::velocity) +=
       border.railed_velocity_m2_s2 + railed_velocity_variance(params, trajectory, window.samples);
-  add_excess_noise(params, window, trajectory, next);
-  next.prior.excess_start_rad_s = next.prior.mean.excess_rad_s;
+  add_deficit_noise(params, window, trajectory, next);
+  next.prior.deficit_start_rad_s = next.prior.mean.deficit_rad_s;
   next.compose(border.belief);
   return next;
 }
 
 void predict_rest(const Params& params, const Border& border, Prediction& prediction) {
-  prediction.hold_still(params.expert.standstill.sigma_m_s);
+  prediction.zero_velocity_update(params.expert.standstill.sigma_m_s);
   prediction.compose(border.belief);
 }
 
@@ -191,8 +191,8 @@ void border_after(const Params& params, const Belief& start, const MotionWindow&
   at_end(start, trajectory, border.end_by_start, window.end_ns, border.belief);
   border.railed_velocity_m2_s2 = railed_velocity_variance(params, trajectory, window.samples);
   const bool aligned = alignment != nullptr;
-  border.excess_share = Eigen::Vector3d::Zero();
-  if (aligned) border.excess_share = trajectory.excess_share_at_end();
+  border.deficit_share = Eigen::Vector3d::Zero();
+  if (aligned) border.deficit_share = trajectory.deficit_share_at_end();
   border.held = aligned && alignment->weakest_sigma_m <= params.expert.matching.degenerate_sigma_m;
 }
 

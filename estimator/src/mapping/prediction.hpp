@@ -13,7 +13,7 @@ struct Border {
   Belief belief;                                                         ///< there
   Registration::Matrix end_by_start = Registration::Matrix::Identity();  ///< of its unknowns by those of the last sweep
   /// Magnitude of the saturation deficit's share there, on axes on the rail; 0 where the last sweep was not aligned.
-  Eigen::Vector3d excess_share = Eigen::Vector3d::Zero();
+  Eigen::Vector3d deficit_share = Eigen::Vector3d::Zero();
   Eigen::Matrix3d railed_velocity_m2_s2 = Eigen::Matrix3d::Zero();  ///< variance from the last sweep's rails, W
   bool held = false;  ///< the last sweep's surfaces held the sensor in all directions
 
@@ -37,7 +37,7 @@ struct Prediction {
   /// From the weight and the errors of what is believed at the border, once all else is settled.
   void compose(const Belief& at_border);
   /// Known to be at rest: velocity zero, and no longer correlated with the rest. Before compose().
-  void hold_still(double sigma_m_s);
+  void zero_velocity_update(double sigma_m_s);
 };
 
 /// Predicts the unknowns of a sweep; `trajectory` is what the IMU makes of the belief at the border.
@@ -47,7 +47,8 @@ Prediction predict(const LidarInertialOdometry::Params& params, const Border& bo
 /// Of a lost sensor whose IMU rests: that it has not moved, which stops the drift of its velocity.
 void predict_rest(const LidarInertialOdometry::Params& params, const Border& border, Prediction& prediction);
 
-/// Whether the prior alone is sure enough to draw by; clipped axes count in full, also where their excess is estimated.
+/// Whether the prior alone is sure enough to draw by; clipped axes count in full, also where their deficit is
+/// estimated.
 bool prior_is_trusted(const LidarInertialOdometry::Params& params, const Border& border, const MotionWindow& window,
                       const SweepTrajectory& trajectory);
 

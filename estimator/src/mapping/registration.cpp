@@ -57,7 +57,7 @@ bool is_small(const Vector& step, double span_s, const Registration::Params& par
                        step.segment<3>(kCal + 3).norm() < params.expert.step_m &&
                        step.segment<3>(kCal + 7).norm() * span_s * span_s < params.expert.step_m;
   return lengths && step.segment<3>(3).norm() < params.expert.step_rad &&
-         step.segment<SweepTrajectory::kExcess>(Registration::kExcess).cwiseAbs().maxCoeff() * span_s <
+         step.segment<SweepTrajectory::kDeficit>(Registration::kDeficit).cwiseAbs().maxCoeff() * span_s <
              params.expert.step_rad &&
          step.segment<3>(kCal).norm() < params.expert.step_rad && std::abs(step[kCal + 6]) < 1e-5;
 }
@@ -68,14 +68,14 @@ void SweepUnknowns::Estimate::add(const Vector& error) {
   state.p_WI_m += error.segment<3>(0);
   state.q_WI = (so3::exp(error.segment<3>(3)) * state.q_WI).normalized();
   state.v_WI_m_s += error.segment<3>(6);
-  excess_rad_s += error.segment<SweepTrajectory::kExcess>(kExcess).reshaped(3, SweepTrajectory::kKnots);
+  deficit_rad_s += error.segment<SweepTrajectory::kDeficit>(kDeficit).reshaped(3, SweepTrajectory::kKnots);
   calibration.add(error.tail<SweepCalibration::kErrors>());
 }
 
 Vector SweepUnknowns::Estimate::minus(const Estimate& other) const {
   Vector error;
   error << state.p_WI_m - other.state.p_WI_m, so3::log(state.q_WI * other.state.q_WI.conjugate()),
-      state.v_WI_m_s - other.state.v_WI_m_s, (excess_rad_s - other.excess_rad_s).reshaped(),
+      state.v_WI_m_s - other.state.v_WI_m_s, (deficit_rad_s - other.deficit_rad_s).reshaped(),
       calibration.minus(other.calibration);
   return error;
 }
@@ -98,7 +98,7 @@ struct Registration::Problem {
 
   /// The trajectory of an estimate.
   Status build(const Estimate& of, SweepTrajectory& trajectory) const {
-    return trajectory.build(of.state, samples, end_ns, of.calibration.gravity_W_m_s2, of.excess_rad_s);
+    return trajectory.build(of.state, samples, end_ns, of.calibration.gravity_W_m_s2, of.deficit_rad_s);
   }
 };
 
@@ -128,7 +128,7 @@ Status Registration::align(const Prior& prior, std::span<const MotionSample> sam
   const std::unique_ptr<Descent> descent(
       new Descent{.now = prior.mean, .points = points, .sum = {}, .kernel_m = params_.expert.kernel_min_m});
   Descent& at = *descent;
-  at.now.excess_rad_s = prior.excess_start_rad_s;
+  at.now.deficit_rad_s = prior.deficit_start_rad_s;
   if (prior.start) at.now.state = *prior.start;
   if (Status status = problem.build(at.now, trajectory); !status.ok()) return status;
 

@@ -27,7 +27,7 @@ Registration::Unknowns::Unknowns(const Matrix& covariance) {
   for (int i = 0; i < kUnknowns; ++i) {
     if (i >= kRigid && covariance(i, i) <= 0.0) continue;
     free[static_cast<std::size_t>(count++)] = i;
-    excess = excess || (i >= kExcess && i < kCalibration);
+    deficit = deficit || (i >= kDeficit && i < kCalibration);
     calibration = calibration || i >= kCalibration;
   }
 }
@@ -162,7 +162,7 @@ void Registration::accumulate_block(std::span<const SweepPoint> points, std::siz
   // a column per match: derivatives by the free unknowns, times the square root of the weight; and the distance, so too
   auto& rows = products.columns;
   Eigen::Matrix<double, static_cast<int>(kBlock), 1> weighted;
-  const bool rigid = !unknowns.excess && !unknowns.calibration;
+  const bool rigid = !unknowns.deficit && !unknowns.calibration;
   std::size_t hint = 0;
   int count = 0;
   const std::size_t end = std::min(points.size(), (block + 1) * kBlock);

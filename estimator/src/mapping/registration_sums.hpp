@@ -12,7 +12,7 @@ namespace tumble {
 struct Registration::Unknowns {
   std::array<int, kUnknowns> free{};  ///< their numbers, ascending
   int count = 0;
-  bool excess = false, calibration = false;
+  bool deficit = false, calibration = false;
 
   /// Motion always; of the rest what has a variance.
   explicit Unknowns(const Matrix& covariance);

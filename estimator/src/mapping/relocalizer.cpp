@@ -14,7 +14,7 @@ namespace {
 
 using Params = LidarInertialOdometry::Params;
 
-constexpr double kExcessTries_rad_s[] = {3.0, 6.0, 9.0, 15.0};
+constexpr double kDeficitTries_rad_s[] = {3.0, 6.0, 9.0, 15.0};
 
 constexpr int kStartsPerRound = 12;  // six axes, two ways
 
@@ -35,13 +35,13 @@ void track(const Params& params, const Registration::Prior& prior, const Scene& 
     aligner.to_convergence(prior, scene, trajectory, found);
     iterations += found.iterations;
   }
-  for (const double more : kExcessTries_rad_s) {
+  for (const double more : kDeficitTries_rad_s) {
     for (int axis = 0; axis < 3; ++axis) {
-      if (converged(found) || tries == params.expert.search.excess_tries_max) break;
-      const int first = unknowns::excess_at(axis, 0);
+      if (converged(found) || tries == params.expert.search.deficit_tries_max) break;
+      const int first = unknowns::deficit_at(axis, 0);
       if (std::sqrt(prior.covariance(first, first)) < more / 5.0) continue;
       const auto start = std::make_unique<Registration::Prior>(prior);
-      start->excess_start_rad_s.row(axis).array() += more;
+      start->deficit_start_rad_s.row(axis).array() += more;
       aligner.from_afar(*start, prior, scene, trajectory, found);
       iterations += found.iterations;
       ++tries;

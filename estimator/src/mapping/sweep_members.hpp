@@ -43,7 +43,7 @@ template <StateOf<Registration::Estimate> Self, class Visitor>
 void members(Self& s, Visitor& visit) {
   visit("unknowns.state", s.state);
   visit("unknowns.calibration", s.calibration);
-  visit("unknowns.excess_rad_s", s.excess_rad_s);
+  visit("unknowns.deficit_rad_s", s.deficit_rad_s);
 }
 
 template <StateOf<SweepPoint> Self, class Visitor>
@@ -69,7 +69,7 @@ template <StateOf<Border> Self, class Visitor>
 void members(Self& s, Visitor& visit) {
   visit("border.belief", s.belief);
   visit("border.end_by_start", s.end_by_start);
-  visit("border.excess_share", s.excess_share);
+  visit("border.deficit_share", s.deficit_share);
   visit("border.railed_velocity_m2_s2", s.railed_velocity_m2_s2);
   visit("border.held", s.held);
 }

@@ -11,7 +11,7 @@ namespace tumble {
 
 namespace {
 
-/// Largest standard deviation of each axis among the samples of the stretch in which it was clipped; those that wait
+/// Largest standard deviation of each axis among the samples of the segment in which it was clipped; those that wait
 /// for the next one say nothing of it.
 Eigen::Vector3d least_known(std::span<const MotionSample> samples, TimeNs end_ns) {
   Eigen::Vector3d sigma = Eigen::Vector3d::Zero();
@@ -37,7 +37,7 @@ Eigen::Vector3d signed_shares(const MotionSample& sample, const Eigen::Vector3d&
   return share;
 }
 
-/// Weights of the knots at a share of the stretch: linear between neighbours, mapping.md (R8).
+/// Weights of the knots at a share of the segment: linear between neighbours, mapping.md (R8).
 Eigen::Matrix<double, SweepTrajectory::kKnots, 1> knot_weights(double share) {
   Eigen::Matrix<double, SweepTrajectory::kKnots, 1> weights;
   const double place = std::clamp(share, 0.0, 1.0) * (SweepTrajectory::kKnots - 1);
@@ -73,7 +73,7 @@ PoseState MotionState::pose() const {
 }
 
 Status SweepTrajectory::build(const MotionState& start, std::span<const MotionSample> samples, TimeNs end_ns,
-                              const Eigen::Vector3d& gravity_W_m_s2, const Excess& excess_rad_s) {
+                              const Eigen::Vector3d& gravity_W_m_s2, const Deficit& deficit_rad_s) {
   start_ = start;
   gravity_W_m_s2_ = gravity_W_m_s2;
   duration_s_ = seconds(end_ns - start.time_ns);
@@ -90,12 +90,12 @@ Status SweepTrajectory::build(const MotionState& start, std::span<const MotionSa
   const Eigen::Vector3d sigma = least_known(samples, end_ns);
   Interval next{};
   next.q_WI = start.q_WI;
-  next.preintegrated_v = next.preintegrated_p = next.w_I = next.a_W = next.excess_share = Eigen::Vector3d::Zero();
-  next.excess_attitude = next.excess_v = next.excess_p = next.excess_a = ByExcess::Zero();
+  next.preintegrated_v = next.preintegrated_p = next.w_I = next.a_W = next.deficit_share = Eigen::Vector3d::Zero();
+  next.deficit_attitude = next.deficit_v = next.deficit_p = next.deficit_a = ByDeficit::Zero();
   for (const MotionSample& sample : samples) {
     const TimeNs from = std::max(sample.from_ns, start.time_ns);
     const TimeNs to = std::min(sample.time_ns, end_ns);
-    // a stretch of no length still gets its one interval, so that it can be asked
+    // a segment of no length still gets its one interval, so that it can be asked
     if (to < from || (to == from && !(end_ns == start.time_ns && intervals_.empty()))) continue;
     const double dt = seconds(to - from);
     const Eigen::Vector3d share = signed_shares(sample, sigma);
@@ -103,10 +103,10 @@ Status SweepTrajectory::build(const MotionState& start, std::span<const MotionSa
     Interval& now = intervals_.emplace_back(next);
     now.start_s = seconds(from - start.time_ns);
     now.length_s = dt;
-    now.excess_share = share;
+    now.deficit_share = share;
     now.knot_weight = knot_weights(duration_s_ > 0.0 ? (now.start_s + 0.5 * dt) / duration_s_ : 0.0);
     // mapping.md (R8), (R5), (R4), (R6)
-    now.w_I = sample.w_WI_I_rad_s + share.cwiseProduct(excess_rad_s * now.knot_weight);
+    now.w_I = sample.w_WI_I_rad_s + share.cwiseProduct(deficit_rad_s * now.knot_weight);
     const Eigen::Matrix3d R = now.q_WI.toRotationMatrix();
     const Eigen::Matrix3d mean_rotation = R * so3::left_jacobian(now.w_I * dt);
     now.a_W = sample.bridges_gap ? Eigen::Vector3d(-gravity_W_m_s2) : Eigen::Vector3d(mean_rotation * sample.f_I_m_s2);
@@ -115,12 +115,12 @@ Status SweepTrajectory::build(const MotionState& start, std::span<const MotionSa
     next.preintegrated_v = now.preintegrated_v + now.a_W * dt;
     next.preintegrated_p = now.preintegrated_p + now.preintegrated_v * dt + now.a_W * (0.5 * dt * dt);
     if (clipped_axes_ == 0) continue;
-    now.excess_a = -so3::hat(now.a_W) * now.excess_attitude;
-    next.excess_attitude = now.excess_attitude + gained_by_excess(now, dt);
+    now.deficit_a = -so3::hat(now.a_W) * now.deficit_attitude;
+    next.deficit_attitude = now.deficit_attitude + gained_by_deficit(now, dt);
     // the force turns with the mean attitude error of the interval, mapping.md (R11)
-    const ByExcess turn = -so3::hat(now.a_W) * (0.5 * (now.excess_attitude + next.excess_attitude));
-    next.excess_v = now.excess_v + turn * dt;
-    next.excess_p = now.excess_p + now.excess_v * dt + turn * (0.5 * dt * dt);
+    const ByDeficit turn = -so3::hat(now.a_W) * (0.5 * (now.deficit_attitude + next.deficit_attitude));
+    next.deficit_v = now.deficit_v + turn * dt;
+    next.deficit_p = now.deficit_p + now.deficit_v * dt + turn * (0.5 * dt * dt);
   }
   if (intervals_.empty()) return {Trouble::too_few, "imu samples", 0.0, 1.0};
   return {};
@@ -153,26 +153,26 @@ SweepTrajectory::Instant SweepTrajectory::at(double t_s, const Eigen::Vector3d& 
   return {now.q_WI * turned, now.preintegrated_p + s * now.preintegrated_v + (0.5 * s * s) * now.a_W};
 }
 
-/// Attitude that the excess adds up to `s` seconds into an interval, per unit of each knot's axes: mapping.md (R10).
-SweepTrajectory::ByExcess SweepTrajectory::gained_by_excess(const Interval& now, double s) {
-  if (now.excess_share.isZero(0.0)) return ByExcess::Zero();
+/// Attitude that the deficit adds up to `s` seconds into an interval, per unit of each knot's axes: mapping.md (R10).
+SweepTrajectory::ByDeficit SweepTrajectory::gained_by_deficit(const Interval& now, double s) {
+  if (now.deficit_share.isZero(0.0)) return ByDeficit::Zero();
   const Eigen::Matrix3d gained =
-      now.q_WI.toRotationMatrix() * so3::left_jacobian(now.w_I * s) * now.excess_share.asDiagonal() * s;
-  ByExcess out;
+      now.q_WI.toRotationMatrix() * so3::left_jacobian(now.w_I * s) * now.deficit_share.asDiagonal() * s;
+  ByDeficit out;
   for (int k = 0; k < kKnots; ++k) out.middleCols<3>(3 * k) = now.knot_weight[k] * gained;
   return out;
 }
 
 /// mapping.md (R10), (R11), at an instant inside of an interval.
-SweepTrajectory::ExcessDerivative SweepTrajectory::excess_derivative(double t_s, std::size_t& hint) const {
+SweepTrajectory::DeficitDerivative SweepTrajectory::deficit_derivative(double t_s, std::size_t& hint) const {
   const double t = std::clamp(t_s, 0.0, duration_s_);
   const Interval& now = interval_at(t, hint);
   const double s = t - now.start_s;
-  if (now.excess_share.isZero(0.0))
-    return {now.excess_attitude, now.excess_p + s * now.excess_v + now.excess_a * (0.5 * s * s)};
-  const ByExcess gained = gained_by_excess(now, s);
-  const ByExcess turn = -so3::hat(now.a_W) * (now.excess_attitude + 0.5 * gained);
-  return {now.excess_attitude + gained, now.excess_p + s * now.excess_v + turn * (0.5 * s * s)};
+  if (now.deficit_share.isZero(0.0))
+    return {now.deficit_attitude, now.deficit_p + s * now.deficit_v + now.deficit_a * (0.5 * s * s)};
+  const ByDeficit gained = gained_by_deficit(now, s);
+  const ByDeficit turn = -so3::hat(now.a_W) * (now.deficit_attitude + 0.5 * gained);
+  return {now.deficit_attitude + gained, now.deficit_p + s * now.deficit_v + turn * (0.5 * s * s)};
 }
 
 MotionState SweepTrajectory::state(double t_s) const {
@@ -203,10 +203,10 @@ SweepTrajectory::Transition SweepTrajectory::transition(double t_s) const {
   out.by_start.block<3, 3>(0, 6) = t * Eigen::Matrix3d::Identity();
   out.by_start.block<3, 3>(6, 3) = -so3::hat(now.preintegrated_v + s * now.a_W);
 
-  const ExcessDerivative excess = excess_derivative(t, hint);
-  const ByExcess mean_attitude = 0.5 * (now.excess_attitude + excess.attitude_s);
-  out.by_excess_s << excess.preintegrated_position_m_s, excess.attitude_s,
-      now.excess_v - so3::hat(now.a_W) * mean_attitude * s;
+  const DeficitDerivative deficit = deficit_derivative(t, hint);
+  const ByDeficit mean_attitude = 0.5 * (now.deficit_attitude + deficit.attitude_s);
+  out.by_deficit_s << deficit.preintegrated_position_m_s, deficit.attitude_s,
+      now.deficit_v - so3::hat(now.a_W) * mean_attitude * s;
   out.by_gravity << 0.5 * t * t * Eigen::Matrix3d::Identity(), Eigen::Matrix3d::Zero(), t * Eigen::Matrix3d::Identity();
   return out;
 }

@@ -15,8 +15,8 @@ inline constexpr Block<3, 3> attitude;  ///< left perturbation in W
 inline constexpr Block<6, 3> velocity;  ///< W
 inline constexpr Block<0, 6> pose;      ///< position, attitude
 inline constexpr Block<0, Registration::kMotion> motion;
-inline constexpr Block<Registration::kExcess, SweepTrajectory::kExcess> excess;
-inline constexpr Block<0, Registration::kCalibration> moving;  ///< motion and excess
+inline constexpr Block<Registration::kDeficit, SweepTrajectory::kDeficit> deficit;
+inline constexpr Block<0, Registration::kCalibration> moving;  ///< motion and deficit
 inline constexpr Block<Registration::kCalibration, SweepCalibration::kErrors> calibration;
 inline constexpr Block<Registration::kCalibration, 6> mounting;  ///< rotation and translation of T_IL
 inline constexpr Block<Registration::kCalibration, 3> mounting_rotation;
@@ -32,8 +32,8 @@ inline constexpr double kAgrees = 16.9;
 static_assert(SweepUnknowns::kMotion == 9);
 
 /// Place of an axis of the saturation deficit at a knot.
-constexpr int excess_at(int axis, int knot) {
-  return Registration::kExcess + 3 * knot + axis;
+constexpr int deficit_at(int axis, int knot) {
+  return Registration::kDeficit + 3 * knot + axis;
 }
 
 template <class Matrix, int First, int Size>

@@ -17,12 +17,12 @@ constexpr std::size_t kMoreShare = 20;  // so many sweeps in all allow the secon
 constexpr std::size_t kTellsShare = 5;  // a calibration learnt with more than one in so many sweeps rejected is none
 
 /// Rails as the stream has learnt them, doubted as much as the rest.
-void start_from_rails(const KnownRails& known, double doubt, RateStream::Params& params) {
+void start_from_rails(const KnownRails& known, double inflation, RateStream::Params& params) {
   params.expert.planes.known = known.planes;
   params.expert.accel_planes.known = known.accel_planes;
   for (RailPlanes* const planes : {&params.expert.planes.known, &params.expert.accel_planes.known}) {
     for (std::optional<RailPlane>& plane : planes->element) {
-      if (plane) plane->covariance *= doubt;
+      if (plane) plane->covariance *= inflation;
     }
   }
 }
@@ -84,8 +84,8 @@ RegimeStream::Params SecondPass::learnt_rate(const OdometryPass& first) const {
   RegimeStream::Params out = lagging_rate();
   const RateStream::State& state = first.rate_state().rate;
   out.rate.model.calibration = first.rates().rate().calibration(state);
-  out.rate.model.calibration->covariance *= params_.doubt;
-  start_from_rails(state.rails.known, params_.doubt, out.rate);
+  out.rate.model.calibration->covariance *= params_.inflation;
+  start_from_rails(state.rails.known, params_.inflation, out.rate);
   return out;
 }
 

@@ -6,8 +6,8 @@
 namespace tumble::rolling {
 
 LastPass::LastPass(const RollingParams& params, std::span<const ImuSample> samples, std::span<const PathNode> path,
-                   std::optional<Distance> distance, std::size_t stretch)
-    : params_(params), samples_(samples), path_(path), distance_(distance), length_(stretch) {
+                   std::optional<Distance> distance, std::size_t segment)
+    : params_(params), samples_(samples), path_(path), distance_(distance), length_(segment) {
   kept_.resize(std::max<std::size_t>(1, (path.size() + length_ - 1) / length_));
   records_.reserve(std::min(path.size(), length_));
   horizontal_m2_.reserve(path.size());
@@ -17,33 +17,33 @@ void LastPass::run(const Place& start, std::size_t cut) {
   cut_after_ = cut;
   end_ = start;
   std::size_t nodes = 0;
-  for (std::size_t stretch = 0; stretch < kept_.size(); ++stretch) {
-    kept_[stretch].start = end_;
-    forward(stretch, end_);
+  for (std::size_t segment = 0; segment < kept_.size(); ++segment) {
+    kept_[segment].start = end_;
+    forward(segment, end_);
     nodes += records_.size();
   }
   horizontal_m2_.resize(nodes);
-  for (std::size_t stretch = kept_.size(); stretch-- > 0;) {
-    if (loaded_ != stretch) go_again(stretch);
-    kept_[stretch].end = adjoint_;
+  for (std::size_t segment = kept_.size(); segment-- > 0;) {
+    if (loaded_ != segment) go_again(segment);
+    kept_[segment].end = adjoint_;
     smooth_back(adjoint_, records_);
-    smoothed_start_ = -reported_rows(kept_[stretch].start.filter.P) * adjoint_.lambda;
+    smoothed_start_ = -reported_rows(kept_[segment].start.filter.P) * adjoint_.lambda;
     for (std::size_t k = 0; k < records_.size(); ++k) {
       const auto& P = records_[k].smoothed_P;
-      horizontal_m2_[first_of(stretch) + k] = P(kPosition, kPosition) + P(kPosition + 1, kPosition + 1);
+      horizontal_m2_[first_of(segment) + k] = P(kPosition, kPosition) + P(kPosition + 1, kPosition + 1);
     }
   }
 }
 
-/// Leaves the stretch loaded, without the way back, and `at` where the next one begins.
-void LastPass::forward(std::size_t stretch, Place& at) {
-  const std::size_t first = first_of(stretch), end = std::min(first + length_, path_.size());
-  loaded_ = stretch;
+/// Leaves the segment loaded, without the way back, and `at` where the next one begins.
+void LastPass::forward(std::size_t segment, Place& at) {
+  const std::size_t first = first_of(segment), end = std::min(first + length_, path_.size());
+  loaded_ = segment;
   records_.clear();
   points_.clear();
   moved_at_end_.setZero();
   auto& [filter, place] = at;
-  if (stretch == 0 && place.next == 1) remember(place.time_ns, filter.nominal, place.last_rate_rad_s, 0);
+  if (segment == 0 && place.next == 1) remember(place.time_ns, filter.nominal, place.last_rate_rad_s, 0);
   RollingSums sums;
   Readings readings(params_, samples_, place);
   Reading reading;
@@ -82,9 +82,9 @@ void LastPass::forward(std::size_t stretch, Place& at) {
   }
 }
 
-void LastPass::go_again(std::size_t stretch) {
-  again_ = kept_[stretch].start;
-  forward(stretch, again_);
+void LastPass::go_again(std::size_t segment) {
+  again_ = kept_[segment].start;
+  forward(segment, again_);
 }
 
 void LastPass::remember(TimeNs time_ns, const RollingNominal& nominal, const Eigen::Vector3d& rate_I_rad_s,
@@ -92,26 +92,26 @@ void LastPass::remember(TimeNs time_ns, const RollingNominal& nominal, const Eig
   points_.push_back({time_ns, nominal.q_WI, nominal.v_WI_m_s, nominal.p_WI_m, rate_I_rad_s, node});
 }
 
-void LastPass::load(std::size_t stretch) {
-  if (loaded_ == stretch) return;
-  const Kept& kept = kept_[stretch];
-  go_again(stretch);
+void LastPass::load(std::size_t segment) {
+  if (loaded_ == segment) return;
+  const Kept& kept = kept_[segment];
+  go_again(segment);
   adjoint_ = kept.end;
   smooth_back(adjoint_, records_);
   smoothed_start_ = -reported_rows(kept.start.filter.P) * adjoint_.lambda;
 }
 
 void LastPass::give(std::size_t until, const std::function<void(const Smoothed&)>& take) {
-  for (std::size_t stretch = 0; stretch < kept_.size() && first_of(stretch) < until; ++stretch) {
-    load(stretch);
-    give_stretch(stretch, until, take);
+  for (std::size_t segment = 0; segment < kept_.size() && first_of(segment) < until; ++segment) {
+    load(segment);
+    give_segment(segment, until, take);
   }
 }
 
-void LastPass::give_stretch(std::size_t stretch, std::size_t until,
+void LastPass::give_segment(std::size_t segment, std::size_t until,
                             const std::function<void(const Smoothed&)>& take) const {
-  const std::size_t first = first_of(stretch);
-  const Place& start = kept_[stretch].start;
+  const std::size_t first = first_of(segment);
+  const Place& start = kept_[segment].start;
   for (const SamplePoint& point : points_) {
     if (point.node >= until) return;
     const std::size_t next = point.node - first;

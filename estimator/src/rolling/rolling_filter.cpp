@@ -14,7 +14,7 @@ namespace tumble {
 namespace {
 
 constexpr double kSlowRateTau_s = 0.3;
-constexpr double kPivots = 4.0;  // sigmas by which a rate at rest is no bias
+constexpr double kSpinSigmas = 4.0;  // sigmas by which a rate at rest is no bias
 
 static_assert(RollingFilter::kStates == rolling::kStates);
 
@@ -147,7 +147,7 @@ bool RollingFilter::spins_in_place(const State& state) const {
                                   rolling::squared(params_.expert.contact.rest_rate_sigma_rad_s) * averaged;
   const Eigen::Array3d off =
       (state.slow_rate_rad_s - state.nominal.gyro_bias_rad_s - best.x.segment<3>(rolling::kGyroBias)).array();
-  return (off.square() > kPivots * kPivots * variance).any();
+  return (off.square() > kSpinSigmas * kSpinSigmas * variance).any();
 }
 
 /// What the other hypotheses add to the position's covariance about the best one: sum of w d d^T over the sum of w,

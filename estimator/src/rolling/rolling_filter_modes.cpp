@@ -163,10 +163,10 @@ std::span<const Candidate> propose(const RollingParams& params, const rolling::C
       if (too_fast && !slips(mode)) continue;
       double likelihood = 0.0;  // a gap speaks for no mode
       if (!in_gap) likelihood = slips(mode) ? log_moving(c, h, mode, u, params) : log_still(c, h, mode, params);
-      const double blow = mode == RollingMode::bump
-                              ? 0.0
-                              : state.sums.unexplained_impact_m_s / params.expert.contact.unexplained_impact_m_s;
-      out[total++] = {h.log_weight + log_transition(params, h.mode, mode, node_s) + likelihood - blow, parent, mode,
+      const double impact = mode == RollingMode::bump
+                                ? 0.0
+                                : state.sums.unexplained_impact_m_s / params.expert.contact.unexplained_impact_m_s;
+      out[total++] = {h.log_weight + log_transition(params, h.mode, mode, node_s) + likelihood - impact, parent, mode,
                       mode == h.mode ? h.switched_node : state.node};
     }
   }

@@ -22,7 +22,7 @@ Eigen::Vector3d normal(const Eigen::Vector2d& slope) {
   return {slope.x(), slope.y(), upward(slope)};
 }
 
-constexpr double kUsual_m_s2 = 3.0;                   // what a force differs from gravity by, without a shock
+constexpr double kUsual_m_s2 = 3.0;                   // what a force differs from gravity by, without an impact
 constexpr double kOffCentre_m = 0.02;                 // of an IMU: makes forces in fast turns
 constexpr double kHiddenFrom = 0.3, kHiddenTo = 0.6;  // of the accelerometer's range
 constexpr double kForceTilt_rad = 0.35;               // of the direction of a force in motion

@@ -80,7 +80,7 @@ void RigidOdometry::register_points(SweepReport& report) {
   for (const std::uint32_t index : chosen_index_) chosen_.push_back(points_[index]);
   report.points_registered = chosen_.size();
 
-  // all points belong to the end of the sweep: a stretch of no length
+  // all points belong to the end of the sweep: a segment of no length
   MotionSample instant;
   instant.from_ns = predicted_.time_ns - 1;
   instant.time_ns = predicted_.time_ns;

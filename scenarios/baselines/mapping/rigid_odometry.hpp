@@ -56,7 +56,7 @@ class RigidOdometry {
     }
   };
 
-  /// Motion over a stretch as a model expects it, and how sure it is of the state at the end of it.
+  /// Motion over a segment as a model expects it, and how sure it is of the state at the end of it.
   struct Motion {
     MotionState start;                  ///< time_ns at or before the sweep's start
     std::vector<MotionSample> samples;  ///< reach from the start to the sweep's end

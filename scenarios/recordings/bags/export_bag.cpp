@@ -29,9 +29,9 @@ struct Event {
 
 /// The truth thinned, without the instants that a reference does not know.
 void add_truth(const StoredTruth& truth, std::vector<Event>& events) {
-  constexpr std::size_t kStretch = 16384;
+  constexpr std::size_t kSegment = 16384;
   const auto step = static_cast<std::size_t>(std::max<std::int64_t>(kTruthStep_ns / truth.period_ns, 1));
-  truth.p_WB_m.for_stretches(kStretch, [&](std::size_t first, std::span<const Eigen::Vector3d> p_WB_m) {
+  truth.p_WB_m.for_segments(kSegment, [&](std::size_t first, std::span<const Eigen::Vector3d> p_WB_m) {
     const std::vector<Eigen::Quaterniond> q_WB = truth.q_WB.rows(first, first + p_WB_m.size());
     for (std::size_t i = (first + step - 1) / step * step; i < first + p_WB_m.size(); i += step) {
       if (!p_WB_m[i - first].allFinite() || !q_WB[i - first].coeffs().allFinite()) continue;

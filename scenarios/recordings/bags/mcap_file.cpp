@@ -38,14 +38,14 @@ File::File(const std::filesystem::path& path) : path_(path), stream_(path, std::
   open_ends();
   check_data();
   read_summary();
-  if (stretches_.empty()) scan();
+  if (segments_.empty()) scan();
   for (const auto& [id, channel] : channels_) {
     if (channel.schema_id != 0 && !schemas_.contains(channel.schema_id))
       fail(0,
            "channel " + std::to_string(id) + " is of schema " + std::to_string(channel.schema_id) + ": there is none");
   }
-  std::stable_sort(stretches_.begin(), stretches_.end(),
-                   [](const Stretch& a, const Stretch& b) { return a.first_ns < b.first_ns; });
+  std::stable_sort(segments_.begin(), segments_.end(),
+                   [](const Segment& a, const Segment& b) { return a.first_ns < b.first_ns; });
 }
 
 void File::fail(std::uint64_t at, const std::string& what) const {
@@ -184,15 +184,15 @@ void File::take_indexed(std::vector<ChunkIndex> chunks) {
     }
     free = at + each.chunk_length + each.message_index_length;
     for (const auto& [channel, place] : each.message_index_offsets) {
-      if (!channels_.contains(channel)) return stretches_.clear();  // the summary does not repeat them: scan
+      if (!channels_.contains(channel)) return segments_.clear();  // the summary does not repeat them: scan
       if (place < at + each.chunk_length || place >= free)
         fail(place,
              "is named as an index of the chunk at byte " + std::to_string(at) + ", behind which it does not lie");
     }
-    stretches_.push_back({at, each.chunk_length, each.message_start_time, each.message_end_time, each});
+    segments_.push_back({at, each.chunk_length, each.message_start_time, each.message_end_time, each});
   }
   // messages outside of chunks are in no index: none may be missing
-  if (!statistics_ || channels_.empty()) stretches_.clear();
+  if (!statistics_ || channels_.empty()) segments_.clear();
 }
 
 std::optional<std::uint64_t> File::stated_messages(std::uint16_t channel) const {
@@ -202,12 +202,12 @@ std::optional<std::uint64_t> File::stated_messages(std::uint16_t channel) const 
   return found->second;
 }
 
-std::string File::records(const Stretch& stretch) {
-  if (!stretch.chunk) return text(stretch.at, stretch.bytes);
+std::string File::records(const Segment& segment) {
+  if (!segment.chunk) return text(segment.at, segment.bytes);
   std::uint32_t crc = 0;
-  const ChunkIndex own = head_of_chunk(stretch.at, stretch.bytes, &crc);
-  if (!agree(own, *stretch.chunk)) fail(stretch.at, "the chunk is not what its index says: damaged");
-  std::string packed = text(stretch.at + stretch.bytes - own.compressed_size, own.compressed_size), out;
+  const ChunkIndex own = head_of_chunk(segment.at, segment.bytes, &crc);
+  if (!agree(own, *segment.chunk)) fail(segment.at, "the chunk is not what its index says: damaged");
+  std::string packed = text(segment.at + segment.bytes - own.compressed_size, own.compressed_size), out;
   try {
     if (own.compression == "lz4")
       out = unpacked_lz4(packed, own.uncompressed_size);
@@ -216,19 +216,19 @@ std::string File::records(const Stretch& stretch) {
     else
       out = std::move(packed);
   } catch (const BadInput& error) {
-    fail(stretch.at, error.what());
+    fail(segment.at, error.what());
   }
   if (crc != 0 && crc32_of(out) != crc) {
-    fail(stretch.at, "the checksum of the chunk is " + std::to_string(crc32_of(out)) + ", stated " +
+    fail(segment.at, "the checksum of the chunk is " + std::to_string(crc32_of(out)) + ", stated " +
                          std::to_string(crc) + ": damaged");
   }
   return out;
 }
 
-std::optional<MessageIndex> File::index_of(const Stretch& stretch, std::uint16_t channel) {
-  if (!stretch.chunk || !stretch.chunk->message_index_offsets.contains(channel)) return std::nullopt;
-  const std::uint64_t at = stretch.chunk->message_index_offsets.at(channel);
-  const std::uint64_t end = stretch.at + stretch.bytes + stretch.chunk->message_index_length;
+std::optional<MessageIndex> File::index_of(const Segment& segment, std::uint16_t channel) {
+  if (!segment.chunk || !segment.chunk->message_index_offsets.contains(channel)) return std::nullopt;
+  const std::uint64_t at = segment.chunk->message_index_offsets.at(channel);
+  const std::uint64_t end = segment.at + segment.bytes + segment.chunk->message_index_length;
   if (end - at < kHeadBytes) fail(at, "ends in the head of an index: damaged");
   const std::string bytes = text(at, std::min(end - at, kBytesMax));
   const Record record = record_in(bytes, 0, at);

@@ -17,7 +17,7 @@
 namespace tumble::scenarios::mcap {
 
 /// Records that lie together: a chunk, or some that stand outside of any.
-struct Stretch {
+struct Segment {
   std::uint64_t at = 0, bytes = 0;  ///< in the file, heads included
   std::uint64_t first_ns = 0, last_ns = 0;
   std::optional<ChunkIndex> chunk;  ///< of a chunk; its index is complete where the file has a summary
@@ -44,14 +44,14 @@ class File {
   const std::map<std::uint16_t, Schema>& schemas() const { return schemas_; }
   const std::map<std::uint16_t, Channel>& channels() const { return channels_; }
   /// In the order of their first messages.
-  const std::vector<Stretch>& stretches() const { return stretches_; }
+  const std::vector<Segment>& segments() const { return segments_; }
   /// Messages of a channel that the file says it has; nothing where it does not say.
   std::optional<std::uint64_t> stated_messages(std::uint16_t channel) const;
 
-  /// The records of a stretch, unpacked and held to its checksum.
-  std::string records(const Stretch& stretch);
-  /// Where the index behind the stretch's chunk says that messages of the channel lie; nothing where there is none.
-  std::optional<MessageIndex> index_of(const Stretch& stretch, std::uint16_t channel);
+  /// The records of a segment, unpacked and held to its checksum.
+  std::string records(const Segment& segment);
+  /// Where the index behind the segment's chunk says that messages of the channel lie; nothing where there is none.
+  std::optional<MessageIndex> index_of(const Segment& segment, std::uint16_t channel);
 
   /// Calls `take(record)` for each of `records`, which stand at `at` in the file when they were not packed.
   template <class Call>
@@ -95,7 +95,7 @@ class File {
   std::optional<Statistics> statistics_;
   std::map<std::uint16_t, Schema> schemas_;
   std::map<std::uint16_t, Channel> channels_;
-  std::vector<Stretch> stretches_;
+  std::vector<Segment> segments_;
 };
 
 }  // namespace tumble::scenarios::mcap

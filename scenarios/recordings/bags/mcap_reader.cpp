@@ -32,11 +32,11 @@ class TopicWalk {
       : file_(file), channels_(std::move(channels)), take_(take) {}
 
   void all() {
-    for (const Stretch& stretch : file_.stretches()) {
-      const auto held = [&](std::uint16_t channel) { return stretch.may_hold(channel); };
+    for (const Segment& segment : file_.segments()) {
+      const auto held = [&](std::uint16_t channel) { return segment.may_hold(channel); };
       if (std::none_of(channels_.begin(), channels_.end(), held)) continue;
-      give_before(stretch.first_ns);
-      read(stretch);
+      give_before(segment.first_ns);
+      read(segment);
     }
     while (!waiting_.empty()) give_first();
     for (const std::uint16_t channel : channels_) {
@@ -49,50 +49,50 @@ class TopicWalk {
   }
 
  private:
-  void read(const Stretch& stretch) {
-    const std::string records = file_.records(stretch);
+  void read(const Segment& segment) {
+    const std::string records = file_.records(segment);
     std::map<std::uint16_t, std::vector<std::pair<std::uint64_t, std::uint64_t>>> found;
-    file_.walk(records, stretch.at, [&](const Record& record) {
-      if (record.op == kSchema) file_.add(file_.as<Schema>(record, stretch.at), stretch.at);
-      if (record.op == kChannel) file_.add(file_.as<Channel>(record, stretch.at), stretch.at);
+    file_.walk(records, segment.at, [&](const Record& record) {
+      if (record.op == kSchema) file_.add(file_.as<Schema>(record, segment.at), segment.at);
+      if (record.op == kChannel) file_.add(file_.as<Channel>(record, segment.at), segment.at);
       if (record.op != kMessage) return;
-      const auto message = file_.as<Message>(record, stretch.at);
+      const auto message = file_.as<Message>(record, segment.at);
       if (!channels_.contains(message.channel_id)) return;
-      require_time(stretch, message.log_time);
+      require_time(segment, message.log_time);
       found[message.channel_id].emplace_back(message.log_time, record.at);
       ++counts_[message.channel_id];
       constexpr std::size_t kFields = 2 + 4 + 8 + 8;
-      hold(stretch, message.log_time, record.content.substr(kFields));
+      hold(segment, message.log_time, record.content.substr(kFields));
     });
-    for (const std::uint16_t channel : channels_) require_indexed(stretch, channel, found[channel]);
+    for (const std::uint16_t channel : channels_) require_indexed(segment, channel, found[channel]);
   }
 
-  void require_time(const Stretch& stretch, std::uint64_t time_ns) const {
-    if (time_ns >= stretch.first_ns && time_ns <= stretch.last_ns) return;
-    file_.fail(stretch.at, "a message at " + std::to_string(time_ns) + " ns in a chunk from " +
-                               std::to_string(stretch.first_ns) + " to " + std::to_string(stretch.last_ns) +
+  void require_time(const Segment& segment, std::uint64_t time_ns) const {
+    if (time_ns >= segment.first_ns && time_ns <= segment.last_ns) return;
+    file_.fail(segment.at, "a message at " + std::to_string(time_ns) + " ns in a chunk from " +
+                               std::to_string(segment.first_ns) + " to " + std::to_string(segment.last_ns) +
                                " ns: damaged");
   }
 
   /// The index behind the chunk names the messages that are there, and no others.
-  void require_indexed(const Stretch& stretch, std::uint16_t channel,
+  void require_indexed(const Segment& segment, std::uint16_t channel,
                        std::vector<std::pair<std::uint64_t, std::uint64_t>>& found) {
-    std::optional<MessageIndex> index = file_.index_of(stretch, channel);
-    const bool complete = stretch.chunk && !stretch.chunk->message_index_offsets.empty();
+    std::optional<MessageIndex> index = file_.index_of(segment, channel);
+    const bool complete = segment.chunk && !segment.chunk->message_index_offsets.empty();
     if (!index && (!complete || found.empty())) return;
     if (!index) index.emplace();
     std::sort(index->entries.begin(), index->entries.end());
     std::sort(found.begin(), found.end());
     if (index->entries == found) return;
-    file_.fail(stretch.at, "the index of the chunk names " + std::to_string(index->entries.size()) +
+    file_.fail(segment.at, "the index of the chunk names " + std::to_string(index->entries.size()) +
                                " messages of channel " + std::to_string(channel) + ", not the " +
                                std::to_string(found.size()) + " that are there: damaged");
   }
 
-  void hold(const Stretch& stretch, std::uint64_t time_ns, std::string_view bytes) {
+  void hold(const Segment& segment, std::uint64_t time_ns, std::string_view bytes) {
     waiting_bytes_ += bytes.size();
     if (waiting_bytes_ > kWaitingMax) {
-      file_.fail(stretch.at, "chunks overlap in time so that more than 1 GiB of messages would have to wait");
+      file_.fail(segment.at, "chunks overlap in time so that more than 1 GiB of messages would have to wait");
     }
     const auto* first = reinterpret_cast<const std::uint8_t*>(bytes.data());
     waiting_.emplace(time_ns, ros::Bytes(first, first + bytes.size()));

@@ -10,22 +10,22 @@ namespace {
 
 constexpr std::uint64_t kRecordMax = 1u << 28;
 /// Records outside of chunks are kept together up to so many bytes.
-constexpr std::uint64_t kStretchBytes = 1u << 22;
+constexpr std::uint64_t kSegmentBytes = 1u << 22;
 
-/// Widens the times of a stretch.
-void cover(Stretch& stretch, bool& empty, std::uint64_t time_ns) {
-  stretch.first_ns = empty ? time_ns : std::min(stretch.first_ns, time_ns);
-  stretch.last_ns = empty ? time_ns : std::max(stretch.last_ns, time_ns);
+/// Widens the times of a segment.
+void cover(Segment& segment, bool& empty, std::uint64_t time_ns) {
+  segment.first_ns = empty ? time_ns : std::min(segment.first_ns, time_ns);
+  segment.last_ns = empty ? time_ns : std::max(segment.last_ns, time_ns);
   empty = false;
 }
 
 }  // namespace
 
 void File::scan() {
-  std::optional<Stretch> loose;
+  std::optional<Segment> loose;
   bool empty = true;
   const auto close = [&] {
-    if (loose && !empty) stretches_.push_back(*loose);
+    if (loose && !empty) segments_.push_back(*loose);
     loose.reset();
     empty = true;
   };
@@ -56,8 +56,8 @@ void File::scan() {
       const Record record = record_in(whole, 0, at);
       if (op == kSchema) add(as<Schema>(record, at), at);
       if (op == kChannel) add(as<Channel>(record, at), at);
-      if (loose && loose->bytes + bytes > kStretchBytes) close();
-      if (!loose) loose = Stretch{at, 0, 0, 0, std::nullopt};
+      if (loose && loose->bytes + bytes > kSegmentBytes) close();
+      if (!loose) loose = Segment{at, 0, 0, 0, std::nullopt};
       loose->bytes = at + bytes - loose->at;
       if (op == kMessage) cover(*loose, empty, as<Message>(record, at).log_time);
     } else {
@@ -70,15 +70,15 @@ void File::scan() {
 
 /// The channels that a chunk brings, and when its messages were logged.
 void File::scan_chunk(const ChunkIndex& index) {
-  Stretch stretch{index.chunk_start_offset, index.chunk_length, 0, 0, index};
+  Segment segment{index.chunk_start_offset, index.chunk_length, 0, 0, index};
   bool empty = true;
-  walk(records(stretch), index.chunk_start_offset, [&](const Record& record) {
+  walk(records(segment), index.chunk_start_offset, [&](const Record& record) {
     const std::uint64_t at = index.chunk_start_offset;
     if (record.op == kSchema) add(as<Schema>(record, at), at);
     if (record.op == kChannel) add(as<Channel>(record, at), at);
-    if (record.op == kMessage) cover(stretch, empty, as<Message>(record, at).log_time);
+    if (record.op == kMessage) cover(segment, empty, as<Message>(record, at).log_time);
   });
-  if (!empty) stretches_.push_back(stretch);
+  if (!empty) segments_.push_back(segment);
 }
 
 }  // namespace tumble::scenarios::mcap

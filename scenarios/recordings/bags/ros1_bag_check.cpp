@@ -26,7 +26,7 @@ struct Record {
   std::uint64_t end() const { return data_at + data_bytes; }
 };
 
-/// A file that is asked for stretches of itself; nothing beyond its end is read.
+/// A file that is asked for segments of itself; nothing beyond its end is read.
 class Walk {
  public:
   explicit Walk(const std::filesystem::path& path) : path_(path), stream_(path, std::ios::binary) {

@@ -51,8 +51,8 @@ void keep(std::vector<T>& rows, std::size_t first, std::size_t end) {
                         rows.begin() + static_cast<std::ptrdiff_t>(end));
 }
 
-/// Logs begin long before the flight with a few samples: the longest stretch without a gap stays.
-void keep_longest_stretch(sim::ImuRecord& imu, std::vector<std::string>& notes) {
+/// Logs begin long before the flight with a few samples: the longest segment without a gap stays.
+void keep_longest_segment(sim::ImuRecord& imu, std::vector<std::string>& notes) {
   const std::size_t count = imu.time_ns.size();
   std::size_t first = 0, end = 0, gaps = 0;
   for (std::size_t begin = 0, k = 1; k <= count; ++k) {
@@ -62,7 +62,7 @@ void keep_longest_stretch(sim::ImuRecord& imu, std::vector<std::string>& notes) 
     begin = k;
   }
   if (gaps == 0) return;
-  notes.push_back(fmt::format("{} gaps of more than 1 s: the longest stretch is kept, samples {} to {} of {}", gaps,
+  notes.push_back(fmt::format("{} gaps of more than 1 s: the longest segment is kept, samples {} to {} of {}", gaps,
                               first, end - 1, count));
   keep(imu.time_ns, first, end);
   keep(imu.gyro_rad_s, first, end);
@@ -113,7 +113,7 @@ Imported import_airbrakes(const std::filesystem::path& path) {
     if (magnetic) imu.magnetic_field_t.push_back(kTeslaPerMicrotesla * vector(line, field, "magnetic_field"));
   }
   Imported out;
-  keep_longest_stretch(imu, out.notes);
+  keep_longest_segment(imu, out.notes);
   finish_readings(path.string(), AccelUnit::g, imu);
   const std::int64_t first_ns = imu.time_ns.front();
   for (std::int64_t& time : imu.time_ns) time -= first_ns;

@@ -70,12 +70,12 @@ void export_tum(const sim::Truth& truth, const std::filesystem::path& file, std:
 
 void export_tum(const StoredTruth& truth, const std::filesystem::path& file, std::int64_t origin_ns,
                 const std::string& frame) {
-  constexpr std::size_t kStretch = 4096;
+  constexpr std::size_t kSegment = 4096;
   const Eigen::Isometry3d T_BA = true_mounting(truth.states(0, 0), frame);
   OutputFile output(file);
   std::string text = tum_head(frame);
-  for (std::size_t first = 0; first <= truth.size(); first += kStretch) {
-    const sim::Truth states = truth.states(first, std::min(first + kStretch, truth.size()));
+  for (std::size_t first = 0; first <= truth.size(); first += kSegment) {
+    const sim::Truth states = truth.states(first, std::min(first + kSegment, truth.size()));
     append_poses(states, T_BA, origin_ns + static_cast<std::int64_t>(first) * truth.period_ns, text);
     output.write(std::as_bytes(std::span(text)));
     text.clear();

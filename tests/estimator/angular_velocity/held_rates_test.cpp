@@ -143,7 +143,7 @@ double late_s(const TumbleRecording& recording, const std::vector<RateState>& ra
   return product / square;
 }
 
-// Means over tumbles: what is open of the gyro's clock makes one late or early by as much where a blow outweighs all
+// Means over tumbles: what is open of the gyro's clock makes one late or early by as much where an impact outweighs all
 // others. Measured 11.1 ms as read, 0.9 of the batch, 2.1 live: until it has seen 30 samples in motion a stream does
 // not know that readings repeat, and the push lies there.
 TEST(HeldRates, BatchAndStreamAreInTime) {

@@ -72,7 +72,7 @@ TEST(NearRails, EachWindowThatMetTheRailInAPartIsTold) {
       }
       EXPECT_GT(in_part, 0u) << hz;
       EXPECT_EQ(told, in_part) << hz;
-      // two at most on either side of a stretch, of which there are two in each swing
+      // two at most on either side of a segment, of which there are two in each swing
       EXPECT_LE(besides, static_cast<std::size_t>(4.0 * times * (2.0 * hz * 4.0 + 1.0))) << hz;
     }
   }

@@ -288,7 +288,7 @@ TEST(RailJudgement, TheWatchKeepsTheFirstReadingsAndTheLatest) {
   }
 }
 
-// What stands before a stretch at a rail, and met the rail in a part of its window, is told by the sample after it.
+// What stands before a segment at a rail, and met the rail in a part of its window, is told by the sample after it.
 // With the rails learnt the stream judges as the batch does.
 TEST(RailJudgement, TheWatchJudgesByWhatComesAfterToo) {
   const TumbleRecording tumble = tilted_gyro();

@@ -158,7 +158,7 @@ TEST(RailPlanes, ReadingsThatRepeatOrAreCoarseDoNotHideARail) {
   EXPECT_FALSE(find(free).any());
 }
 
-// A stated range speaks against a rail far below it, but a range may have been set otherwise: many stretches outweigh
+// A stated range speaks against a rail far below it, but a range may have been set otherwise: many segments outweigh
 // it.
 TEST(RailPlanes, AStatedRangeCountsAsMuchAsItIsWorth) {
   const Eigen::Matrix3d rows = drawn_rows(1, 0.03);

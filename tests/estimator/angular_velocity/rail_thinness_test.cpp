@@ -15,7 +15,7 @@ constexpr double kNoise = 1e-3, kLevel = 8.7;
 
 // A spin that swells to 8.7 rad/s on y, stays there for 40 samples and ebbs away, while the other axes turn gently:
 // `scatter` of the readings at the top.
-std::vector<ImuSample> one_stretch(double scatter) {
+std::vector<ImuSample> one_segment(double scatter) {
   oracles::Gaussian noise(5);
   std::vector<ImuSample> out(200);
   for (std::size_t k = 0; k < out.size(); ++k) {
@@ -29,10 +29,10 @@ std::vector<ImuSample> one_stretch(double scatter) {
   return out;
 }
 
-// Noise belongs to a rate: a single stretch that has none is a rail, the same with noise may be a spin.
-TEST(RailThinness, OneStretchIsEnoughWhereItHasNoNoise) {
+// Noise belongs to a rate: a single segment that has none is a rail, the same with noise may be a spin.
+TEST(RailThinness, OneSegmentIsEnoughWhereItHasNoNoise) {
   const RailPlaneFinder finder{{}};
-  const RailPlanes rail = finder.find(one_stretch(1e-4)), spin = finder.find(one_stretch(kNoise));
+  const RailPlanes rail = finder.find(one_segment(1e-4)), spin = finder.find(one_segment(kNoise));
   ASSERT_TRUE(rail.element[1].has_value());
   EXPECT_NEAR(rail.element[1]->distance_rad_s, kLevel, 0.03);
   EXPECT_FALSE(rail.element[0].has_value() || rail.element[2].has_value());

@@ -113,7 +113,7 @@ TEST(RateStreamElements, WithALongLagItIsTheBatch) {
       const TumbleRecording tumble = tumble_of(seed, tilt);
       auto params = with_lever_arm<RateStream::Params>();
       params.lag_s = 9.0;  // nothing leaves the window
-      params.expert.doubt.covariance = 0.0;
+      params.expert.inflation.covariance = 0.0;
       const RateStream method(params);
       RateStream::State state = method.start();
       const std::vector<RateState> live = stream(method, tumble.samples, state);
@@ -133,7 +133,7 @@ TEST(RateStreamElements, WithALongLagItIsTheBatch) {
         apart.push_back((live[k].w_WI_I_rad_s - batch[k].w_WI_I_rad_s).cwiseQuotient(sigma).norm());
       }
       ASSERT_GT(apart.size(), 50u);
-      // edges of stretches: what stands before one is judged anew with each rail that becomes known
+      // edges of segments: what stands before one is judged anew with each rail that becomes known
       EXPECT_LE(judged_apart, 5) << tilt << " " << seed;
       EXPECT_LT(quantile(apart, 0.5), 0.3) << tilt << " " << seed;
       EXPECT_LT(quantile(apart, 0.9), 1.5) << tilt << " " << seed;
@@ -273,7 +273,7 @@ std::pair<int, int> within_at_known_rail(const RateStream::Params& params) {
 TEST(RateStreamElements, ARunOfClippedReadingsIsAsOpenAsItsSlopes) {
   auto params = with_lever_arm<RateStream::Params>();
   const auto [clipped, within] = within_at_known_rail(params);
-  params.expert.doubt.slopes = 0.0;
+  params.expert.inflation.slopes = 0.0;
   const auto [same, believed] = within_at_known_rail(params);
   std::printf("of %d within %d; without what slopes hide %d of %d\n", clipped, within, believed, same);
   ASSERT_GT(clipped, 60);

@@ -120,14 +120,14 @@ TEST(RateStream, WithACalibratedRigItComesCloseToTheBatch) {
 TEST(RateStream, TheShapeOfABoxIsExpectedAndThatOfARodIsNot) {
   const auto params = with_lever_arm<RateStream::Params>();
   const RateModel model(params.model, params.period_s);
-  const auto surprise = [&](const Vector3d& moments) {
+  const auto mahalanobis = [&](const Vector3d& moments) {
     RigConstants rig = model.prior_constants();
     rig.inertia = RigConstants::inertia_coordinates(moments.asDiagonal());
     return model.calibration_mahalanobis(rig);
   };
-  EXPECT_NEAR(surprise({8.0, 13.0, 13.0}), 1.07, 0.01);  // sides 3 : 2 : 2
-  EXPECT_GT(surprise({1.0, 1.0, 2.0}), params.calibration_mahalanobis_max);
-  EXPECT_NEAR(surprise({0.0, 1.0, 1.0}), 3.65, 0.01);
+  EXPECT_NEAR(mahalanobis({8.0, 13.0, 13.0}), 1.07, 0.01);  // sides 3 : 2 : 2
+  EXPECT_GT(mahalanobis({1.0, 1.0, 2.0}), params.calibration_mahalanobis_max);
+  EXPECT_NEAR(mahalanobis({0.0, 1.0, 1.0}), 3.65, 0.01);
 }
 
 TEST(RateStream, SplittingAnywhereChangesNothing) {

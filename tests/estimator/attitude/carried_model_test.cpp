@@ -145,7 +145,7 @@ TEST(CarriedModel, MotionHasItsGradient) {
   params.jerk_rad_s3_sqrts = 100.0;
   params.hand_m_s2 = 3.0, params.hand_tau_s = 0.15;
   params.velocity_m_s = 1.0, params.velocity_tau_s = 0.3;
-  params.place_m = 0.5, params.place_tau_s = 1.0;
+  params.position_m = 0.5, params.position_tau_s = 1.0;
   const Motion motion(params);
   for (std::uint64_t seed : {1u, 2u, 3u}) {
     const Point at = random_point(seed, params.step_s);

@@ -145,7 +145,7 @@ TEST(CarriedReadings, TheJerkThatReadingsShowIsThatOfTheMotion) {
 
 /// A rate that swings far beyond the rail: its slope turns round while it is hidden, which what is read beside it does
 /// not bend enough to show. Control: the same readings taken for free.
-TEST(CarriedReadings, TheJerkOfAHiddenStretchIsThatOfTheSlopesAtItsEnds) {
+TEST(CarriedReadings, TheJerkOfAHiddenSegmentIsThatOfTheSlopesAtItsEnds) {
   constexpr double kPeriod_s = 0.0035, kAmplitude_rad_s = 20.0, kTurn_rad_s = 21.0;
   std::vector<ImuSample> samples;
   std::vector<ClipSigns> signs;
@@ -176,7 +176,7 @@ TEST(CarriedReadings, TheJerkOfAHiddenStretchIsThatOfTheSlopesAtItsEnds) {
       static_cast<std::size_t>(std::lround(0.5 * 3.141592653589793 / kTurn_rad_s / params.expert.node_s));
   std::printf("hidden for %.3f s: root density %.0f, by the ends %.0f; taken for free %.0f\n", hidden_s,
               collected.jerk[top], expected, free[top]);
-  // the slopes are read a window outside of the stretch, which is that much longer
+  // the slopes are read a window outside of the segment, which is that much longer
   EXPECT_NEAR(collected.jerk[top], expected, 0.1 * expected);
   EXPECT_LT(free[top], 0.2 * expected);
 }

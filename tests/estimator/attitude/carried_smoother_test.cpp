@@ -248,10 +248,10 @@ TEST(CarriedSmoother, DeviationsHoldTheErrors) {
 /// Negative control: a body that is thrown (specific force about zero for half a second) while it is believed carried.
 TEST(CarriedSmoother, AThrownBodyShows) {
   CarriedRecording recording = testing::record({}, 100.0, 6.0, 0.0);
-  const double carried = run(recording).report.hand_surprise;
+  const double carried = run(recording).report.hand_mahalanobis;
   for (std::size_t k = 300; k < 350; ++k) recording.samples[k].specific_force_m_s2.setConstant(0.01);
-  const double thrown = run(recording).report.hand_surprise;
-  std::printf("surprise: carried %.2f, thrown %.2f\n", carried, thrown);
+  const double thrown = run(recording).report.hand_mahalanobis;
+  std::printf("mahalanobis: carried %.2f, thrown %.2f\n", carried, thrown);
   EXPECT_LT(carried, 1.0);
   EXPECT_GT(thrown, 2.0);
 }

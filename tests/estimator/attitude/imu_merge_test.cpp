@@ -165,24 +165,24 @@ TEST(ImuMerge, TakesOutMisalignmentsThatLargeForcesShow) {
   EXPECT_LT(corrected, 0.3 * plain);
 }
 
-TEST(ImuMerge, LeavesOutARailThatABlowHides) {
+TEST(ImuMerge, LeavesOutARailThatAnImpactHides) {
   const Spin spin;
   const ImuMerge merge(params(spin));
   ImuMerge::State state;
   for (int k = 0; k < 50; ++k) {
     std::array<ImuSample, 3> now = {spin.sample(0, 0, 0.0, 0.0), spin.sample(1, 0, 0.0, 0.0),
                                     spin.sample(2, 0, 0.0, 0.0)};
-    const bool blow = k == 25;
+    const bool impact = k == 25;
     for (std::size_t unit = 0; unit < 3; ++unit) {
       now[unit].time_ns = k * kPeriod_ns;
-      if (blow) now[unit].specific_force_m_s2.x() += unit == 1 ? 20.0 : 50.0;  // far from the rail, as a mean
+      if (impact) now[unit].specific_force_m_s2.x() += unit == 1 ? 20.0 : 50.0;  // far from the rail, as a mean
     }
     std::optional<ImuSample> merged;
     ASSERT_TRUE(merge.step(now, state, merged).ok());
-    EXPECT_NEAR(merged->specific_force_m_s2.x(), blow ? 50.0 : 0.0, 1e-6) << k;
+    EXPECT_NEAR(merged->specific_force_m_s2.x(), impact ? 50.0 : 0.0, 1e-6) << k;
     EXPECT_EQ(merged->device_clip_flags, 0) << k;
   }
-  EXPECT_EQ(state.units[1].left_out, 10);  // for 40 ms, as blows come in rows
+  EXPECT_EQ(state.units[1].left_out, 10);  // for 40 ms, as impacts come in rows
   EXPECT_EQ(state.units[0].left_out, 0);
 }
 

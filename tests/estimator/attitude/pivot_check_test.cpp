@@ -84,7 +84,7 @@ TEST(PivotCheck, RatesExplainATurningAboutAPoint) {
   const PivotCheck check({});
   const PivotCheck::Found found = check.find(run.samples, run.rates);
   EXPECT_TRUE(check.verdict(found).ok()) << check.verdict(found).message();
-  EXPECT_EQ(found.counted, 20u) << "two series of stretches of 2 s over 20 s, half a stretch apart";
+  EXPECT_EQ(found.counted, 20u) << "two series of segments of 2 s over 20 s, half a segment apart";
   EXPECT_EQ(found.better, 0u);
   EXPECT_LT(found.evidence, 0.0);
   EXPECT_NEAR(found.scale, 1.0, 0.002);
@@ -110,7 +110,7 @@ TEST(PivotCheck, ANearPivotTellsTheScale) {
   EXPECT_EQ(says(run), kScale);
   EXPECT_NEAR(check.find(run.samples, run.rates).scale, 1.0 / 1.05, 0.01);
   const Readings far = scaled({.arm_m = {0.1, 0.2, 0.6}});
-  EXPECT_EQ(check.find(far.samples, far.rates).scale_stretches, 0u) << "a rod is no point: what it gives is larger";
+  EXPECT_EQ(check.find(far.samples, far.rates).scale_segments, 0u) << "a rod is no point: what it gives is larger";
 }
 
 TEST(PivotCheck, WhatTheGyroDidNotMeasureDoesNotCount) {
@@ -119,7 +119,7 @@ TEST(PivotCheck, WhatTheGyroDidNotMeasureDoesNotCount) {
     if (rate.time_ns % 900'000'000 == 0) rate.source = RateSource::bounded_only;
   });
   const PivotCheck check({});
-  EXPECT_EQ(check.find(run.samples, run.rates).counted, 0u) << "no stretch of a second is left";
+  EXPECT_EQ(check.find(run.samples, run.rates).counted, 0u) << "no segment of a second is left";
   EXPECT_EQ(says(run), "");
 }
 
@@ -130,13 +130,13 @@ TEST(PivotCheck, ABodyThatIsThrownAboutIsExplainedByNothing) {
   EXPECT_EQ(says(run), "");
 }
 
-TEST(PivotCheck, AFewStretchesAreNoEvidence) {
+TEST(PivotCheck, AFewSegmentsAreNoEvidence) {
   EXPECT_EQ(says(about_a_pivot({.samples = 500}, [](RateState& rate) { rate.w_WI_I_rad_s.z() *= -1.0; })), "");
 }
 
 TEST(PivotCheck, RefusesParametersOutOfBounds) {
   PivotCheck::Params params;
-  params.stretch_s = 0.0;
+  params.segment_s = 0.0;
   EXPECT_THROW(PivotCheck{params}, InvalidParams);
 }
 

@@ -51,7 +51,7 @@ TEST(RegimeSmoother, ATwirlIsTheHands) {
   EXPECT_LT(clipped_error(recording, joined), 0.5 * clipped_error(recording, alone));
 }
 
-// A force is said four times; taken for that of each sample's own time the hidden stretches look like flight, and are
+// A force is said four times; taken for that of each sample's own time the hidden segments look like flight, and are
 // off by 11 rad/s.
 TEST(RegimeSmoother, AForceThatIsHeldIsComparedInItsOwnTime) {
   CarriedMotion motion;
@@ -71,7 +71,7 @@ TEST(RegimeSmoother, AForceThatIsHeldIsComparedInItsOwnTime) {
   EXPECT_LT(clipped_error(recording, joined), 1.0);
 }
 
-// It turns back ten times and is hardly read in between, so that it is one stretch; that nobody knows who holds it in
+// It turns back ten times and is hardly read in between, so that it is one segment; that nobody knows who holds it in
 // the first tenth of a second, where its rate is not known yet, says nothing of the rest, which would be off by 10
 // rad/s.
 TEST(RegimeSmoother, WhoHeldItAtFirstSaysNothingOfTheRest) {

@@ -199,7 +199,7 @@ TEST(RegimeStream, ReadingsThatTheLogSaysAgainCountOnce) {
   EXPECT_GE(within / count, 0.98);
 }
 
-/// It turns back once a second and is hardly read in between, so that it is one stretch of clipped samples; that nobody
+/// It turns back once a second and is hardly read in between, so that it is one segment of clipped samples; that nobody
 /// knows who holds it at first, where its rate is not known yet, says nothing of the rest. Flight is off by 10 rad/s.
 TEST(RegimeStream, WhoHeldItAtFirstSaysNothingOfTheRest) {
   CarriedMotion motion;
@@ -208,7 +208,7 @@ TEST(RegimeStream, WhoHeldItAtFirstSaysNothingOfTheRest) {
   const CarriedRecording recording = record(motion, 100.0, 10.0, 7.0);
   const Joined found = joined(recording.samples, at_its_hand());
   const std::vector<double> errors = clipped_errors(recording, found.rates, 2.0);
-  std::printf("one stretch: %.3f / %.3f rad/s\n", quantile(errors, 0.5), quantile(errors, 0.9));
+  std::printf("one segment: %.3f / %.3f rad/s\n", quantile(errors, 0.5), quantile(errors, 0.9));
   EXPECT_LT(quantile(errors, 0.5), 1.5);
 }
 

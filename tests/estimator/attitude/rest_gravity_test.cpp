@@ -133,7 +133,7 @@ TEST(RestGravity, WhatTheRatesStateIsAllowed) {
 }
 
 // What a rail hid may have been the same throughout: the deviation of the turn is then that of the rate times the time.
-TEST(RestGravity, ErrorsOfAClippedStretchLastAsLongAsIt) {
+TEST(RestGravity, ErrorsOfAClippedSegmentLastAsLongAsIt) {
   const RestGravity::State read = after({}, kNone);
   const RestGravity::State hidden = after({.source = RateSource::bounded_only}, kNone);
   EXPECT_NEAR(hidden.miss_sigma_rad, std::sqrt(3.0) * 0.01 * 3.0, 0.005);
@@ -189,7 +189,7 @@ TEST(RestGravity, OneErrorOfTheTurnLeavesNoMoreVelocityThanItMisses) {
   }
 }
 
-// A blow of twice what the accelerometer shows, for 0.3 s, and a long halt.
+// An impact of twice what the accelerometer shows, for 0.3 s, and a long halt.
 TEST(RestGravity, WhatTheAccelerometersRailHidIsAllowed) {
   constexpr double kRange_m_s2 = 30.0;
   const auto struck = [&](const RestGravity& gravity, bool told) {
@@ -197,11 +197,11 @@ TEST(RestGravity, WhatTheAccelerometersRailHidIsAllowed) {
     for (int k = 0; k < 800; ++k) {
       ImuSample sample;
       sample.time_ns = TimeNs{k} * 10'000'000;
-      const bool blow = k >= 200 && k < 230, halt = k >= 230 && k < 530;
-      if (blow || halt) sample.angular_velocity_rad_s = {0.0, 0.0, 1.0};
-      const double force_m_s2 = 9.80665 + (blow ? 50.0 : halt ? -5.0 : 0.0);
+      const bool impact = k >= 200 && k < 230, halt = k >= 230 && k < 530;
+      if (impact || halt) sample.angular_velocity_rad_s = {0.0, 0.0, 1.0};
+      const double force_m_s2 = 9.80665 + (impact ? 50.0 : halt ? -5.0 : 0.0);
       sample.specific_force_m_s2 = {0.0, 0.0, std::min(force_m_s2, kRange_m_s2)};
-      if (blow && told) sample.device_clip_flags = kClipAccelZ;
+      if (impact && told) sample.device_clip_flags = kClipAccelZ;
       RateState rate;
       rate.w_WI_I_rad_s = sample.angular_velocity_rad_s;
       gravity.step(sample, rate, state);

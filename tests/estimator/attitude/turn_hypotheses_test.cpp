@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Whole turns that a clipped stretch may hide: an accelerometer that says nothing while the gyro clips, in closed form.
+// Whole turns that a clipped segment may hide: an accelerometer that says nothing while the gyro clips, in closed form.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -17,7 +17,7 @@ namespace {
 
 constexpr double kHz = 100.0, kGravity = 9.80665, kPi = std::numbers::pi;
 
-/// A body that spins about its level x axis at base + more sin^2 over one stretch of time, where its gyro clips at the
+/// A body that spins about its level x axis at base + more sin^2 over one interval of time, where its gyro clips at the
 /// base and its accelerometer may be blind: at rails that every reading lies beyond.
 struct Spin {
   double base_rad_s = 3.0, more_rad_s = 0.0, from_s = 5.0, lasts_s = 1.2, duration_s = 11.2;
@@ -44,7 +44,7 @@ CarriedSmoother::Params params() {
   CarriedSmoother::Params out;
   out.hand_m_s2 = 1.0;
   out.gyro_bias_sigma_rad_s = 1e-3;
-  out.expert.jerk_doubt = 1.0;
+  out.expert.jerk_inflation = 1.0;
   out.expert.iterations_max = 100;  // a filter that was fed with blind readings is no good start
   return out;
 }
@@ -127,7 +127,7 @@ TEST(TurnHypotheses, WhatNothingTellsIsCountedInTheCovariance) {
 }
 
 /// A spin of which the first descent, begun at the rail, loses a turn and is held there by the bound: gravity behind
-/// the stretch tells the angle but for whole turns, and of these the one with the least jerk is taken. More stay
+/// the segment tells the angle but for whole turns, and of these the one with the least jerk is taken. More stay
 /// possible.
 TEST(TurnHypotheses, WhatFollowsDecides) {
   Spin spin;
@@ -142,7 +142,7 @@ TEST(TurnHypotheses, WhatFollowsDecides) {
 }
 
 /// Negative control: an accelerometer that sees the spin leaves nothing to ask, and its deviation stays small.
-TEST(TurnHypotheses, AStretchThatIsKnownIsNotAsked) {
+TEST(TurnHypotheses, ASegmentThatIsKnownIsNotAsked) {
   Spin spin;
   spin.more_rad_s = 4.0;
   spin.lasts_s = 0.6;

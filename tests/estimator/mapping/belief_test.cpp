@@ -17,7 +17,7 @@ namespace {
 namespace u = unknowns;
 using Matrix = Registration::Matrix;
 
-constexpr double kForce_m_s2 = 4.0, kStretch_s = 0.5;
+constexpr double kForce_m_s2 = 4.0, kSegment_s = 0.5;
 
 /// Half a second in which the IMU does not turn and feels a force along x; gravity is left to the belief.
 std::vector<MotionSample> pushed() {
@@ -34,7 +34,7 @@ std::vector<MotionSample> pushed() {
 SweepTrajectory along(const Belief& belief, const std::vector<MotionSample>& samples, TimeNs end_ns) {
   SweepTrajectory trajectory;
   const Registration::Estimate& mean = belief.mean;
-  EXPECT_TRUE(trajectory.build(mean.state, samples, end_ns, mean.calibration.gravity_W_m_s2, mean.excess_rad_s).ok());
+  EXPECT_TRUE(trajectory.build(mean.state, samples, end_ns, mean.calibration.gravity_W_m_s2, mean.deficit_rad_s).ok());
   return trajectory;
 }
 
@@ -77,23 +77,23 @@ TEST(Unknowns, BlocksCoverEachUnknownOnce) {
   u::variances(count, u::position).array() += 1.0;
   u::variances(count, u::attitude).array() += 1.0;
   u::variances(count, u::velocity).array() += 1.0;
-  u::variances(count, u::excess).array() += 1.0;
+  u::variances(count, u::deficit).array() += 1.0;
   u::variances(count, u::mounting_rotation).array() += 1.0;
   u::variances(count, u::mounting_translation).array() += 1.0;
   u::variances(count, u::clock).array() += 1.0;
   u::variances(count, u::gravity).array() += 1.0;
   EXPECT_EQ(count.diagonal(), Registration::Vector::Ones());
   Registration::Vector error = Registration::Vector::Zero();
-  error[u::excess_at(1, 2)] = 0.5;
+  error[u::deficit_at(1, 2)] = 0.5;
   Registration::Estimate estimate;
   estimate.add(error);
-  EXPECT_EQ(estimate.excess_rad_s(1, 2), 0.5);
+  EXPECT_EQ(estimate.deficit_rad_s(1, 2), 0.5);
 }
 
 TEST(Belief, AtTheEndOfAPushIsTheClosedForm) {
   const Belief start = uncertain();
   const Belief end = carried(start, pushed(), 500'000'000);
-  const double t = kStretch_s, g = -9.80665;
+  const double t = kSegment_s, g = -9.80665;
   const Eigen::Vector3d force(kForce_m_s2, 0.0, g);
   EXPECT_LT((end.mean.state.p_WI_m - (start.mean.state.v_WI_m_s * t + 0.5 * t * t * force)).norm(), 1e-12);
   EXPECT_LT((end.mean.state.v_WI_m_s - (start.mean.state.v_WI_m_s + t * force)).norm(), 1e-12);

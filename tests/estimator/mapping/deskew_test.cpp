@@ -101,7 +101,7 @@ TEST(SweepTrajectory, IsExactForASteadySpinAtRest) {
   EXPECT_LT((end.v_WI_m_s - 0.1 * so3::left_jacobian(0.1 * w) * samples[0].f_I_m_s2).norm(), 1e-14);
 }
 
-// Samples that wait for the next stretch say nothing of this one's clipped axes.
+// Samples that wait for the next segment say nothing of this one's clipped axes.
 TEST(SweepTrajectory, WhatWaitsChangesNothing) {
   MotionSample clipped;
   clipped.from_ns = 0;
@@ -116,9 +116,9 @@ TEST(SweepTrajectory, WhatWaitsChangesNothing) {
   const std::vector<MotionSample> samples = {clipped, waiting};
   SweepTrajectory trajectory;
   ASSERT_TRUE(trajectory.build(MotionState{}, samples, 10'000'000, {0.0, 0.0, -9.8}).ok());
-  EXPECT_EQ(trajectory.excess_share_at_end().x(), 1.0);
+  EXPECT_EQ(trajectory.deficit_share_at_end().x(), 1.0);
   ASSERT_TRUE(trajectory.build(MotionState{}, samples, 20'000'000, {0.0, 0.0, -9.8}).ok());
-  EXPECT_EQ(trajectory.excess_share_at_start().x(), 0.01) << "one of the stretch does";
+  EXPECT_EQ(trajectory.deficit_share_at_start().x(), 0.01) << "one of the segment does";
 }
 
 TEST(SweepTrajectory, SaysWhatItLacks) {

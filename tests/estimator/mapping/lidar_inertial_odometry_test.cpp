@@ -67,7 +67,7 @@ TEST(LidarInertialOdometry, IsLostWithAClippedRate) {
   EXPECT_GT(end.m + end.rad, 0.5);  // negative control of the test above
 }
 
-TEST(LidarInertialOdometry, FindsTheExcessOfClippedAxesByItself) {
+TEST(LidarInertialOdometry, FindsTheDeficitOfClippedAxesByItself) {
   Odometry::Params params = rig_params();
   params.expert.rails.estimate_deficit = true;
   Odometry odometry(params);

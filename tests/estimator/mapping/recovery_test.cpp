@@ -171,7 +171,7 @@ TEST(Recovery, BridgesAGapOfASecondInBothSensors) {
   EXPECT_LT(rig.error_m(), 0.1);
 }
 
-TEST(Recovery, ADegenerateStretchIsSaidAndLeft) {
+TEST(Recovery, ADegenerateSegmentIsSaidAndLeft) {
   Rig rig(true_params());
   rig.run(0, 15);
   ASSERT_EQ(rig.report.verdict, SweepVerdict::registered);

@@ -19,7 +19,7 @@ using test::map_of;
 /// A sweep in a spin, registered to the true map with a wrong prior of the motion inside the sweep.
 class MovingSweep : public testing::Test {
  protected:
-  void run(const Eigen::Vector3d& velocity_error, double clip_rad_s, double excess_sigma) {
+  void run(const Eigen::Vector3d& velocity_error, double clip_rad_s, double deficit_sigma) {
     const test::Room room = test::Room::box_with_pillars();
     const test::Motion motion;
     std::vector<MotionSample> samples = test::motion_samples(test::make_imu(motion, 1.2));
@@ -39,11 +39,11 @@ class MovingSweep : public testing::Test {
     prior.mean.state.p_WI_m = motion.p_m(1.0);
     prior.mean.state.q_WI = motion.q(1.0);
     prior.mean.state.v_WI_m_s = motion.v_m_s(1.0) + velocity_error;
-    // one excess over the sweep: its knots hang together
+    // one deficit over the sweep: its knots hang together
     for (int a = 0; a < SweepTrajectory::kKnots; ++a) {
       for (int b = 0; b < SweepTrajectory::kKnots; ++b) {
-        prior.covariance.block<3, 3>(Registration::kExcess + 3 * a, Registration::kExcess + 3 * b) =
-            excess_sigma * excess_sigma * std::pow(0.9, std::abs(a - b)) * Eigen::Matrix3d::Identity();
+        prior.covariance.block<3, 3>(Registration::kDeficit + 3 * a, Registration::kDeficit + 3 * b) =
+            deficit_sigma * deficit_sigma * std::pow(0.9, std::abs(a - b)) * Eigen::Matrix3d::Identity();
       }
     }
     std::vector<SweepPoint> all, points;
@@ -71,19 +71,20 @@ TEST_F(MovingSweep, CorrectsTheVelocityInsideOfTheSweep) {
   EXPECT_LT(end_error_rad_, 1e-3);
 }
 
-TEST_F(MovingSweep, FindsTheExcessOfClippedAxes) {
+TEST_F(MovingSweep, FindsTheDeficitOfClippedAxes) {
   run(Eigen::Vector3d::Zero(), 8.0, 5.0);
   ASSERT_EQ(result_.verdict, RegistrationVerdict::converged);
   ASSERT_GT(deficit_, 1.0);         // one axis, 2 to 4 rad/s above the rail
-  EXPECT_LT(end_error_rad_, 0.02);  // measured 0.011; without the excess see below
-  const SweepUnknowns::Excess& excess = result_.mean.excess_rad_s;
-  EXPECT_NEAR(excess.sum() / SweepTrajectory::kKnots, deficit_, 0.2);
+  EXPECT_LT(end_error_rad_, 0.02);  // measured 0.011; without the deficit see below
+  const SweepUnknowns::Deficit& deficit = result_.mean.deficit_rad_s;
+  EXPECT_NEAR(deficit.sum() / SweepTrajectory::kKnots, deficit_, 0.2);
   // what the sweep as a whole lacks is held by the surfaces, whatever the single knots are
-  const int axis = excess.rowwise().sum().cwiseAbs().maxCoeff() == std::abs(excess.row(0).sum()) ? 0 : 2;
+  const int axis = deficit.rowwise().sum().cwiseAbs().maxCoeff() == std::abs(deficit.row(0).sum()) ? 0 : 2;
   double variance = 0.0;
   for (int a = 0; a < SweepTrajectory::kKnots; ++a) {
     for (int b = 0; b < SweepTrajectory::kKnots; ++b) {
-      variance += result_.covariance(Registration::kExcess + 3 * a + axis, Registration::kExcess + 3 * b + axis) / 9.0;
+      variance +=
+          result_.covariance(Registration::kDeficit + 3 * a + axis, Registration::kDeficit + 3 * b + axis) / 9.0;
     }
   }
   EXPECT_LT(std::sqrt(variance), 0.5);

@@ -59,8 +59,8 @@ TEST(Registration, DerivativesMatchDifferences) {
   start.time_ns = 1'000'000'000;
   start.q_WI = so3::exp({0.3, -0.2, 0.9});
   start.v_WI_m_s = Eigen::Vector3d(2, -1, 0.5);
-  SweepUnknowns::Excess excess;
-  excess << 0.4, 0.9, -0.3, 0.0, 0.0, 0.0, -0.2, 0.1, 0.5;
+  SweepUnknowns::Deficit deficit;
+  deficit << 0.4, 0.9, -0.3, 0.0, 0.0, 0.0, -0.2, 0.1, 0.5;
   SweepPoint measured;
   measured.x_L_m = Eigen::Vector3f(7.0f, -3.0f, 2.0f);
   measured.t_s = 0.073f;
@@ -80,9 +80,9 @@ TEST(Registration, DerivativesMatchDifferences) {
     // in doubles: the floats of a SweepPoint would hide steps this small
     const Eigen::Vector3d x_I = calibration.T_IL * measured.x_L_m.cast<double>();
     SweepTrajectory trajectory;
-    const SweepUnknowns::Excess moved_excess =
-        excess + d.segment<9>(Registration::kExcess).reshaped(3, SweepTrajectory::kKnots);
-    EXPECT_TRUE(trajectory.build(moved, samples, 1'100'000'000, calibration.gravity_W_m_s2, moved_excess).ok());
+    const SweepUnknowns::Deficit moved_deficit =
+        deficit + d.segment<9>(Registration::kDeficit).reshaped(3, SweepTrajectory::kKnots);
+    EXPECT_TRUE(trajectory.build(moved, samples, 1'100'000'000, calibration.gravity_W_m_s2, moved_deficit).ok());
     std::size_t hint = 0;
     const double t = static_cast<double>(measured.t_s) + calibration.time_offset_s;
     const SweepTrajectory::Instant now = trajectory.at(t, hint);
@@ -98,10 +98,10 @@ TEST(Registration, DerivativesMatchDifferences) {
     Registration::Vector step = Registration::Vector::Zero();
     step[i] = h;
     const double numeric = (residual(step, unused) - residual(-step, unused)) / (2.0 * h);
-    // floats of the point and the plane over the lever: 1e-6 of it. Excess: its effect within a sample is taken to
+    // floats of the point and the plane over the lever: 1e-6 of it. Deficit: its effect within a sample is taken to
     // first order, 1 %
-    const bool of_excess = i >= Registration::kExcess && i < Registration::kCalibration;
-    const double tolerance = (of_excess ? 0.01 : 1e-5) * std::abs(numeric) + 1e-5;
+    const bool of_deficit = i >= Registration::kDeficit && i < Registration::kCalibration;
+    const double tolerance = (of_deficit ? 0.01 : 1e-5) * std::abs(numeric) + 1e-5;
     EXPECT_NEAR(analytic[i], numeric, tolerance) << "unknown " << i;
     // negative control: the same comparison refuses a derivative that is a twentieth off
     if (std::abs(numeric) > 1e-3) {

@@ -29,7 +29,7 @@ Flight hops(double scale, double noise_m) {
     const double t_s = kDt_s * k, in_hop_s = kDt_s * (k % kHop);
     ImuSample sample;
     sample.time_ns = TimeNs{k} * 10'000'000;
-    // the ground's blow, about the instant in which a hop begins
+    // the ground's impact, about the instant in which a hop begins
     if (k >= kHop && k % kHop < 2) sample.specific_force_m_s2.z() = kUp_m_s / kDt_s;
     out.samples.push_back(sample);
     PoseState pose;

@@ -80,7 +80,7 @@ TEST(RollingMemory, AWholeRunHoldsLittleForEachNode) {
   ASSERT_NEAR(nodes, 3000.0, 2.0);
   // five samples of 64 bytes and a step of 152, in vectors that double; measured 557
   EXPECT_LT((two.state - one.state) / nodes, 2.0 * (5 * sizeof(ImuSample) + sizeof(RollingSmoother::Step)) + 16.0);
-  // two filters in each stretch, a mode and a variance for each node; measured 288
+  // two filters in each segment, a mode and a variance for each node; measured 288
   EXPECT_LT((two.at_the_end - one.at_the_end) / nodes, 320.0);
   EXPECT_GT(sizeof(rolling::NodeRecord), 10'000u) << "the bound says nothing any more";
   EXPECT_LT(two.at_the_end, 5e6);
@@ -88,12 +88,12 @@ TEST(RollingMemory, AWholeRunHoldsLittleForEachNode) {
 
 /// All that the last pass tells of a way, in one row.
 std::vector<double> told(std::span<const ImuSample> samples, std::span<const rolling::PathNode> path,
-                         std::optional<rolling::LastPass::Distance> distance, std::size_t stretch) {
+                         std::optional<rolling::LastPass::Distance> distance, std::size_t segment) {
   RollingParams params;
   params.radius_m = testing::kRadius_m;
   params.lever_arm_m = kLeverArm;
   params.radius_sigma_m = 1e-3;
-  rolling::LastPass pass(params, samples, path, distance, stretch);
+  rolling::LastPass pass(params, samples, path, distance, segment);
   rolling::LastPass::Place start;
   start.filter.nominal = rolling::start_nominal(params, Eigen::Quaterniond::Identity(), Eigen::Vector3d::Zero());
   rolling::set_prior(params, Eigen::Vector3d::Zero(), start.filter.P);
@@ -125,8 +125,8 @@ TEST(RollingMemory, HowMuchIsHeldAtATimeChangesNoBit) {
   for (const auto distance : {std::optional<rolling::LastPass::Distance>(), {{1.4, 5e-3}}}) {
     const std::vector<double> at_once = told(truth.samples, path, distance, 1000);
     ASSERT_GT(at_once.size(), 100'000u);
-    for (const std::size_t stretch : {1, 7, 128, 498, 499}) {
-      ASSERT_EQ(told(truth.samples, path, distance, stretch), at_once) << stretch;
+    for (const std::size_t segment : {1, 7, 128, 498, 499}) {
+      ASSERT_EQ(told(truth.samples, path, distance, segment), at_once) << segment;
     }
   }
 }

@@ -42,7 +42,7 @@ void double_covariances(const sim::Recording&, Estimate& estimate) {
   for (auto& sweep : estimate.sweeps) sweep.pose.covariance *= 2.0;
 }
 
-/// The first stretch of the truth that lies higher than the start: [begin, end] in ns; empty without one.
+/// The first segment of the truth that lies higher than the start: [begin, end] in ns; empty without one.
 std::array<std::int64_t, 2> first_bump_ns(const sim::Truth& truth) {
   std::array<std::int64_t, 2> bump = {0, 0};
   for (std::size_t k = 0; k < truth.p_WB_m.size(); ++k) {

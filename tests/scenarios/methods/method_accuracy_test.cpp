@@ -39,7 +39,7 @@ TEST(MethodAccuracy, OracleRateIsExactAndRawMissesWhatTheRailTook) {
   const auto raw = scores_of("raw", recording);
   EXPECT_EQ(raw.at("rate_error_free_median_rad_s"), 0.0);
   EXPECT_GT(raw.at("rate_error_clipped_median_rad_s"), 0.5);
-  // its sigma is the noise alone: what is within is the brim of the clipped stretch
+  // its sigma is the noise alone: what is within is the brim of the clipped segment
   EXPECT_LT(raw.at("rate_coverage_3sigma"), 0.05);
 }
 

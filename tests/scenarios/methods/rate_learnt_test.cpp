@@ -85,7 +85,7 @@ TEST(RateLearnt, BatchAndStreamStartFromWhatEitherHasLearnt) {
     EXPECT_GT(moved, 1e-3) << name;  // the file counts
     // in the middle of the first rest the rate is the reading less the bias: that of the other run is forgotten
     EXPECT_LT(informed.rates[150].w_WI_I_rad_s.norm(), 1e-3) << name;
-    const bool held = informed.health.at("rig_held") > 0.5, batch = std::string(name) == "rate/tumble";
+    const bool held = informed.health.at("calibration_at_prior") > 0.5, batch = std::string(name) == "rate/tumble";
     EXPECT_EQ((batch ? learning.of_batch : learning.of_stream).has_value(), !held) << name;
     EXPECT_FALSE((batch ? learning.of_stream : learning.of_batch).has_value()) << name;
   }

@@ -74,7 +74,7 @@ void silence_imus(sim::Sensors& sensors, std::int64_t for_ns) {
   }
 }
 
-void stretch_ranges(sim::Sensors& sensors, float by) {
+void scale_ranges(sim::Sensors& sensors, float by) {
   for (sim::LidarRecord& lidar : sensors.lidars) {
     for (Eigen::Vector3f& position : lidar.position_L_m) position *= by;
     for (float& range : lidar.range_m) range *= by;
@@ -155,8 +155,8 @@ const std::map<std::string, std::function<void(sim::Sensors&)>>& wrong_inputs() 
       {"imus_silent_300_ms", [](sim::Sensors& s) { silence_imus(s, 300'000'000); }},
       {"lidar_20_ms", [](sim::Sensors& s) { shift_lidar(s, 20'000'000); }},
       {"lidar_100_ms", [](sim::Sensors& s) { shift_lidar(s, 100'000'000); }},
-      {"lidar_ranges_long", [](sim::Sensors& s) { stretch_ranges(s, 1.1F); }},
-      {"lidar_ranges_short", [](sim::Sensors& s) { stretch_ranges(s, 0.9F); }},
+      {"lidar_ranges_long", [](sim::Sensors& s) { scale_ranges(s, 1.1F); }},
+      {"lidar_ranges_short", [](sim::Sensors& s) { scale_ranges(s, 0.9F); }},
       {"mounting_2_deg", [](sim::Sensors& s) { turn_lidar(s, 0.03, 0.015); }},
       {"mounting_10_deg", [](sim::Sensors& s) { turn_lidar(s, 0.1, 0.05); }},
       {"mounting_90_deg",

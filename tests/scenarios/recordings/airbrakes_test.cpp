@@ -42,7 +42,7 @@ TEST_F(Airbrakes, ReadsDegreesAndG) {
   EXPECT_EQ(imu.accel_m_s2[0], Eigen::Vector3d(0.0, 0.0, 9.80665));
   EXPECT_NEAR(imu.magnetic_field_t.at(2).z(), -40e-6, 1e-15);
   EXPECT_FALSE(imported.reference);
-  EXPECT_THAT(imported.notes, ElementsAre("1 gaps of more than 1 s: the longest stretch is kept, samples 1 to 3 of 4",
+  EXPECT_THAT(imported.notes, ElementsAre("1 gaps of more than 1 s: the longest segment is kept, samples 1 to 3 of 4",
                                           "1 rows repeat a stamp: left out"));
   EXPECT_THAT(imported.info.attribution, HasSubstr("MIT"));
   EXPECT_TRUE(is_airbrakes(folder_ / "flight.csv"));
@@ -78,7 +78,7 @@ TEST_F(Airbrakes, ReadsTheStandIn) {
   EXPECT_EQ(flight.sensors.imus[0].time_ns.size(), 2000u) << "ten rows repeat a stamp, seven come long before";
   EXPECT_NEAR(peak_rad_s(flight), 38.9, 0.1);
   EXPECT_THAT(flight.notes,
-              ElementsAre("1 gaps of more than 1 s: the longest stretch is kept, samples 7 to 2006 of 2007",
+              ElementsAre("1 gaps of more than 1 s: the longest segment is kept, samples 7 to 2006 of 2007",
                           "10 rows repeat a stamp: left out"));
 }
 

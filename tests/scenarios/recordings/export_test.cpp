@@ -66,7 +66,7 @@ TEST_F(Export, ATrajectoryIsOfTheFrameThatIsAskedFor) {
   expect("centre", Eigen::Isometry3d(Eigen::Translation3d(truth.p_BG_m)));
   expect(truth.imus[0].name, truth.imus[0].T_BI);
   expect(truth.lidars[0].name, truth.lidars[0].T_BL);
-  // from the file, a stretch at a time, and with what it is of in its first line
+  // from the file, a segment at a time, and with what it is of in its first line
   write_recording(folder_ / "a.h5", fixture::info(), recording_.sensors, &truth);
   ExportChoices choices;
   choices.frame = truth.imus[0].name;

@@ -37,7 +37,7 @@ TEST(BinnedMetric, NamesComeBack) {
     EXPECT_FALSE(parse_binned(other)) << other;
 }
 
-// the synthetic rig turns about one axis, up to 14 rad/s: the y axis alone clips, up to 2.9 rad/s deep, in one stretch
+// the synthetic rig turns about one axis, up to 14 rad/s: the y axis alone clips, up to 2.9 rad/s deep, in one segment
 TEST(BinnedScores, AnErrorOfDeepSamplesStaysInTheirBins) {
   const sim::Recording recording = testing::synthetic_rig();
   const ClippingTruth truth(recording.sensors, recording.truth);
@@ -64,11 +64,11 @@ TEST(BinnedScores, AnErrorOfDeepSamplesStaysInTheirBins) {
   }
 }
 
-TEST(BinnedScores, SortByLengthOfTheStretchAndByTheNumberOfAxes) {
+TEST(BinnedScores, SortByLengthOfTheSegmentAndByTheNumberOfAxes) {
   sim::Recording recording = testing::synthetic_rig();
   sim::ImuRecord& imu = recording.sensors.imus.front();
   sim::ImuTruth& exact = recording.truth.imus.front();
-  // all clipping anew: one stretch of 3 samples on one axis, one of 12 on two; 200 Hz: 0.015 s and 0.06 s
+  // all clipping anew: one segment of 3 samples on one axis, one of 12 on two; 200 Hz: 0.015 s and 0.06 s
   imu.gyro_rad_s = exact.gyro_unclipped_rad_s;
   for (std::size_t k = 100; k < 103; ++k) imu.gyro_rad_s[k].x() -= 2.0;
   for (std::size_t k = 200; k < 212; ++k) imu.gyro_rad_s[k] -= Eigen::Vector3d(0.0, 2.0, 1.0);

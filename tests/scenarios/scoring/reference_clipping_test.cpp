@@ -67,9 +67,9 @@ TEST(ReferenceClipping, CallsTheClippedSamplesAndNoOthers) {
       EXPECT_EQ(axes[k], 0) << "unknown";
       continue;
     }
-    const double excess = std::abs(recording.rate[k].x() - recording.reading[k].x());
+    const double deficit = std::abs(recording.rate[k].x() - recording.reading[k].x());
     clipped += recording.clipped[k] ? 1 : 0;
-    if (excess > 0.5 && axes[k] != 1) ++deep_missed;
+    if (deficit > 0.5 && axes[k] != 1) ++deep_missed;
     // within 2 % of the rail and the reference's noise a sample may be called either way
     if (std::abs(recording.rate[k].x()) < 0.93 * kRail && axes[k] != 0) ++free_called;
   }

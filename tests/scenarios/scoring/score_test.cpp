@@ -80,7 +80,7 @@ TEST(RateScores, AnOffsetIsItsOwnError) {
   EXPECT_NEAR(values.at("rate_error_free_median_rad_s"), 0.5, 1e-12);
 }
 
-TEST(RateScores, AStretchIsJudgedByItsMeanAndTheWorstSampleByItself) {
+TEST(RateScores, ASegmentIsJudgedByItsMeanAndTheWorstSampleByItself) {
   Estimate alternating = perfect_estimate(rig()), offset = alternating;
   const ClippingTruth truth(rig().sensors, rig().truth);
   for (std::size_t k = 0; k < alternating.rates.size(); ++k) {
@@ -90,8 +90,8 @@ TEST(RateScores, AStretchIsJudgedByItsMeanAndTheWorstSampleByItself) {
   }
   const auto wild = scores(Kind::rate, alternating, rig()), shifted = scores(Kind::rate, offset, rig());
   EXPECT_NEAR(wild.at("rate_error_clipped_max_rad_s"), 2.0, 1e-12);
-  EXPECT_LT(wild.at("rate_error_stretch_max_rad_s"), 0.1);  // one sample more of a sign, over at least twenty
-  EXPECT_NEAR(shifted.at("rate_error_stretch_max_rad_s"), 2.0, 1e-12);
+  EXPECT_LT(wild.at("rate_error_segment_max_rad_s"), 0.1);  // one sample more of a sign, over at least twenty
+  EXPECT_NEAR(shifted.at("rate_error_segment_max_rad_s"), 2.0, 1e-12);
 }
 
 TEST(RateScores, CoverageAndNormalisedErrorApartForFlightAndContact) {

@@ -84,7 +84,7 @@ TEST(GivenErrors, OfTheClockReplaceTheScenariosOwn) {
   EXPECT_EQ(scored_by(draw, late).recording.sensors.imus[0].time_ns, late.recording.sensors.imus[0].time_ns);
 }
 
-TEST(GivenErrors, OfTheRateAreConstantOverAStretchAndNowhereElse) {
+TEST(GivenErrors, OfTheRateAreConstantOverASegmentAndNowhereElse) {
   const SimulatedDraw draw = sample_draw();
   const ClippingTruth clipping(draw.recording.sensors, draw.recording.truth);
   const SimulatedDraw wrong = with_setting(draw, {"given.rate_error_rad_s", 0.5});

@@ -82,9 +82,9 @@ TEST(Elements, OneAtItsRailReadsAPlaneAndMovesTheAxesBeside) {
     ASSERT_EQ(flags, 0b100);
     // z = (r - m_x x - m_y y) / m_z: the plane, written out
     ASSERT_NEAR(reading.z(), (rail - 0.05 * reading.x() + 0.01 * reading.y()) / 1.03, 1e-12);
-    const double excess = 0.05 * signal.x() - 0.01 * signal.y() + 1.03 * signal.z() - rail;
-    ASSERT_NEAR(reading.x(), signal.x() - inverse(0, 2) * excess, 1e-12);
-    ASSERT_NEAR(reading.y(), signal.y() - inverse(1, 2) * excess, 1e-12);
+    const double deficit = 0.05 * signal.x() - 0.01 * signal.y() + 1.03 * signal.z() - rail;
+    ASSERT_NEAR(reading.x(), signal.x() - inverse(0, 2) * deficit, 1e-12);
+    ASSERT_NEAR(reading.y(), signal.y() - inverse(1, 2) * deficit, 1e-12);
     // what free elements sense is right all the same
     ASSERT_NEAR(1.01 * reading.x() + 0.03 * reading.y() - 0.05 * reading.z(),
                 1.01 * signal.x() + 0.03 * signal.y() - 0.05 * signal.z(), 1e-12);

@@ -105,12 +105,12 @@ TEST(TiltedRail, FreeElementsAreRightAndFreeAxesAreNot) {
   double largest = 0.0;
   for (std::size_t k = 0; k < r.record.gyro_rad_s.size(); ++k) {
     const Vector3d lost = r.truth.gyro_unclipped_rad_s[k] - r.record.gyro_rad_s[k];
-    const Vector3d excess = axes * lost;
+    const Vector3d deficit = axes * lost;
     for (int i = 0; i < 3; ++i) {
       if ((r.record.clip_flags[k] >> i & 1) == 0) {
-        ASSERT_NEAR(excess[i], 0.0, 1e-12) << k;
+        ASSERT_NEAR(deficit[i], 0.0, 1e-12) << k;
       } else {
-        ASSERT_GE(excess[i] * axes.row(i).dot(r.truth.gyro_unclipped_rad_s[k]), 0.0) << k;  // outwards
+        ASSERT_GE(deficit[i] * axes.row(i).dot(r.truth.gyro_unclipped_rad_s[k]), 0.0) << k;  // outwards
       }
     }
     if (r.record.clip_flags[k] == 0) {

@@ -20,11 +20,11 @@ struct RailPlane {
   double offset_rad_s = 0.0;    ///< b; held near 0 where one sign alone was seen
   /// Of (slope along axis (j+1) % 3, slope along (j+2) % 3, r, b).
   Eigen::Matrix4d covariance = Eigen::Matrix4d::Zero();
-  std::array<int, 2> samples{};    ///< on the plane of the negative and of the positive sign; 0: this sign was not seen
-  std::array<int, 2> stretches{};  ///< runs of such samples
-  double deviation_rad_s = 0.0;    ///< root mean square of the samples about the plane
-  double tolerance_rad_s = 0.0;    ///< a reading within this of the plane, or beyond it, is clipped
-  double log_odds = 0.0;           ///< natural logarithm of: a rail, against a motion that only looks like one
+  std::array<int, 2> samples{};   ///< on the plane of the negative and of the positive sign; 0: this sign was not seen
+  std::array<int, 2> segments{};  ///< runs of such samples
+  double deviation_rad_s = 0.0;   ///< root mean square of the samples about the plane
+  double tolerance_rad_s = 0.0;   ///< a reading within this of the plane, or beyond it, is clipped
+  double log_odds = 0.0;          ///< natural logarithm of: a rail, against a motion that only looks like one
 
   bool seen(int sign) const { return samples[sign > 0 ? 1 : 0] > 0; }
   /// How far a reading lies short of the plane of `sign` (-1 or 1); negative: beyond it [rad/s].

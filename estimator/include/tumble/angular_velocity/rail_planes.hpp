@@ -18,7 +18,7 @@ namespace tumble {
 /// A rail is a plane that bounds the readings, close to upright, with many samples in a thin slab below it. What else
 /// puts samples there: the round top of a motion, which its neighbours give away (they fall off as a parabola does,
 /// a rail is left by a kink), and a constant rate (a torque-free spin, a turntable), which is as noisy as any reading,
-/// has a level of its own each time and is entered by an impact that all axes feel. The evidence of each stretch is
+/// has a level of its own each time and is entered by an impact that all axes feel. The evidence of each segment is
 /// added up as a log likelihood ratio against these, less what choosing slopes and level freely was worth (Occam).
 /// Readings that repeat (sample and hold) count once; what is thinner than the digits or the noise is not told apart.
 /// A device has three elements of one kind: a rail far below what another axis reads is none, one at the level of

@@ -63,7 +63,7 @@ struct RateReport {
   /// How far the constants moved from what was known beforehand (RateModel::calibration_mahalanobis). Far beyond 1 the
   /// prior is wrong, or a run without flight was taken for one with flight.
   double calibration_mahalanobis = 0.0;
-  bool rig_held = false;  ///< the surprise was too large: nothing was learnt, the constants were held
+  bool calibration_at_prior = false;  ///< that was too large: nothing was learnt, the constants stayed at their prior
   std::array<std::optional<double>, 6> rail;  ///< in use: gyro [rad/s], accelerometer [m/s^2]; none: not seen
   RailPlanes planes;                          ///< of the gyro's elements, where they were seen
   RailPlanes accel_planes;                    ///< of the accelerometer's, m/s^2

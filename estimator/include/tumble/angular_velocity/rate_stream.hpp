@@ -33,8 +33,8 @@ namespace tumble {
 /// where it left the window before its rail was seen. With the calibration of an earlier run the error is 1.1 times
 /// that of the batch and 99 % lie within three deviations; without it the rig is learnt in the tumble that needs
 /// it: 1.6 times, 1.2 with 0.5 s of lag (docs/maths/rate_stream.md has the draws). The samples of a flight err
-/// together: the covariance of the rig, and of the rates with it, is widened while few have been learnt from
-/// (`rig_doubt`). What it does not model: see RateSmoother.
+/// together: the covariance of the rig, and of the rates with it, is inflated while few have been learnt from
+/// (`rig_inflation`). What it does not model: see RateSmoother.
 class RateStream {
  public:
   using Params = RateStreamParams;
@@ -68,7 +68,7 @@ class RateStream {
   Status doubt(const State& state) const;
 
   /// What has been learnt of the rig.
-  RigCalibration calibration(const State& state) const { return {state.rig, widened(state)}; }
+  RigCalibration calibration(const State& state) const { return {state.rig, inflated(state)}; }
 
   /// True when two states will behave alike for ever (scratch space excluded), bit for bit.
   static bool equal(const State& a, const State& b);
@@ -100,7 +100,7 @@ class RateStream {
   void guess(Knot& knot, const Knot& previous, const State& state) const;
   void weigh(State& state) const;
   bool step(State& state) const;
-  RigConstants::Matrix widened(const State& state) const;
+  RigConstants::Matrix inflated(const State& state) const;
   bool near_rails(std::size_t at, const State& state) const;
   double hidden_by_slopes(std::size_t at, int axis, const State& state) const;
   Eigen::Matrix3d doubted(std::size_t at, const State& state) const;

@@ -8,20 +8,20 @@ namespace tumble {
 
 /// What a hand does, in time.
 struct CarriedHandParams {
-  double hand_tau_s = 0.1;      ///< its memory
-  double velocity_tau_s = 0.3;  ///< and memory
-  double place_tau_s = 1.0;     ///< and memory of that
-  double place_leak_s = 10.0;   ///< in which a place is forgotten
-  double hand_follow = 0.8;     ///< how far the hand's density follows its power about that time
-  double hand_window_s = 2.0;   ///< over which that power is taken
-  double hand_floor = 1.0;      ///< least share of the assumed density
+  double hand_tau_s = 0.1;        ///< its memory
+  double velocity_tau_s = 0.3;    ///< and memory
+  double position_tau_s = 1.0;    ///< and memory of that
+  double position_leak_s = 10.0;  ///< in which a position is forgotten
+  double hand_follow = 0.8;       ///< how far the hand's density follows its power about that time
+  double hand_window_s = 2.0;     ///< over which that power is taken
+  double hand_floor = 1.0;        ///< least share of the assumed density
 
   template <class Self, class Visitor>
   static void fields(Self& p, Visitor& visit) {
     visit(p.hand_tau_s, {"hand_tau_s", "s", 1e-3, 10.0, "memory of the carried point's acceleration", Rank::first});
     visit(p.velocity_tau_s, {"velocity_tau_s", "s", 1e-3, 1e3, "memory of the carried point's velocity"});
-    visit(p.place_tau_s, {"place_tau_s", "s", 1e-3, 1e3, "memory of the carried point's place"});
-    visit(p.place_leak_s, {"place_leak_s", "s", 0.1, 1e4, "in which a place is forgotten"});
+    visit(p.position_tau_s, {"position_tau_s", "s", 1e-3, 1e3, "memory of the carried point's position"});
+    visit(p.position_leak_s, {"position_leak_s", "s", 0.1, 1e4, "in which a position is forgotten"});
     visit(p.hand_follow,
           {"hand_follow", "1", 0.0, 1.0, "how far the hand's density follows the motion's own power", Rank::first});
     visit(p.hand_window_s, {"hand_window_s", "s", 0.01, 1e3, "over which that power is taken"});
@@ -31,7 +31,7 @@ struct CarriedHandParams {
 
 /// What readings are off by beside their noise, clipped and recovered ones among them.
 struct CarriedReadingParams {
-  double tilt_share = 0.02;             ///< error of a free element per excess of a clipped one
+  double tilt_share = 0.02;             ///< error of a free element per deficit of a clipped one
   double rail_sigma_rad_s = 0.01;       ///< how sharp a rail is
   double accel_error_share = 0.02;      ///< more, per m/s^2 away from gravity
   double turn_error_sqrts = 1e-3;       ///< random walk of the attitude per rad/s turned
@@ -42,7 +42,7 @@ struct CarriedReadingParams {
   template <class Self, class Visitor>
   static void fields(Self& p, Visitor& visit) {
     visit(p.tilt_share,
-          {"tilt_share", "1", 0.0, 1.0, "error of a free element per excess of a clipped one", Rank::first});
+          {"tilt_share", "1", 0.0, 1.0, "error of a free element per deficit of a clipped one", Rank::first});
     visit(p.rail_sigma_rad_s, {"rail_sigma_rad_s", "rad/s", 1e-4, 1.0, "how sharp a rail is"});
     visit(p.accel_error_share,
           {"accel_error_share", "1", 0.0, 1.0, "noise of the specific force more, per m/s^2 away from gravity"});
@@ -78,7 +78,7 @@ struct CarriedExpertParams {
   double gap_max_s = 1.0;
   /// What motions of a kind differ in their jerk is not known beforehand: covariances are those of a root density so
   /// many times larger.
-  double jerk_doubt = 4.0;
+  double jerk_inflation = 4.0;
   RestDetector::Params rest = {};
   CarriedHandParams hand = {};
   CarriedReadingParams readings = {};
@@ -89,8 +89,8 @@ struct CarriedExpertParams {
     visit(p.node_s, {"node_s", "s", 1e-3, 0.1, "between two nodes of the smoother", Rank::first});
     visit(p.iterations_max, {"iterations_max", "1", 1, 1000, "most steps of Gauss-Newton", Rank::first});
     visit(p.gap_max_s, {"gap_max_s", "s", 1e-300, 1e4, "longest time between two samples before the run is refused"});
-    visit(p.jerk_doubt, {"jerk_doubt", "1", 1.0, 100.0,
-                         "covariances are those of a root density of the jerk so many times larger", Rank::first});
+    visit(p.jerk_inflation, {"jerk_inflation", "1", 1.0, 100.0,
+                             "covariances are those of a root density of the jerk so many times larger", Rank::first});
     visit.group("rest_", p.rest);
     visit.group("", p.hand);
     visit.group("", p.readings);
@@ -109,7 +109,7 @@ struct CarriedParams {
   double jerk_rad_s3_sqrts = 200.0;  ///< root density of the angular jerk
   double hand_m_s2 = 5.0;            ///< deviation of the carried point's acceleration
   double velocity_m_s = 1.0;         ///< deviation of the carried point's velocity
-  double place_m = 1.0;              ///< deviation of its place
+  double position_m = 1.0;           ///< deviation of its position
 
   using Expert = CarriedExpertParams;
   Expert expert = {};  ///< what few need
@@ -131,7 +131,7 @@ struct CarriedParams {
           {"jerk_rad_s3_sqrts", "rad/s^3 sqrt(s)", 1e-2, 1e6, "root density of the angular jerk", Rank::first});
     visit(p.hand_m_s2, {"hand_m_s2", "m/s^2", 1e-3, 1e3, "deviation of the carried point's acceleration", Rank::first});
     visit(p.velocity_m_s, {"velocity_m_s", "m/s", 1e-3, 1e3, "deviation of the carried point's velocity", Rank::first});
-    visit(p.place_m, {"place_m", "m", 1e-3, 1e3, "deviation of the carried point's place", Rank::first});
+    visit(p.position_m, {"position_m", "m", 1e-3, 1e3, "deviation of the carried point's position", Rank::first});
     visit.group("", p.expert);
   }
 };

@@ -45,7 +45,7 @@ struct ClippedElements {
 /// acceleration, velocity, place; constants of the device beside them; Gauss-Newton on the arrow matrix (ArrowSystem),
 /// covariances from the same factors. O(time) in memory (about 7 kB a node) and work, whatever the IMU's rate.
 ///
-/// Not modelled: flight (a body that is thrown: `hand_surprise` tells), contact beyond what a hand's acceleration
+/// Not modelled: flight (a body that is thrown: `hand_mahalanobis` tells), contact beyond what a hand's acceleration
 /// explains, walk of the biases, heading.
 class CarriedSmoother {
  public:
@@ -60,10 +60,10 @@ class CarriedSmoother {
     /// Largest mean acceleration of the carried point over a quarter of a second, in deviations of what is assumed. One
     /// that is thrown (specific force about 0) shows 2 and more; so does a hand that is rough: it warns, it decides
     /// nothing.
-    double hand_surprise = 0.0;
-    /// Clipped stretches in which the body may have turned once more, or less, than the descent says: how many were
+    double hand_mahalanobis = 0.0;
+    /// Clipped segments in which the body may have turned once more, or less, than the descent says: how many were
     /// long and unknown enough to be asked, in how many another number of turns was the better one and was taken (a
-    /// stretch counts anew in each round), and in how many others stay possible, at odds of 1 to 1000 or better: there
+    /// segment counts anew in each round), and in how many others stay possible, at odds of 1 to 1000 or better: there
     /// the covariance holds their spread.
     int turns_asked = 0, turns_taken = 0, turns_open = 0;
     /// Turns that were to be taken and from which the whole could not be solved: the answer without them stands, and

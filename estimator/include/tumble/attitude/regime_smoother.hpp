@@ -16,8 +16,8 @@ namespace tumble {
 /// CarriedSmoother, joined by `either`. The other smoother is asked only where it may matter. RegimeStream is the same
 /// as a stream.
 ///
-/// A sample of a stretch of clipped or doubted ones, or near about it, is believed to be carried as far as the least
-/// carried sample of the stretch is that is near to it: where a hand lets go, the flight tells the rate beside it, and
+/// A sample of a segment of clipped or doubted ones, or near about it, is believed to be carried as far as the least
+/// carried sample of the segment is that is near to it: where a hand lets go, the flight tells the rate beside it, and
 /// says nothing of what the hand does a second later. Not modelled: further IMUs, which tell the rate whoever holds the
 /// body.
 class RegimeSmoother {
@@ -27,7 +27,7 @@ class RegimeSmoother {
     RegimeEvidence::Params evidence;
     CarriedSmoother::Params carried;
     double carried_min = 0.02;  ///< a share of the carried body below this changes nothing worth a run
-    double near_s = 0.1;  ///< clipped samples so close belong to one stretch, and judge each other and what is so close
+    double near_s = 0.1;  ///< clipped samples so close belong to one segment, and judge each other and what is so close
 
     /// Every number of it, stated once.
     template <class Self, class Visitor>
@@ -38,14 +38,14 @@ class RegimeSmoother {
       visit(p.carried_min,
             {"carried_min", "1", 0.0, 1.0, "a share of the carried body below this is not worth its work"});
       visit(p.near_s,
-            {"near_s", "s", 0.0, 10.0, "clipped samples so close belong to one stretch and judge each other"});
+            {"near_s", "s", 0.0, 10.0, "clipped samples so close belong to one segment and judge each other"});
     }
   };
   struct Report {
     RateReport rate;
     bool judged = false;               ///< the regimes were; what follows is of use
     RegimeShares shares{};             ///< mean over the samples
-    double carried_clipped_max = 0.0;  ///< largest share of the carried body in a stretch of clipped samples
+    double carried_clipped_max = 0.0;  ///< largest share of the carried body in a segment of clipped samples
     bool carried_asked = false;        ///< and had an answer, whose report follows
     CarriedSmoother::Report carried;
   };
@@ -61,8 +61,8 @@ class RegimeSmoother {
   void join(std::span<const ImuSample> samples, std::vector<RateState>& rates, Report& report) const;
 
  private:
-  std::vector<double> carried_stretches(std::span<const RegimeShares> shares, const RateReport& report,
-                                        std::span<const RateState> rates) const;
+  std::vector<double> carried_segments(std::span<const RegimeShares> shares, const RateReport& report,
+                                       std::span<const RateState> rates) const;
 
   Params params_;
   RateSmoother rate_;

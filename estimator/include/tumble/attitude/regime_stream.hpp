@@ -18,7 +18,7 @@ namespace tumble {
 ///
 /// The evidence is a filter over the samples as they are given out, so that each is judged by all of the past and, by
 /// its rate, by the lag ahead. The share with which CarriedStream is believed is the least of what is near in the
-/// stretch of clipped samples, as in the batch, as far as the window shows it. While RateStream drops one rig after
+/// segment of clipped samples, as in the batch, as far as the window shows it. While RateStream drops one rig after
 /// another (in more than half of the steps of its lag), clipped samples tell nothing. CarriedStream's work is spared
 /// while the evidence says that no hand holds the body (share below `carried_min`); it starts anew after that.
 /// Estimates are those of RateStream where nothing clips.
@@ -33,7 +33,7 @@ class RegimeStream {
     RegimeEvidence::Params evidence;
     CarriedStream::Params carried;  ///< `period_s` and `lag_s` are those of `rate`
     double carried_min = 0.02;      ///< a share of the carried body below this is not worth its work
-    double near_s = 0.1;            ///< clipped samples so close belong to one stretch, and judge each other
+    double near_s = 0.1;            ///< clipped samples so close belong to one segment, and judge each other
 
     /// Every number of it, stated once.
     template <class Self, class Visitor>
@@ -44,7 +44,7 @@ class RegimeStream {
       visit(p.carried_min,
             {"carried_min", "1", 0.0, 1.0, "a share of the carried body below this is not worth its work"});
       visit(p.near_s,
-            {"near_s", "s", 0.0, 10.0, "clipped samples so close belong to one stretch and judge each other"});
+            {"near_s", "s", 0.0, 10.0, "clipped samples so close belong to one segment and judge each other"});
     }
   };
   /// Of a sample given out.
@@ -64,7 +64,7 @@ class RegimeStream {
     std::size_t rig_resets = 0;  ///< of RateStream, as seen last
     double resets = 0.0;         ///< times that RateStream dropped its rig, forgotten over its lag
     bool carrying = false;       ///< CarriedStream runs
-    /// Of the last stretch of clipped samples what is within `near_s`, but for what has a lesser share after it: the
+    /// Of the last segment of clipped samples what is within `near_s`, but for what has a lesser share after it: the
     /// first is the least.
     std::vector<Given> near;
     TimeNs given_ns = 0;               ///< of the last sample given out

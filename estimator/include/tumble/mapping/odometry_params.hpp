@@ -26,7 +26,7 @@ struct OdometryExpertParams {
   FlightParams flight = {};
   LocalMapParams map = {};
   MatchingParams matching = {};
-  RegistrationEffortParams effort = {};
+  RegistrationStagesParams stages = {};
   TrackingParams tracking = {};
   RelocalizationParams search = {};
   WorldCovarianceParams world = {};
@@ -47,7 +47,7 @@ struct OdometryExpertParams {
     visit.group("", p.tracking);
     visit.group("start_", p.start);
     visit.group("standstill_", p.standstill);
-    visit.group("effort_", p.effort);
+    visit.group("stages_", p.stages);
     visit.group("search_", p.search);
     visit.group("world_", p.world);
   }

@@ -37,7 +37,7 @@ class Registration {
   using Vector = SweepUnknowns::Vector;
   using Matrix = SweepUnknowns::Matrix;
   static constexpr int kMotion = SweepUnknowns::kMotion;
-  static constexpr int kExcess = SweepUnknowns::kExcess;
+  static constexpr int kDeficit = SweepUnknowns::kDeficit;
   static constexpr int kCalibration = SweepUnknowns::kCalibration;
   static constexpr int kUnknowns = SweepUnknowns::kUnknowns;
 

@@ -44,23 +44,23 @@ struct MotionState {
   PoseState pose() const;
 };
 
-/// Motion of the IMU over a stretch of time from a known start, by strapdown integration; can be asked at any instant.
+/// Motion of the IMU over a segment of its run from a known start, by strapdown integration; asked at any instant.
 ///
 /// Attitude: R(t) = R_k Exp(w_k (t - t_k)), exact for a rate that is constant in body axes over each sample. Position:
 /// p(t) = p_0 + v_0 t + g t^2 / 2 + S(t) with S the double integral of the specific force in W, whose mean over each
 /// sample is R_k J_l(w_k dt) f_k (exact for a force constant in body axes, as the centripetal force of a spin is).
 ///
 /// The saturation deficit e is a correction of the clipped axes, linear in time between kKnots knots at equal steps
-/// from the start to the end of the stretch: the rate used is w_j + s_j e_j(t) where axis j was clipped, with the sign
-/// of w_j and the magnitude sigma_j / (largest sigma_j among the stretch's clipped samples), so that what is known well
+/// from the start to the end of the segment: the rate used is w_j + s_j e_j(t) where axis j was clipped, with the sign
+/// of w_j and the magnitude sigma_j / (largest sigma_j among the segment's clipped samples), so that what is known well
 /// moves little; 1 where nothing is known of any. Over a sample e is what it is in the middle of it. Not modelled:
 /// sculling within a sample, the earth's rotation.
 class SweepTrajectory {
  public:
   static constexpr int kKnots = 3;
-  static constexpr int kExcess = 3 * kKnots;  ///< unknowns: axis by axis within a knot
-  using Excess = Eigen::Matrix<double, 3, kKnots>;
-  using ByExcess = Eigen::Matrix<double, 3, kExcess>;
+  static constexpr int kDeficit = 3 * kKnots;  ///< unknowns: axis by axis within a knot
+  using Deficit = Eigen::Matrix<double, 3, kKnots>;
+  using ByDeficit = Eigen::Matrix<double, 3, kDeficit>;
 
   /// What a lidar point needs of its instant: attitude, and S(t) of the text above.
   struct Instant {
@@ -68,20 +68,20 @@ class SweepTrajectory {
     Eigen::Vector3d preintegrated_position_m;
   };
   /// Derivatives of an instant with respect to the saturation deficit: phi = attitude e, dS = thrust e (first order).
-  struct ExcessDerivative {
-    ByExcess attitude_s;
-    ByExcess preintegrated_position_m_s;
+  struct DeficitDerivative {
+    ByDeficit attitude_s;
+    ByDeficit preintegrated_position_m_s;
   };
 
   /// Integrates from `start` to `end_ns`. Samples must be in time order and follow each other; the first window must
   /// reach back to the start. Trouble: `too_few` (no sample, or they end before end_ns), `time_order` (end before
   /// start), `gap` (the first window begins after the start). Reuses its memory.
   Status build(const MotionState& start, std::span<const MotionSample> samples, TimeNs end_ns,
-               const Eigen::Vector3d& gravity_W_m_s2, const Excess& excess_rad_s = Excess::Zero());
+               const Eigen::Vector3d& gravity_W_m_s2, const Deficit& deficit_rad_s = Deficit::Zero());
   /// The same with gravity of this magnitude along -z.
   Status build(const MotionState& start, std::span<const MotionSample> samples, TimeNs end_ns, double gravity_m_s2,
-               const Excess& excess_rad_s = Excess::Zero()) {
-    return build(start, samples, end_ns, Eigen::Vector3d(0.0, 0.0, -gravity_m_s2), excess_rad_s);
+               const Deficit& deficit_rad_s = Deficit::Zero()) {
+    return build(start, samples, end_ns, Eigen::Vector3d(0.0, 0.0, -gravity_m_s2), deficit_rad_s);
   }
 
   TimeNs start_ns() const { return start_.time_ns; }
@@ -94,7 +94,7 @@ class SweepTrajectory {
   Instant at(double t_s, std::size_t& hint) const;
   /// S(t) + R(t) x of each point: what at() says, bit for bit, of several at a time.
   void levers(std::span<const SweepPoint> points, std::span<Eigen::Vector3f> levers_W_m) const;
-  ExcessDerivative excess_derivative(double t_s, std::size_t& hint) const;
+  DeficitDerivative deficit_derivative(double t_s, std::size_t& hint) const;
   std::size_t intervals() const { return intervals_.size(); }
   /// End of interval i in seconds after the start.
   double interval_end_s(std::size_t i) const { return intervals_[i].start_s + intervals_[i].length_s; }
@@ -107,23 +107,23 @@ class SweepTrajectory {
   /// The same as at(), and the velocity in W of a point that is fixed at x_I in the IMU's axes.
   Instant at(double t_s, const Eigen::Vector3d& x_I_m, std::size_t& hint, Eigen::Vector3d& velocity_m_s) const;
 
-  /// Full state at t_s within the stretch, its covariance propagated from the start's without noise added.
+  /// Full state at t_s within the segment, its covariance propagated from the start's without noise added.
   MotionState state(double t_s) const;
 
-  /// First-order effect on the state (position, attitude, velocity) at t_s of the state at the start, of the excess
+  /// First-order effect on the state (position, attitude, velocity) at t_s of the state at the start, of the deficit
   /// rate, and of gravity.
   struct Transition {
     Eigen::Matrix<double, 9, 9> by_start;
-    Eigen::Matrix<double, 9, kExcess> by_excess_s;
+    Eigen::Matrix<double, 9, kDeficit> by_deficit_s;
     Eigen::Matrix<double, 9, 3> by_gravity;
   };
   Transition transition(double t_s) const;
 
   /// Magnitude of the saturation deficit's share in the first and the last interval, 0 on axes not clipped there.
-  Eigen::Vector3d excess_share_at_start() const { return intervals_.front().excess_share.cwiseAbs(); }
-  Eigen::Vector3d excess_share_at_end() const { return intervals_.back().excess_share.cwiseAbs(); }
+  Eigen::Vector3d deficit_share_at_start() const { return intervals_.front().deficit_share.cwiseAbs(); }
+  Eigen::Vector3d deficit_share_at_end() const { return intervals_.back().deficit_share.cwiseAbs(); }
 
-  /// Bit j set: axis j was clipped somewhere in the stretch.
+  /// Bit j set: axis j was clipped somewhere in the segment.
   std::uint8_t clipped_axes() const { return clipped_axes_; }
 
  private:
@@ -132,13 +132,13 @@ class SweepTrajectory {
     Eigen::Quaterniond q_WI;
     Eigen::Vector3d w_I, a_W;                          // rate in body axes; mean specific force in W
     Eigen::Vector3d preintegrated_v, preintegrated_p;  // integrals of the specific force up to start_s
-    Eigen::Vector3d excess_share;                      // s_j where axis j is clipped, 0 elsewhere
+    Eigen::Vector3d deficit_share;                     // s_j where axis j is clipped, 0 elsewhere
     Eigen::Matrix<double, kKnots, 1> knot_weight =
-        Eigen::Matrix<double, kKnots, 1>::Zero();            // of each knot's excess in this interval
-    ByExcess excess_attitude, excess_v, excess_p, excess_a;  // derivatives at start_s; of the force by the attitude
+        Eigen::Matrix<double, kKnots, 1>::Zero();                 // of each knot's deficit in this interval
+    ByDeficit deficit_attitude, deficit_v, deficit_p, deficit_a;  // derivatives at start_s; of the force by attitude
   };
   const Interval& interval_at(double t_s, std::size_t& hint) const;
-  static ByExcess gained_by_excess(const Interval& now, double s);
+  static ByDeficit gained_by_deficit(const Interval& now, double s);
 
   MotionState start_;
   double duration_s_ = 0.0;

@@ -34,7 +34,7 @@ class SecondPass {
     std::size_t sweeps = 3;      ///< that it takes for each that comes; two at least, or it never catches up
     double remembered_s = 10.0;  ///< where it has not caught up within this of motion it is given up
     /// What was learnt is learnt again from the same readings: its variance counts so many times.
-    double doubt = 4.0;
+    double inflation = 4.0;
     double rest_s = 1.0;  ///< of the rest at the start that is remembered
 
     /// Every number of it, stated once.
@@ -45,7 +45,8 @@ class SecondPass {
       visit(p.lag_s, {"lag_s", "s", 0.0, 10.0, "how old a sample is there when its rate is settled"});
       visit(p.sweeps, {"sweeps", "1", 2, 1000, "that the second pass takes for each that comes"});
       visit(p.remembered_s, {"remembered_s", "s", 0.0, 1000.0, "motion within which the second pass has to catch up"});
-      visit(p.doubt, {"doubt", "1", 1.0, 1e6, "what was learnt is given to it with so many times its variance"});
+      visit(p.inflation,
+            {"inflation", "1", 1.0, 1e6, "what was learnt is given to it with so many times its variance"});
       visit(p.rest_s, {"rest_s", "s", 0.1, 100.0, "of the rest at the start that is remembered"});
     }
   };

@@ -15,7 +15,7 @@ namespace tumble {
 /// ClippingFinder as a stream: the rails that the readings so far show, walls and planes, of gyro and accelerometer.
 ///
 /// Of each it keeps up to `readings_max` distinct readings, the latest and those about the extremes before others, and
-/// searches them as the batch does: when a stretch near an extreme has ended, and within one after each eighth more of
+/// searches them as the batch does: when a segment near an extreme has ended, and within one after each eighth more of
 /// readings near the extremes, so that a run of n such readings is searched O(log n) times and not n. A plane whose
 /// readings had to be forgotten stays until readings contradict it. What it does not model: see RailPlaneFinder; a rail
 /// is seen some samples after it was first met, so that who believed those has to read them again.

@@ -10,7 +10,7 @@ namespace tumble {
 
 /// How much less a rig without calibration counts while few samples of flight, n, have been learnt from; one that is
 /// shorter than `model_error_s` counts for its part of it.
-struct RigDoubtParams {
+struct RigInflationParams {
   /// Its covariance, but for the gyro's bias and never beyond that beforehand, counts 1 + covariance / (1 + n /
   /// samples) times.
   double covariance = 60.0;
@@ -24,13 +24,13 @@ struct RigDoubtParams {
 
   template <class Self, class Visitor>
   static void fields(Self& p, Visitor& visit) {
-    visit(p.covariance, {"rig_doubt", "1", 0.0, 1e3,
-                         "covariance of a rig without calibration counts 1 + this / (1 + n / rig_doubt_samples) "
+    visit(p.covariance, {"rig_inflation", "1", 0.0, 1e3,
+                         "covariance of a rig without calibration counts 1 + this / (1 + n / rig_inflation_samples) "
                          "times, n samples of flight learnt from, of model_error_s each"});
-    visit(p.samples, {"rig_doubt_samples", "1", 1.0, 1e6, "see rig_doubt"});
-    visit(p.contact, {"contact_doubt", "1", 0.0, 10.0,
+    visit(p.samples, {"rig_inflation_samples", "1", 1.0, 1e6, "see rig_inflation"});
+    visit(p.contact, {"contact_inflation", "1", 0.0, 10.0,
                       "of a rig without calibration: deviation of a rate in contact, as a share of what lies "
-                      "beyond the rail, over 1 + n / rig_doubt_samples"});
+                      "beyond the rail, over 1 + n / rig_inflation_samples"});
     visit(p.slopes, {"contact_slopes", "1", 0.0, 10.0,
                      "deviation of a clipped rate in contact, as a share of what the slopes at the ends of its run "
                      "hide"});
@@ -47,7 +47,7 @@ struct RateStreamExpertParams {
   int bound_age = 3;             ///< steps after which the bounds of a sample in contact are softened
   double bound_damping = 0.5;    ///< share of a new bound taken over in each step
   int flight_run_min = 6;        ///< a flight of fewer samples in a row says nothing of the rig
-  RigDoubtParams doubt = {};
+  RigInflationParams inflation = {};
   /// Share of the devices that nobody has calibrated, before the readings tell; 0: a device is as its sheet says.
   double uncalibrated = 0.3;
 
@@ -62,7 +62,7 @@ struct RateStreamExpertParams {
     visit(p.bound_age, {"bound_age", "1", 0, 4096, "steps after which the bounds of a sample in contact are softened"});
     visit(p.flight_run_min,
           {"flight_run_min", "1", 0, 4096, "a flight of fewer samples in a row says nothing of the rig"});
-    visit.group("", p.doubt);
+    visit.group("", p.inflation);
     visit(p.uncalibrated,
           {"uncalibrated", "1", 0.0, 0.99, "share of the devices that nobody has calibrated, before readings tell"});
     visit(p.bound_damping, {"bound_damping", "1", 0.01, 1.0, "share of a new bound taken over in each step"});

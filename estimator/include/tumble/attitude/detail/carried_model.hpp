@@ -64,7 +64,7 @@ struct NodeReadings {
 struct ReadingNoise {
   double gyro_rad_s = 0.0;    ///< of one reading
   double window_rad_s = 0.0;  ///< of what a mean over a window differs from the rate at its centre by, one reading
-  double tilt_share = 0.0;    ///< of a free element while another clips, per rad/s of that one's excess
+  double tilt_share = 0.0;    ///< of a free element while another clips, per rad/s of that one's deficit
   double rail_rad_s = 0.0;    ///< of a rail
   double bound = 1.0;         ///< share of a gyro's bounds that counts as information
   double accel_m_s2 = 0.0;    ///< of one reading
@@ -96,7 +96,7 @@ class Motion {
     double turn_error_sqrts = 0.0;   ///< random walk of the attitude per rad/s turned: scale, misalignment
     double hand_m_s2 = 0.0, hand_tau_s = 0.0;
     double velocity_m_s = 0.0, velocity_tau_s = 0.0;
-    double place_m = 0.0, place_tau_s = 0.0, place_leak_s = 10.0;
+    double position_m = 0.0, position_tau_s = 0.0, position_leak_s = 10.0;
   };
   explicit Motion(const Params& params);
 

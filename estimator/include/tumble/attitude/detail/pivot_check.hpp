@@ -18,20 +18,20 @@ struct PivotCheckParams {
   double gravity_m_s2 = 9.80665;
   double accel_range_m_s2 = 0.0;   ///< as the device states it; 0: not stated
   double reading_s = 0.01;         ///< readings are averaged to this length
-  double stretch_s = 2.0;          ///< of motion that is explained at once, and half of it at least
-  double turned_least_rad = 1.0;   ///< within a stretch, to count
-  double explains_m_s = 0.3;       ///< root mean square of a velocity below which a stretch is explained
+  double segment_s = 2.0;          ///< of motion that is explained at once, and half of it at least
+  double turned_least_rad = 1.0;   ///< within a segment, to count
+  double explains_m_s = 0.3;       ///< root mean square of a velocity below which a segment is explained
   double noise_m_s = 0.03;         ///< nothing is explained better than so
-  double evidence_least = 5.0;     ///< sum over the stretches of the logarithm of the ratio of squares, and
-  double evidence_of_each = 0.6;   ///< on the average of a stretch at least
-  double stretches_least = 6.0;    ///< that are explained better; each moment is in two
+  double evidence_least = 5.0;     ///< sum over the segments of the logarithm of the ratio of squares, and
+  double evidence_of_each = 0.6;   ///< on the average of a segment at least
+  double segments_least = 6.0;     ///< that are explained better; each moment is in two
   double better_over_worse = 4.0;  ///< and so many for each that is explained worse
-  double arm_most_m = 0.25;        ///< of a stretch that tells the scale
+  double arm_most_m = 0.25;        ///< of a segment that tells the scale
   double scale_off = 0.025;        ///< and five deviations, by which the scale differs from 1
   double scale_deviations = 5.0;
-  double scale_stretches_least = 10.0;  ///< and this share of those that the rates explain: others hang on a rod
+  double scale_segments_least = 10.0;  ///< and this share of those that the rates explain: others hang on a rod
   double scale_share_least = 0.5;
-  double gap_max_s = 0.1;  ///< a longer one ends a stretch
+  double gap_max_s = 0.1;  ///< a longer one ends a segment
 
   /// Every number of it, stated once.
   template <class Self, class Visitor>
@@ -39,32 +39,32 @@ struct PivotCheckParams {
     visit(p.gravity_m_s2, {"gravity_m_s2", "m/s^2", 1e-12, 100.0, "strength of gravity"});
     visit(p.accel_range_m_s2, {"accel_range_m_s2", "m/s^2", 0.0, kUnbounded, "as the device states it; 0: not stated"});
     visit(p.reading_s, {"reading_s", "s", 1e-3, 1.0, "readings are averaged to this length"});
-    visit(p.stretch_s, {"stretch_s", "s", 0.1, 100.0, "of motion that is explained at once"});
-    visit(p.turned_least_rad, {"turned_least_rad", "rad", 0.0, 1e3, "turned within a stretch, to count"});
-    visit(p.explains_m_s, {"explains_m_s", "m/s", 1e-3, 1e3, "rms of velocity below which a stretch is explained"});
+    visit(p.segment_s, {"segment_s", "s", 0.1, 100.0, "of motion that is explained at once"});
+    visit(p.turned_least_rad, {"turned_least_rad", "rad", 0.0, 1e3, "turned within a segment, to count"});
+    visit(p.explains_m_s, {"explains_m_s", "m/s", 1e-3, 1e3, "rms of velocity below which a segment is explained"});
     visit(p.noise_m_s, {"noise_m_s", "m/s", 1e-6, 1e3, "rms of velocity below which nothing is explained better"});
-    visit(p.evidence_least, {"evidence_least", "1", 0.0, 1e6, "of all stretches, for another reading of the gyro"});
-    visit(p.evidence_of_each, {"evidence_of_each", "1", 0.0, 1e3, "of a stretch on the average, likewise"});
-    visit(p.stretches_least, {"stretches_least", "1", 1.0, 1e6, "that another reading explains better"});
+    visit(p.evidence_least, {"evidence_least", "1", 0.0, 1e6, "of all segments, for another reading of the gyro"});
+    visit(p.evidence_of_each, {"evidence_of_each", "1", 0.0, 1e3, "of a segment on the average, likewise"});
+    visit(p.segments_least, {"segments_least", "1", 1.0, 1e6, "that another reading explains better"});
     visit(p.better_over_worse, {"better_over_worse", "1", 0.0, 1e6, "of them, for each that it explains worse"});
     visit(p.arm_most_m, {"arm_most_m", "m", 1e-3, 1e3, "from the sensor to the pivot, for the scale to be told"});
     visit(p.scale_off, {"scale_off", "1", 1e-4, 1.0, "by which a gyro's scale may differ from 1"});
     visit(p.scale_deviations, {"scale_deviations", "1", 0.1, 1e6, "of the scale, by which it may differ"});
-    visit(p.scale_stretches_least, {"scale_stretches_least", "1", 2.0, 1e6, "that tell the scale"});
+    visit(p.scale_segments_least, {"scale_segments_least", "1", 2.0, 1e6, "that tell the scale"});
     visit(p.scale_share_least,
-          {"scale_share_least", "1", 0.0, 1.0, "of the stretches that the rates explain, likewise"});
-    visit(p.gap_max_s, {"gap_max_s", "s", 1e-3, 1e3, "a longer gap ends a stretch"});
+          {"scale_share_least", "1", 0.0, 1.0, "of the segments that the rates explain, likewise"});
+    visit(p.gap_max_s, {"gap_max_s", "s", 1e-3, 1e3, "a longer gap ends a segment"});
   }
 };
 
 /// Whether rates can be believed of a body that never rests but is held: by a hand, by a hinge, by the ground that it
 /// rocks on. Over a second or two it turns about a point of itself that hardly moves. The forces, turned by the rates,
 /// then add to gravity for the time, and to what the turning makes of the way to that point, and to nothing else. Where
-/// they do not, but would with axes or signs of the gyro named otherwise, or with half or twice its rate, stretch after
-/// stretch, the rates are not what they claim. Where the point is near the sensor, as in a hand, the same tells the
+/// they do not, but would with axes or signs of the gyro named otherwise, or with half or twice its rate, segment after
+/// segment, the rates are not what they claim. Where the point is near the sensor, as in a hand, the same tells the
 /// gyro's scale to a per cent.
 ///
-/// The equations are imu_merge.md (I24), (I25), (I26), (I27). Only what the gyro measured counts: a stretch ends where
+/// The equations are imu_merge.md (I24), (I25), (I26), (I27). Only what the gyro measured counts: a segment ends where
 /// it was at its rail. Not seen: a body that flies or rolls on, which no reading explains; turning about one axis
 /// alone, which several namings explain alike; an accelerometer with all three axes flipped, whose pivot lies on the
 /// other side.
@@ -72,15 +72,15 @@ class PivotCheck {
  public:
   using Params = PivotCheckParams;
 
-  /// What all stretches say.
+  /// What all segments say.
   struct Found {
     int reading = 0;                    ///< of the gyro, that explains most, by number; 0: as it is
     double evidence = 0.0;              ///< for it, against the rates as they are: sum of logarithms, more is better
-    std::size_t counted = 0;            ///< stretches that it or the rates as they are explain
+    std::size_t counted = 0;            ///< segments that it or the rates as they are explain
     std::size_t better = 0, worse = 0;  ///< of those, by more than a fifth of the residual
-    double scale = 1.0;                 ///< by which the rates explain most, of stretches with a near pivot
+    double scale = 1.0;                 ///< by which the rates explain most, of segments with a near pivot
     double scale_sigma = std::numeric_limits<double>::infinity();
-    std::size_t scale_stretches = 0, explained = 0;  ///< and all that the rates as they are explain
+    std::size_t scale_segments = 0, explained = 0;  ///< and all that the rates as they are explain
   };
 
   /// Throws InvalidParams when a parameter is outside of its bound.

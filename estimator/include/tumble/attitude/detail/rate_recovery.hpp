@@ -21,7 +21,7 @@ namespace tumble {
 /// accelerometer, such readings are bounds and no measurements.
 ///
 /// Not modelled: errors of scale (the gyro's is what the lever arms are learnt with), units that share a place, which
-/// tell nothing. A blow on the body reads as a spell of doubt, not as a rate.
+/// tell nothing. An impact on the body reads as a spell of doubt, not as a rate.
 class RateRecovery {
  public:
   static constexpr int kUnits = 4;

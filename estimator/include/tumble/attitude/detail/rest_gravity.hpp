@@ -67,7 +67,7 @@ class RestGravity {
     double way_rad = 0.0, variance_rad2 = 0.0;                   ///< likewise
     Eigen::Vector3d velocity_sum_m_s = Eigen::Vector3d::Zero();  ///< likewise, of force in the axes of that rest
     double way_s = 0.0, hidden_m_s = 0.0;                        ///< likewise, and what the accelerometer's rail hid
-    double stretch_s = 0.0, stretch_rad2_s = 0.0;                ///< of samples in a row that the gyro did not measure
+    double segment_s = 0.0, segment_rad2_s = 0.0;                ///< of samples in a row that the gyro did not measure
     double rest_s = 0.0, force_sum_m = 0.0;                      ///< of all rests, and of force by time
     double weightless_s = 0.0;                                   ///< of what would be rest but that no force holds it
     double miss_rad = 0.0, miss_sigma_rad = 0.0;                 ///< of the worst of the ways between two rests
@@ -95,7 +95,7 @@ class RestGravity {
 
  private:
   void turn(const ImuSample& sample, const RateState& rate, double dt_s, State& state) const;
-  void end_stretch(State& state) const;
+  void end_segment(State& state) const;
   void arrive(State& state) const;
   void close_velocity(const Eigen::Vector3d& here_m_s2, double sigma_rad, State& state) const;
   double allowed_rad(double sigma_rad) const;

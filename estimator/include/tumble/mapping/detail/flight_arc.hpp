@@ -24,7 +24,7 @@ Eigen::Vector3d torque_free_acceleration(const FlyingBody& body, const Eigen::Ve
 Eigen::Vector3d flight_force(const FlyingBody& body, const Eigen::Vector3d& w_WI_I_rad_s,
                              const Eigen::Vector3d& angular_acceleration_I_rad_s2);
 
-/// The ballistic arc as a source of motion, for a stretch of flight that no reading covers: samples over
+/// The ballistic arc as a source of motion, for a segment of flight that no reading covers: samples over
 /// (from_ns, to_ns], at most step_ns long, whose integration (SweepTrajectory) takes the centre of mass along a
 /// parabola and turns the body free of torque, from the rate at the start. Trouble: `time_order` (nothing between the
 /// two times, or no step), `non_finite`, `degenerate` (an inertia that is none); then `samples` is as it was, else the

@@ -100,19 +100,19 @@ struct InertialNoiseParams {
 /// An IMU at its rails. Readings of the accelerometer from accel_m_s2 on, or flagged by the device, are at its rail:
 /// there the force may be larger by force_sigma_m_s2 (standard deviation), for as long as the rail lasts.
 ///
-/// With estimate_deficit, the excess of the rate on clipped axes is estimated in the registration, at
+/// With estimate_deficit, the deficit of the rate on clipped axes is estimated in the registration, at
 /// SweepTrajectory::kKnots knots a sweep; it acts on clipped samples only, there in proportion to the rate's reported
-/// uncertainty. Its prior is that uncertainty, at least excess_sigma_min_rad_s, correlated over excess_time_s; on a
+/// uncertainty. Its prior is that uncertainty, at least deficit_sigma_min_rad_s, correlated over deficit_time_s; on a
 /// rail that lasts over the border of two sweeps it goes on from where it was.
 struct RailedImuParams {
   double accel_m_s2 = 1e5;
   double force_sigma_m_s2 = 50.0;
   double rate_sigma_rad_s = 3.0;  ///< assumed for a rate on a clipped axis that the rate method did not recover
   bool estimate_deficit = false;
-  double excess_sigma_min_rad_s = 1.0;
-  double excess_time_s = 0.3;
-  double excess_carry_max = 3.0;    ///< over a border it grows by no more where less is known after it
-  double excess_knot_share = 0.05;  ///< of its standard deviation, by which a knot may differ from its neighbours
+  double deficit_sigma_min_rad_s = 1.0;
+  double deficit_time_s = 0.3;
+  double deficit_carry_max = 3.0;    ///< over a border it grows by no more where less is known after it
+  double deficit_knot_share = 0.05;  ///< of its standard deviation, by which a knot may differ from its neighbours
 
   template <class Self, class Visitor>
   static void fields(Self& p, Visitor& visit) {
@@ -123,15 +123,16 @@ struct RailedImuParams {
                                "assumed of a clipped axis that the rate method did not recover", Rank::first});
     visit(p.estimate_deficit, on_off("estimate_saturation_deficit",
                                      "1: by how much clipped axes are short is estimated in the registration"));
-    visit(p.excess_sigma_min_rad_s,
-          {"excess_sigma_min_rad_s", "rad/s", 1e-9, 100.0,
+    visit(p.deficit_sigma_min_rad_s,
+          {"deficit_sigma_min_rad_s", "rad/s", 1e-9, 100.0,
            "least prior of the saturation deficit of a clipped axis, whatever the rate method claims", Rank::first});
-    visit(p.excess_time_s,
-          {"excess_time_s", "s", 1e-3, 1e3, "over which the saturation deficit forgets what it was", Rank::first});
-    visit(p.excess_carry_max,
-          {"excess_carry_max", "1", 0.0, 1e3, "over the border of two sweeps the saturation deficit grows by no more"});
-    visit(p.excess_knot_share, {"excess_knot_share", "1", 1e-6, 1.0,
-                                "of the deficit's standard deviation, by which a knot may differ from its neighbours"});
+    visit(p.deficit_time_s,
+          {"deficit_time_s", "s", 1e-3, 1e3, "over which the saturation deficit forgets what it was", Rank::first});
+    visit(p.deficit_carry_max, {"deficit_carry_max", "1", 0.0, 1e3,
+                                "over the border of two sweeps the saturation deficit grows by no more"});
+    visit(p.deficit_knot_share,
+          {"deficit_knot_share", "1", 1e-6, 1.0,
+           "of the deficit's standard deviation, by which a knot may differ from its neighbours"});
   }
 };
 

@@ -61,19 +61,19 @@ struct MatchingParams {
   }
 };
 
-/// How much is spent on a registration, in steps: brief with all points; patient with some; coarse with few.
-struct RegistrationEffortParams {
-  int brief_iterations = 8;             ///< what has not settled by then is cheaper settled with some of the points
-  std::size_t patient_points = 1000;    ///< tell whether a start leads somewhere
+/// Stages of a registration: in full, with all points and few iterations; with a subsample until it converges; coarse.
+struct RegistrationStagesParams {
+  int full_iterations = 8;              ///< what has not settled by then is cheaper settled with some of the points
+  std::size_t subsample_points = 1000;  ///< tell whether a start leads somewhere
   int coarse_iterations = 15;           ///< of a start that may be far off
   std::size_t coarse_points = 300;      ///< serve one
   std::size_t coarse_matches_min = 50;  ///< fewer reject one
 
   template <class Self, class Visitor>
   static void fields(Self& p, Visitor& visit) {
-    visit(p.brief_iterations, {"brief_iterations", "1", 1, 200, "most iterations with all points"});
-    visit(p.patient_points,
-          {"patient_points", "1", 1, 1e9, "most points of a registration that runs to its convergence"});
+    visit(p.full_iterations, {"full_iterations", "1", 1, 200, "most iterations with all points"});
+    visit(p.subsample_points,
+          {"subsample_points", "1", 1, 1e9, "most points of a registration that runs to its convergence"});
     visit(p.coarse_iterations, {"coarse_iterations", "1", 1, 200, "most iterations from a start that may be far off"});
     visit(p.coarse_points, {"coarse_points", "1", 1, 1e9, "most points from such a start"});
     visit(p.coarse_matches_min, {"coarse_matches_min", "1", 0, 1e9, "fewer matches reject such a start"});
@@ -102,15 +102,15 @@ struct TrackingParams {
 
 /// Where a sweep is tried from that its prior did not place: docs/maths/mapping.md, sections 5 and 10.
 struct RelocalizationParams {
-  int excess_tries_max = 5;  ///< larger saturation deficits tried for one sweep, all axes together
-  int starts_per_sweep = 3;  ///< of a lost sensor, the prior among them
-  double shift_m = 1.0;      ///< such starts reach so far at first
-  double turn_rad = 0.3;     ///< likewise in attitude
-  int rounds = 3;            ///< each reaches that much further than the last
+  int deficit_tries_max = 5;  ///< larger saturation deficits tried for one sweep, all axes together
+  int starts_per_sweep = 3;   ///< of a lost sensor, the prior among them
+  double shift_m = 1.0;       ///< such starts reach so far at first
+  double turn_rad = 0.3;      ///< likewise in attitude
+  int rounds = 3;             ///< each reaches that much further than the last
 
   template <class Self, class Visitor>
   static void fields(Self& p, Visitor& visit) {
-    visit(p.excess_tries_max, {"excess_tries_max", "1", 0, 12, "larger saturation deficits tried for one sweep"});
+    visit(p.deficit_tries_max, {"deficit_tries_max", "1", 0, 12, "larger saturation deficits tried for one sweep"});
     visit(p.starts_per_sweep, {"starts_per_sweep", "1", 1, 100, "starts of a lost sensor, the prior among them"});
     visit(p.shift_m, {"shift_m", "m", 0.3, 100.0, "reach of such starts, first round"});
     visit(p.turn_rad, {"turn_rad", "rad", 0.1, 3.15, "reach of such starts in attitude, first round"});

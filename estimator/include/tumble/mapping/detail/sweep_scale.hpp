@@ -29,7 +29,7 @@ struct SweepScale {
 };
 
 /// Scale of a run's sweeps. Over two spans of 0.4 s in a row the mean velocities of the sweeps' ends differ by what the
-/// IMU has felt meanwhile, whatever velocity was before: gravity in flight, the ground's blows. The slope of the one
+/// IMU has felt meanwhile, whatever velocity was before: gravity in flight, the ground's impacts. The slope of the one
 /// over the other, robustly (Huber, 1964), is 1; ranges that are 10 % too long make it 1.1, less what the mapper
 /// believes the IMU. Attitudes are those of the run. Where the accelerometer was at its rail, or surfaces did not say
 /// where a sweep was, nothing is compared; its deviation is that of residuals as they are spread (White, 1980).

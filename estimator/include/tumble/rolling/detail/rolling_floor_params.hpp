@@ -15,8 +15,8 @@ struct RollingContactParams {
   double rough_radius_walk_m_sqrts = 1e-4;  ///< of the radius that it rolls with there
   double slope_sigma = 0.15;                ///< of the sines of a slope, when one begins
   double slope_walk_sqrts = 0.02;
-  double impact_share = 0.06;  ///< of the velocity that a shock gives: error of its timing and direction
-  /// A wheel that stays on the floor meets no blows: mean of what one may give in a node.
+  double impact_share = 0.06;  ///< of the velocity that an impact gives: error of its timing and direction
+  /// A wheel that stays on the floor meets no impacts: mean of what one may give in a node.
   double unexplained_impact_m_s = 0.03;
   double rest_velocity_sigma_m_s = 2e-3;
   double rest_rate_sigma_rad_s = 3e-3;  ///< of a node's mean rate at rest
@@ -35,9 +35,9 @@ struct RollingContactParams {
     visit(p.slope_sigma, {"slope_sigma", "1", 0.0, 1e3, "of the sines of a slope, when one begins"});
     visit(p.slope_walk_sqrts, {"slope_walk_sqrts", "sqrt(s)", 1e-12, 1e3, "random walk of the sines of a slope"});
     visit(p.impact_share,
-          {"impact_share", "1", 0.0, 1e3, "of the velocity that a shock gives: error of its timing and direction"});
+          {"impact_share", "1", 0.0, 1e3, "of the velocity that an impact gives: error of its timing and direction"});
     visit(p.unexplained_impact_m_s, {"unexplained_impact_m_s", "m/s", 1e-12, 1e3,
-                                     "mean of what a blow may give in a node while the wheel stays on the floor"});
+                                     "mean of what an impact may give in a node while the wheel stays on the floor"});
     visit(p.rest_velocity_sigma_m_s,
           {"rest_velocity_sigma_m_s", "m/s", 1e-12, 1e3, "of a node's mean velocity at rest"});
     visit(p.rest_rate_sigma_rad_s, {"rest_rate_sigma_rad_s", "rad/s", 1e-12, 1e3, "of a node's mean rate at rest"});

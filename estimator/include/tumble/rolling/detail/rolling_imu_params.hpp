@@ -68,8 +68,8 @@ struct RollingRailParams {
   /// Above zero: a rate beyond the range that no flag calls clipped was recovered (ImuMerge) to this.
   double recovered_rate_sigma_rad_s = 0.0;
   double clipped_force_sigma_m_s2 = 4.0;
-  /// A blow within one sample may have met the accelerometer's rail though its mean did not: sigma of what is missing
-  /// along the force, as a share of it; full from 0.6 of the range on, none up to 0.3.
+  /// An impact within one sample may have met the accelerometer's rail though its mean did not: sigma of what is
+  /// missing along the force, as a share of it; full from 0.6 of the range on, none up to 0.3.
   double subsample_saturation_share = 0.25;
 
   template <class Self, class Visitor>
@@ -82,7 +82,7 @@ struct RollingRailParams {
     visit(p.clipped_force_sigma_m_s2,
           {"clipped_force_sigma_m_s2", "m/s^2", 1e-12, 1e3, "how short a clipped force may be"});
     visit(p.subsample_saturation_share, {"subsample_saturation_share", "1", 0.0, 10.0,
-                                         "of a blow within one sample: what its mean may lack, as a share of it"});
+                                         "of an impact within one sample: what its mean may lack, as a share of it"});
   }
 };
 
