@@ -25,7 +25,7 @@ void reseal(Bytes& bytes) {
   put_number(checksum(all.subspan(kHeader), checksum(all.first(kChecksumAt))), kChecksumAt, bytes);
 }
 
-/// Of numbers, lengths, flags and enumerations.
+/// Of numbers, lengths, flags and enumerations; the last ones are parameters within most bounds, and at their ends.
 constexpr std::uint64_t kNumbers[] = {0,
                                       1,
                                       2,
@@ -36,7 +36,13 @@ constexpr std::uint64_t kNumbers[] = {0,
                                       0x7ff0000000000000u,
                                       0x7ff8000000000000u,
                                       0x7fe0000000000000u,
-                                      0x7f8000007f800000u};
+                                      0x7f8000007f800000u,
+                                      0x3ee4f8b588e368f1u,   // 1e-5
+                                      0x3ff0000000000000u,   // 1
+                                      0x4034000000000000u,   // 20
+                                      0x408f400000000000u,   // 1e3
+                                      0x40f86a0000000000u,   // 1e5
+                                      0x4197d78400000000u};  // 1e8
 
 void edit(std::span<const unsigned char> how, Bytes& bytes) {
   const std::uint32_t where = how[1] | how[2] << 8u | how[3] << 16u | std::uint32_t{how[4]} << 24u;
