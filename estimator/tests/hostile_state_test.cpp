@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cstdint>
 #include <limits>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -207,6 +208,29 @@ TYPED_TEST(HostileState, MadeUpNumbersNeverHurt) {
   }
   EXPECT_GT(refused, TypeParam::kTrials / 10);
   EXPECT_GT(taken, TypeParam::kTrials / 10);
+}
+
+/// Of a log that says readings again: their age is a place in the window.
+TEST(HostileHeldReadings, BeyondWhatIsHeldAreRefused) {
+  const CarriedLive::Params params = test::params_of_stream<CarriedLive>();
+  const CarriedLive stream(params);
+  CarriedLive::State good = stream.start();
+  std::optional<RateState> out;
+  for (std::size_t k = 0; k < 30; ++k) ASSERT_TRUE(stream.push(test::thrown_samples()[k], good, out).ok());
+  const auto field_with = [&](auto spoil) {
+    CarriedLive::State spoiled = good, loaded = good;
+    spoil(spoiled.stream.readings.back().gyro, spoiled.holds.memory[0]);
+    return std::string(load_state<CarriedLive>(save_state<CarriedLive>(params, spoiled), params, loaded).field);
+  };
+  using Memory = HoldWatch::Memory;
+  EXPECT_EQ(field_with([](HeldReading&, Memory&) {}), "") << "negative control";
+  EXPECT_EQ(field_with([](HeldReading& held, Memory&) { held.age_samples = 1e300; }), "held.age_samples");
+  EXPECT_EQ(field_with([](HeldReading& held, Memory&) { held.age_samples = -1.0; }), "held.age_samples");
+  EXPECT_EQ(field_with([](HeldReading& held, Memory&) { held.period_samples = 11.0; }), "held.period_samples");
+  EXPECT_EQ(field_with([](HeldReading& held, Memory&) { held.period_samples = 0.0; }), "held.period_samples");
+  EXPECT_EQ(field_with([](HeldReading&, Memory& memory) { memory.said = -1e300; }), "hold.said");
+  EXPECT_EQ(field_with([](HeldReading&, Memory& memory) { memory.moving = 1e300; }), "hold.moving");
+  EXPECT_EQ(field_with([](HeldReading&, Memory& memory) { memory.repeated = memory.moving + 1.0; }), "hold.repeated");
 }
 
 /// A second pass that is under way in a run that has not moved: what it counts from is not there.

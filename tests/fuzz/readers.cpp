@@ -225,6 +225,7 @@ constexpr std::array kReaders = {
     Reader{"estimate_rates", "rates.csv", estimate_rates},
     Reader{"estimate_json", "estimate.json", estimate_json},
     Reader{"saved_states", "edits", saved_states},
+    Reader{"saved_streams", "edits", saved_streams},
     Reader{"description", "a.yaml", description},
     Reader{"bench_results", "a.jsonl", bench_results},
 };

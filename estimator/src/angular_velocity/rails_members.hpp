@@ -1,7 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <limits>
+
 #include "../common/imu_members.hpp"
+#include "sample_hold_bounds.hpp"
 #include "tumble/angular_velocity/detail/hold_watch.hpp"
 #include "tumble/angular_velocity/detail/rail_watch.hpp"
 #include "tumble/angular_velocity/rest_detector.hpp"
@@ -30,17 +33,17 @@ void members(Self& s, Visitor& visit) {
 template <StateOf<HeldReading> Self, class Visitor>
 void members(Self& s, Visitor& visit) {
   visit("held.repeats", s.repeats);
-  visit("held.age_samples", s.age_samples);
-  visit("held.period_samples", s.period_samples);
+  visit("held.age_samples", s.age_samples, 0.0, sample_hold::kSlowest);
+  visit("held.period_samples", s.period_samples, 1.0, sample_hold::kSlowest);
   visit("held.change", s.change);
 }
 
 template <StateOf<HoldWatch::Memory> Self, class Visitor>
 void members(Self& s, Visitor& visit) {
   visit("hold.reading", s.reading);
-  visit("hold.said", s.said);
-  visit("hold.moving", s.moving);
-  visit("hold.repeated", s.repeated);
+  visit("hold.said", s.said, 0.0, std::numeric_limits<double>::max());
+  visit("hold.moving", s.moving, 0.0, 2.0 * sample_hold::kMovingMax);
+  visit("hold.repeated", s.repeated, 0.0, s.moving);
   visit("hold.now", s.now);
 }
 

@@ -6,18 +6,11 @@
 #include <span>
 #include <vector>
 
+#include "sample_hold_bounds.hpp"
 #include "tumble/angular_velocity/detail/triad.hpp"
 #include "tumble/common/imu.hpp"
 
 namespace tumble {
-
-/// Who holds readings, in a recording (find_held) and live (HoldWatch): samples in motion are looked at, so many at
-/// least and at most, of which this share repeats; what repeats for more steps of the log stands still, is blind or
-/// frozen.
-namespace sample_hold {
-inline constexpr double kMoving_rad_s = 0.3, kRepeatsMin = 0.05, kSlowest = 10.0, kAgreementMin = 0.9;
-inline constexpr std::size_t kMovingMin = 30, kMovingMax = 1000;
-}  // namespace sample_hold
 
 /// Readings of a triad whose own rate is below that of the log, so that some are said twice (sample and hold).
 struct HeldReadings {

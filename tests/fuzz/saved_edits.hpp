@@ -1,0 +1,57 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <cstddef>
+#include <filesystem>
+#include <optional>
+#include <stdexcept>
+#include <string>
+#include <tumble/common/status.hpp>
+#include <vector>
+
+#include "scenarios/errors.hpp"
+
+/// Saved states, spoiled by what a file says: the edits are of states that are made here and not of files, so that a
+/// seed stays good when the states change.
+namespace tumble::fuzz {
+
+using Bytes = std::vector<std::byte>;
+
+/// A letter that says of which class, and then edits, six bytes each: what (modulo 5), where (4 bytes, little-endian,
+/// modulo the size), by which byte.
+struct Edits {
+  char letter = 0;    ///< the capital of what the file begins with
+  bool told = false;  ///< it was a small one: the parameters are those that the bytes tell, spoiled as they are
+  std::string text;
+
+  /// Length and checksum are made to fit again, since no fuzzer would find them. BadInput where an edit is not whole.
+  Bytes spoil(Bytes saved) const;
+};
+/// BadInput where there is not even a letter.
+Edits read_edits(const std::filesystem::path& file);
+
+/// BadInput where a class refuses a spoiled state of its own, by a Status or, of parameters, by InvalidParams; what it
+/// takes has to say the same when it is saved again, and go on. `Kind`: Door, params(), saved(), saved_params() and
+/// go_on(), and modest(), which says of parameters whether what they set aside is worth a fuzzer's while.
+template <class Kind>
+void load_spoiled(const Edits& edits) {
+  const auto refuse = [](const Status& status) {
+    if (!status.ok()) throw scenarios::BadInput(status.message());
+  };
+  static const Bytes saved = Kind::saved();
+  const Bytes bytes = edits.spoil(saved);
+  typename Kind::Door::Params params = Kind::params();
+  if (edits.told) refuse(Kind::saved_params(bytes, params));
+  if (!Kind::modest(params)) throw scenarios::BadInput("too much memory");
+  std::optional<typename Kind::Door> door;
+  try {
+    door.emplace(params);
+  } catch (const InvalidParams& error) {
+    throw scenarios::BadInput(error.what());
+  }
+  refuse(door->load(bytes));
+  if (door->save() != bytes) throw std::logic_error("a state that was loaded is another one when it is saved");
+  Kind::go_on(*door);
+}
+
+}  // namespace tumble::fuzz

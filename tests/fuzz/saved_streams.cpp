@@ -1,0 +1,75 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <concepts>
+#include <cstddef>
+#include <vector>
+
+#include "estimator/tests/kept_stream.hpp"
+#include "tests/fuzz/saved_edits.hpp"
+#include "tests/fuzz/saved_states.hpp"
+
+namespace tumble::fuzz {
+
+namespace {
+
+/// In motion, and where the window is full.
+template <class Stream>
+struct Streaming {
+  struct Door : test::Kept<Stream> {
+    using Params = typename Stream::Params;
+    using test::Kept<Stream>::Kept;
+  };
+  static constexpr std::size_t kSome = test::kRolls<Stream> ? 500 : 150, kMore = 8;
+
+  /// With short windows, which are quick.
+  static typename Door::Params params() {
+    const auto shorten = [](CarriedStream::Params& carried) {
+      carried.lag_s = 0.05;
+      carried.window_s = 0.15;
+    };
+    typename Door::Params params = test::params_of_stream<Stream>();
+    if constexpr (std::same_as<Stream, CarriedStream>) shorten(params);
+    if constexpr (std::same_as<Stream, CarriedLive>) shorten(params.stream);
+    return params;
+  }
+  static bool modest(const typename Door::Params&) { return true; }
+  static Status saved_params(const Bytes& bytes, typename Door::Params& params) {
+    return tumble::saved_params<Stream>(bytes, params);
+  }
+  static const std::vector<ImuSample>& samples() {
+    static const std::vector<ImuSample> kSamples = test::samples_of_stream<Stream>();
+    return kSamples;
+  }
+  static Bytes saved() {
+    Door door(params());
+    for (std::size_t k = 0; k < kSome; ++k) (void)door.push(samples()[k]);
+    return door.save();
+  }
+  static void go_on(Door& door) {
+    for (std::size_t k = kSome; k < kSome + kMore; ++k) (void)door.push(samples()[k]);
+    door.end();
+  }
+};
+
+}  // namespace
+
+void saved_streams(const std::filesystem::path& file) {
+  const Edits edits = read_edits(file);
+  switch (edits.letter) {
+    case 'R':
+      return load_spoiled<Streaming<RateStream>>(edits);
+    case 'G':
+      return load_spoiled<Streaming<RegimeStream>>(edits);
+    case 'C':
+      return load_spoiled<Streaming<CarriedStream>>(edits);
+    case 'L':
+      return load_spoiled<Streaming<CarriedLive>>(edits);
+    case 'F':
+      return load_spoiled<Streaming<RollingFilter>>(edits);
+    case 'S':
+      return load_spoiled<Streaming<RollingSmoother>>(edits);
+    default:
+      throw scenarios::BadInput("none of R, G, C, L, F and S");
+  }
+}
+
+}  // namespace tumble::fuzz
