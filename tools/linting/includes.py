@@ -21,7 +21,7 @@ _HEADERS = {
         reverse reverse_copy rotate search set_difference set_union sort stable_partition stable_sort transform unique upper_bound ranges""",
     "atomic": "atomic",
     "bit": "bit_cast bit_ceil countr_zero endian popcount",
-    "cctype": "isalnum isalpha isdigit tolower",
+    "cctype": "isalnum isalpha isdigit islower tolower toupper",
     "charconv": "from_chars to_chars",
     "chrono": "chrono milli",
     "cmath": """acos asin atan atan2 atanh cbrt ceil comp_ellint_1 copysign cos ellint_1 erfc exp expm1 floor fmax fmod hypot
