@@ -26,8 +26,7 @@ struct WindowRate {
 /// Appends samples from the end of `before` to the start of `after`: the rate goes from one to the other in a straight
 /// line, with the deviation of a random walk that is known at both ends; mapping.md (R100). All axes count as clipped,
 /// so that a registration which estimates the saturation deficit estimates what the line is off by. The force is not
-/// known
-/// (`bridges_gap`). Steps of 10 ms, longer ones over gaps beyond 0.64 s.
+/// known (`bridges_gap`). Steps of 10 ms, longer ones over gaps beyond 0.64 s.
 void bridge_gap(const InertialNoiseParams& params, const WindowRate& before, const WindowRate& after,
                 std::vector<MotionSample>& samples);
 

@@ -73,8 +73,10 @@ void InertialTrack::take(const Params& params, const ImuSample& sample, const Ra
   next.railed_axes = railed_axes(params, sample);
   const bool after_gap = next.time_ns - next.from_ns > kGap_ns;
   // a reading is of its own window, which is as long as the one before the gap
-  if (after_gap && newest_ && !next.at_rest) next.from_ns = next.time_ns - (newest_->time_ns - newest_->from_ns);
+  if (after_gap && newest_ && !next.at_rest)
+    next.from_ns = std::max(from_ns, next.time_ns - (newest_->time_ns - newest_->from_ns));
   next.bridges_gap = after_gap && next.from_ns == from_ns;
+  if (next.bridges_gap) next.rate_sigma_rad_s.setConstant(params.expert.prior.rate_sigma_max_rad_s);
   const bool in_flight = params.expert.flight.body && !samples_.empty() && settle_force(params, next, after_gap);
   before_newest_ = newest_;
   newest_ = rate_of(next);

@@ -146,5 +146,25 @@ TEST(InertialTrack, AFlightGoesOnThroughAGapThatItsRateBearsOut) {
   EXPECT_NEAR(struck[struck.size() / 2].w_WI_I_rad_s.y(), 5.5, 0.2);
 }
 
+// The window before a gap may itself be a gap, at rest: no sample reaches back into the one before it.
+TEST(InertialTrack, SamplesDoNotOverlapWhateverTheirWindows) {
+  Listener listener;
+  listener.hear(30, Eigen::Vector3d::Zero());
+  listener.now_ns += 290'000'000;
+  listener.hear(1, Eigen::Vector3d::Zero());
+  listener.now_ns += 110'000'000;
+  listener.hear(1, Eigen::Vector3d(0.0, 3.0, 0.0));
+  listener.now_ns += 190'000'000;
+  listener.hear(3, Eigen::Vector3d(0.0, 3.0, 0.0));
+  const auto samples = listener.track.samples();
+  ASSERT_GT(samples.size(), 30u);
+  for (std::size_t k = 1; k < samples.size(); ++k) EXPECT_EQ(samples[k].from_ns, samples[k - 1].time_ns) << k;
+  EXPECT_TRUE(std::any_of(samples.begin(), samples.end(), [](const MotionSample& s) { return s.bridges_gap; }));
+  for (const MotionSample& sample : samples) {
+    if (!sample.bridges_gap) continue;
+    EXPECT_GT(sample.rate_sigma_rad_s.minCoeff(), 0.1);
+  }
+}
+
 }  // namespace
 }  // namespace tumble::mapping
