@@ -214,6 +214,22 @@ TEST(RestGravity, WhatTheAccelerometersRailHidIsAllowed) {
   EXPECT_FALSE(struck(RestGravity({.accel_range_m_s2 = 2.0 * kRange_m_s2}), false).ok());
 }
 
+// What the body did while nothing was read is not known: such a way compares nothing, however well its ends are read.
+TEST(RestGravity, OfAWayWithAGapNothingIsSaid) {
+  const auto silent_for = [](TimeNs gap_ns) {
+    return Harm([gap_ns](ImuSample& sample) {
+      if (sample.time_ns >= 3'000'000'000 && sample.time_ns < 3'000'000'000 + gap_ns)
+        sample.specific_force_m_s2.x() = std::numeric_limits<double>::quiet_NaN();  // passed over
+    });
+  };
+  EXPECT_EQ(after({}, silent_for(300'000'000)).ways, 0u);
+  EXPECT_EQ(after({}, silent_for(80'000'000)).ways, 1u);
+  // negative control: as if what is read after the gap had been so all along
+  RestGravity::Params believed;
+  believed.gap_max_s = 1.0;
+  EXPECT_EQ(after({}, silent_for(300'000'000), 1.0, believed).ways, 1u);
+}
+
 TEST(RestGravity, OfOneRestOrATurnAboutTheVerticalNothingIsSaid) {
   const RestGravity gravity({});
   EXPECT_TRUE(gravity.verdict({}).ok());

@@ -38,7 +38,7 @@ class RestGravity {
     double correlation_s = 0.1;     ///< for which errors of a rate last at least
     double turned_least_rad = 1.0;  ///< of the way between two rests, to count
     double way_most_s = 60.0;       ///< likewise: in so long a good gyro's bias turns by a part of `miss_most_rad`
-    double gap_max_s = 1.0;         ///< a longer gap parts the rests
+    double gap_max_s = 0.1;         ///< a longer gap parts the rests: an impact inside of it turns a rate by rad/s
     double accel_range_m_s2 = 0.0;  ///< as the device states it; 0: not stated
 
     /// Every number of it, stated once.
