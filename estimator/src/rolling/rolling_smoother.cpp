@@ -13,6 +13,8 @@ namespace tumble {
 
 namespace {
 
+// Samples and nodes for which storage is set aside at most: of a longer lag it grows as the run does.
+constexpr std::size_t kSetAsideMost = 1'000'000;
 constexpr std::size_t kBeyondStorage = 4;  // samples that a run may have, by those that storage is set aside for
 
 RollingParams quieter(RollingParams params, double share) {
@@ -196,8 +198,8 @@ Status RollingSmoother::check_state(const State& state) const {
 
 Status RollingSmoother::step(const ImuSample& sample, State& state, std::vector<RollingEstimate>& out) const {
   if (!state.live.started && params_.lag_s < kWholeRun) {
-    state.steps.reserve(lag_nodes_ + block_nodes_ + 1);
-    state.samples.reserve(samples_set_aside());
+    state.steps.reserve(std::min(lag_nodes_ + block_nodes_ + 1, kSetAsideMost));
+    state.samples.reserve(std::min(samples_set_aside(), kSetAsideMost));
   }
   const auto closed = [&steps = state.steps](const RollingFilter::State& live) {
     Step step;

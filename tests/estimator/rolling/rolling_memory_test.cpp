@@ -86,6 +86,23 @@ TEST(RollingMemory, AWholeRunHoldsLittleForEachNode) {
   EXPECT_LT(two.at_the_end, 5e6);
 }
 
+// A lag of three years is within its bound: storage for it is not set aside at once.
+TEST(RollingMemory, ALagBeyondAllRunsTakesNoMoreThanARun) {
+  RollingSmoother::Params params;
+  params.filter.radius_m = testing::kRadius_m;
+  params.filter.lever_arm_m = kLeverArm;
+  params.lag_s = 0.1 * RollingSmoother::kWholeRun;
+  const RollingSmoother smoother(params);
+  const testing::RollingTruth truth = way(2.0);
+  std::vector<RollingEstimate> out;
+  const std::size_t before = held;
+  const auto state = std::make_unique<RollingSmoother::State>();
+  for (const ImuSample& sample : truth.samples) ASSERT_TRUE(smoother.step(sample, *state, out).ok());
+  EXPECT_TRUE(out.empty());
+  EXPECT_LT(held - before, 300u << 20);  // a million samples and nodes
+  EXPECT_GT(held - before, 100u << 20) << "the bound says nothing any more";
+}
+
 /// All that the last pass tells of a way, in one row.
 std::vector<double> told(std::span<const ImuSample> samples, std::span<const rolling::PathNode> path,
                          std::optional<rolling::LastPass::Distance> distance, std::size_t segment) {

@@ -104,9 +104,9 @@ class RollingSmoother {
 
   /// Takes a sample; appends estimates that are old enough to `out`, if any. On trouble the state is unchanged. Storage
   /// for the lag is set aside with the first sample; no allocation later but by `out` and the work of a block, and,
-  /// beyond rate_max_hz or with kWholeRun, as the run grows (64 bytes per sample, 152 per node). The work of a block is
-  /// done in the sample that ends it; it holds some 14 KiB for each node of lag and block, or 4 MiB and 0.3 KiB for
-  /// each node where they are many.
+  /// beyond rate_max_hz, a million samples or with kWholeRun, as the run grows (64 bytes per sample, 152 per node). The
+  /// work of a block is done in the sample that ends it; it holds some 14 KiB for each node of lag and block, or 4 MiB
+  /// and 0.3 KiB for each node where they are many.
   Status step(const ImuSample& sample, State& state, std::vector<RollingEstimate>& out) const;
 
   /// Gives the estimates that are still owed, one after the other in the order of time, all smoothed with what there
