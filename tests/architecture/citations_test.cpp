@@ -5,7 +5,6 @@
 #include <gtest/gtest.h>
 
 #include <filesystem>
-#include <fstream>
 #include <map>
 #include <regex>
 #include <set>
@@ -13,11 +12,13 @@
 #include <string>
 #include <vector>
 
+#include "tests/architecture/text_of.hpp"
 #include "tests/tree.hpp"
 
 namespace {
 
 namespace fs = std::filesystem;
+using tumble::test::text_of;
 
 /// Name of a note -> the numbers of the equations that it defines.
 using Notes = std::map<std::string, std::set<std::string>>;
@@ -25,12 +26,6 @@ using Notes = std::map<std::string, std::set<std::string>>;
 struct Citation {
   std::string note, equation;
 };
-
-std::string text_of(const fs::path& file) {
-  std::ostringstream out;
-  out << std::ifstream(file).rdbuf();
-  return out.str();
-}
 
 /// Lines of prose that end in a number mention an equation; those of the note's equations are indented.
 std::multiset<std::string> definitions_in(const std::string& text) {

@@ -7,24 +7,19 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
-#include <fstream>
 #include <regex>
 #include <set>
 #include <sstream>
 #include <string>
 #include <vector>
 
+#include "tests/architecture/text_of.hpp"
 #include "tests/tree.hpp"
 
 namespace {
 
 namespace fs = std::filesystem;
-
-std::string text_of(const fs::path& file) {
-  std::ostringstream out;
-  out << std::ifstream(file).rdbuf();
-  return out.str();
-}
+using tumble::test::text_of;
 
 std::vector<std::string> all_of(const std::string& text, const char* pattern) {
   const std::regex wanted(pattern, std::regex::icase);

@@ -6,26 +6,20 @@
 #include <algorithm>
 #include <cstddef>
 #include <filesystem>
-#include <fstream>
 #include <map>
 #include <regex>
 #include <set>
-#include <sstream>
 #include <string>
 #include <vector>
 
+#include "tests/architecture/text_of.hpp"
 #include "tests/tree.hpp"
 
 namespace {
 
 namespace fs = std::filesystem;
+using tumble::test::text_of;
 using Names = std::set<std::string>;
-
-std::string text_of(const fs::path& file) {
-  std::ostringstream out;
-  out << std::ifstream(file).rdbuf();
-  return out.str();
-}
 
 /// What the first group of a pattern finds.
 Names found_in(const std::string& text, const char* pattern) {

@@ -7,7 +7,6 @@
 #include <array>
 #include <cctype>
 #include <filesystem>
-#include <fstream>
 #include <regex>
 #include <set>
 #include <sstream>
@@ -15,20 +14,16 @@
 #include <string_view>
 #include <vector>
 
+#include "tests/architecture/text_of.hpp"
 #include "tests/tree.hpp"
 
 namespace {
 
 namespace fs = std::filesystem;
+using tumble::test::text_of;
 
 /// Words that no name has as a part any more; what each is called now: the glossary and CHANGELOG.md.
 constexpr std::array kGiven = {"companion", "excess", "stretch", "stretches", "surprise", "thrust"};
-
-std::string text_of(const fs::path& file) {
-  std::ostringstream out;
-  out << std::ifstream(file).rdbuf();
-  return out.str();
-}
 
 /// Names with an underscore in the first column of the tables "was | is": those of one word may mean something else.
 std::set<std::string> old_names(const std::string& changelog) {

@@ -43,8 +43,6 @@ struct Tumbling {
     params.lag_s = 0.03;
     return params;
   }
-  static bool modest(const Door::Params&) { return true; }
-  static Status saved_params(const Bytes& bytes, Door::Params& params) { return Door::saved_params(bytes, params); }
   static Bytes saved() {
     Door odometry(params());
     for (int k = 1; k < 20; ++k) (void)odometry.add_imu(sample_at(k));
@@ -70,8 +68,6 @@ struct Rolling {
     params.units.resize(1);
     return params;
   }
-  static bool modest(const Door::Params&) { return true; }
-  static Status saved_params(const Bytes& bytes, Door::Params& params) { return Door::saved_params(bytes, params); }
   static Bytes saved() {
     Door odometry(params());
     for (int k = 1; k < 20; ++k) (void)odometry.add_imu(sample_at(k));

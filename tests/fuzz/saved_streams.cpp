@@ -17,6 +17,10 @@ struct Streaming {
   struct Door : test::Kept<Stream> {
     using Params = typename Stream::Params;
     using test::Kept<Stream>::Kept;
+
+    static Status saved_params(const Bytes& bytes, Params& params) {
+      return tumble::saved_params<Stream>(bytes, params);
+    }
   };
   static constexpr std::size_t kSome = test::kRolls<Stream> ? 500 : 150, kMore = 8;
 
@@ -30,10 +34,6 @@ struct Streaming {
     if constexpr (std::same_as<Stream, CarriedStream>) shorten(params);
     if constexpr (std::same_as<Stream, CarriedLive>) shorten(params.stream);
     return params;
-  }
-  static bool modest(const typename Door::Params&) { return true; }
-  static Status saved_params(const Bytes& bytes, typename Door::Params& params) {
-    return tumble::saved_params<Stream>(bytes, params);
   }
   static const std::vector<ImuSample>& samples() {
     static const std::vector<ImuSample> kSamples = test::samples_of_stream<Stream>();
