@@ -24,6 +24,7 @@ option(TUMBLE_EIGEN_NAN "Initialise Eigen matrices to NaN, so that use before as
 option(TUMBLE_WARNINGS_AS_ERRORS "Warnings fail the build" OFF)
 option(TUMBLE_PRECOMPILE "Parse the headers that nearly every file includes once per library, and once for all tests" OFF)
 option(TUMBLE_LIGHT "Every target as LIGHT: fast to compile" OFF)
+option(TUMBLE_UNITY "Compile the sources of a target some at a time" OFF)
 option(TUMBLE_ACCELERATE "Compile through ccache and link with mold, where they are there" OFF)
 set(TUMBLE_SANITIZE "" CACHE STRING "Sanitizers, comma separated: address,undefined,fuzzer-no-link (Clang alone) or thread")
 
@@ -35,6 +36,9 @@ function(tumble_target target)
   target_compile_features(${target} PUBLIC cxx_std_20)
   tumble_accelerate(${target})
   set_target_properties(${target} PROPERTIES CXX_EXTENSIONS OFF POSITION_INDEPENDENT_CODE ON)
+  if(TUMBLE_UNITY)  # what sources instantiate alike is instantiated once: no two of a target give one name to two things
+    set_target_properties(${target} PROPERTIES UNITY_BUILD ON UNITY_BUILD_BATCH_SIZE 8)
+  endif()
   # -Wrestrict of GCC 12 cries wolf at every concatenation of strings (GCC bug 105329)
   # no contraction into fused multiply-add: the same source gives the same bits on every x86-64
   target_compile_options(${target} PRIVATE -Wall -Wextra -Wshadow -Wnon-virtual-dtor -Woverloaded-virtual

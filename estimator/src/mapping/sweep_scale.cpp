@@ -14,7 +14,7 @@ namespace tumble {
 
 namespace {
 
-constexpr double kLeast = 0.02, kDeviations = 5.0;
+constexpr double kLeast = 0.02, kScaleDeviations = 5.0;
 // The mapper's prior is that of the IMU: over 0.1 s ranges that are 10 % long come out as 1.02 to 1.03, over 0.4 s as
 // 1.08, and good ones as 0.998 to 1.006.
 constexpr double kSpan_s = 0.4;
@@ -130,12 +130,12 @@ SweepScale fit(const Changes& changes) {
 }  // namespace
 
 bool SweepScale::is_off() const {
-  return std::abs(scale - 1.0) > std::max(kLeast, kDeviations * sigma);
+  return std::abs(scale - 1.0) > std::max(kLeast, kScaleDeviations * sigma);
 }
 
 Status SweepScale::verdict() const {
   if (!is_off()) return {};
-  const double bound = std::max(kLeast, kDeviations * sigma);
+  const double bound = std::max(kLeast, kScaleDeviations * sigma);
   return {Trouble::out_of_range, "scale of the lidar's ranges by what the IMU feels", scale,
           scale > 1.0 ? 1.0 + bound : 1.0 - bound};
 }
