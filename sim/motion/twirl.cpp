@@ -44,12 +44,12 @@ struct Stroke {
 
   /// Turned so far, in closed form.
   double angle_rad(double time_s) const {
-    constexpr double kPi = std::numbers::pi, kFall = 1.0 - kRise;
+    constexpr double kFall = 1.0 - kRise;
     const double u = std::clamp((time_s - start_s) / length_s, 0.0, 1.0);
     const double rise = std::min(u, kRise), fall = std::max(u - kRise, 0.0);
     return peak_rad_s * length_s *
-           (0.5 * rise - kRise / (2.0 * kPi) * std::sin(kPi * rise / kRise) + 0.5 * fall +
-            kFall / (2.0 * kPi) * std::sin(kPi * fall / kFall));
+           (0.5 * rise - kRise / (2.0 * std::numbers::pi) * std::sin(std::numbers::pi * rise / kRise) + 0.5 * fall +
+            kFall / (2.0 * std::numbers::pi) * std::sin(std::numbers::pi * fall / kFall));
   }
 };
 
