@@ -6,19 +6,13 @@
 #include <vector>
 
 #include "thrown_body.hpp"
+#include "thrown_params.hpp"
 #include "tumble/tumble.hpp"
 
 namespace tumble {
 namespace {
 
 using test::ThrownBody;
-
-TumblingOdometry::Params params_of(const ThrownBody& body) {
-  TumblingOdometry::Params params;
-  params.imu.rate_hz = body.imu_hz;
-  params.lever_arm_I_m = body.lever_arm_I_m;
-  return params;
-}
 
 /// Sweeps that begin within the span see nothing.
 void run(const ThrownBody& body, double blind_from_s, double blind_to_s, TumblingOdometry& odometry) {

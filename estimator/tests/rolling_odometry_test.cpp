@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "live_readings.hpp"
 #include "rolled_sphere.hpp"
 #include "tumble/tumble.hpp"
 
@@ -118,19 +119,6 @@ TEST(RollingOdometry, ARailThatNoFlagTellsIsSeenByTheReadings) {
   }
 }
 
-/// Readings of a sensor that is alive: no two are the same to the last bit.
-std::vector<ImuSample> noisy(std::vector<ImuSample> unit) {
-  std::uint32_t drawn = 1;
-  const auto draw = [&] { return static_cast<double>((drawn = 1664525 * drawn + 1013904223) >> 8) / 16777216.0 - 0.5; };
-  for (ImuSample& sample : unit) {
-    for (int axis = 0; axis < 3; ++axis) {
-      sample.angular_velocity_rad_s[axis] += 2e-3 * draw();
-      sample.specific_force_m_s2[axis] += 2e-2 * draw();
-    }
-  }
-  return unit;
-}
-
 /// Its gyro's y, about which the sphere rolls, dies when it begins to turn.
 std::vector<ImuSample> frozen_y(std::vector<ImuSample> unit) {
   const std::size_t from = unit.size() / 3;
@@ -144,7 +132,7 @@ std::vector<ImuSample> frozen_y(std::vector<ImuSample> unit) {
 TEST(RollingOdometry, AUnitOfWhichAnAxisFreezesIsLeftOutAndNamed) {
   const std::vector<Eigen::Vector3d> places_m(kPlaces.begin(), kPlaces.end());
   std::vector<std::vector<ImuSample>> units;
-  for (const Eigen::Vector3d& place_m : places_m) units.push_back(noisy(unit_at(place_m)));
+  for (const Eigen::Vector3d& place_m : places_m) units.push_back(test::noisy(unit_at(place_m)));
   RollingOdometry sound(params_of(places_m)), harmed(params_of(places_m));
   for (std::size_t k = 0; k < units[0].size(); ++k) {
     ASSERT_TRUE(sound.add_imus(std::vector<ImuSample>{units[0][k], units[1][k], units[2][k]}).ok());
@@ -161,7 +149,7 @@ TEST(RollingOdometry, AUnitOfWhichAnAxisFreezesIsLeftOutAndNamed) {
 TEST(RollingOdometry, TheOnlyUnitIsRefusedWithTheNameOfItsFrozenAxis) {
   RollingOdometry odometry(params_of({kPlaces[0]}));
   Status status;
-  for (const ImuSample& sample : frozen_y(noisy(unit_at(kPlaces[0])))) {
+  for (const ImuSample& sample : frozen_y(test::noisy(unit_at(kPlaces[0])))) {
     if (!(status = odometry.add_imu(sample)).ok()) break;
   }
   EXPECT_EQ(status.trouble, Trouble::out_of_range);
@@ -195,7 +183,7 @@ TEST(RollingOdometry, RefusesParametersOutOfTheirBounds) {
   RollingOdometry::Params params = params_of(kPlaces);
   params.radius_m = 0.0;
   EXPECT_THROW(RollingOdometry{params}, InvalidParams);
-  params = params_of({});
+  params = params_of(std::vector<Eigen::Vector3d>{});
   EXPECT_THROW(RollingOdometry{params}, InvalidParams);
   params = params_of(kPlaces);
   params.lag_s = -1.0;

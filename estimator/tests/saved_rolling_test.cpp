@@ -37,7 +37,7 @@ Sphere three_units(double lag_s) {
   return out;
 }
 
-void feed(const Sphere& sphere, std::size_t from, std::size_t to, RollingOdometry& odometry, Poses& poses) {
+void feed_units(const Sphere& sphere, std::size_t from, std::size_t to, RollingOdometry& odometry, Poses& poses) {
   for (std::size_t k = from; k < to; ++k) {
     std::vector<ImuSample> now;
     for (const std::vector<ImuSample>& unit : sphere.units) now.push_back(unit[k]);
@@ -47,24 +47,24 @@ void feed(const Sphere& sphere, std::size_t from, std::size_t to, RollingOdometr
   }
 }
 
-void finish(RollingOdometry& odometry, Poses& poses) {
+void finish_rolling(RollingOdometry& odometry, Poses& poses) {
   odometry.finish();
   while (const std::optional<RollingOdometry::Pose> pose = odometry.take()) poses.push_back(*pose);
 }
 
-void expect_splits(const Sphere& sphere, const std::vector<std::size_t>& splits) {
+void expect_rolling_splits(const Sphere& sphere, const std::vector<std::size_t>& splits) {
   const std::size_t count = sphere.units[0].size();
   RollingOdometry whole(sphere.params);
   Poses told;
   std::vector<std::vector<std::byte>> saved;
   std::size_t k = 0;
   for (const std::size_t split : splits) {
-    feed(sphere, k, split, whole, told);
+    feed_units(sphere, k, split, whole, told);
     saved.push_back(whole.save());
     k = split;
   }
-  feed(sphere, k, count, whole, told);
-  finish(whole, told);
+  feed_units(sphere, k, count, whole, told);
+  finish_rolling(whole, told);
   for (std::size_t i = 0; i < splits.size(); ++i) {
     SCOPED_TRACE(testing::Message() << "split at " << splits[i]);
     RollingOdometry rebooted(sphere.params);
@@ -72,8 +72,8 @@ void expect_splits(const Sphere& sphere, const std::vector<std::size_t>& splits)
     ASSERT_TRUE(status.ok()) << status.message();
     EXPECT_EQ(rebooted.save(), saved[i]);
     Poses late;
-    feed(sphere, splits[i], count, rebooted, late);
-    finish(rebooted, late);
+    feed_units(sphere, splits[i], count, rebooted, late);
+    finish_rolling(rebooted, late);
     ASSERT_LE(late.size(), told.size());
     for (std::size_t p = 0; p < late.size(); ++p) {
       const RollingOdometry::Pose &a = told[told.size() - late.size() + p], &b = late[p];
@@ -92,11 +92,11 @@ void expect_splits(const Sphere& sphere, const std::vector<std::size_t>& splits)
 const std::vector<std::size_t> kSplits = {1, 200, 600, 674, 675, 676, 760, 800};
 
 TEST(SavedRollingOdometry, GoesOnFromAnywhereWithALag) {
-  expect_splits(three_units(0.3), kSplits);
+  expect_rolling_splits(three_units(0.3), kSplits);
 }
 
 TEST(SavedRollingOdometry, GoesOnFromAnywhereLive) {
-  expect_splits(three_units(0.0), {1, 200, 600, 675, 800});
+  expect_rolling_splits(three_units(0.0), {1, 200, 600, 675, 800});
 }
 
 TEST(SavedRollingOdometry, PosesThatNobodyTookAndAnEndAreKept) {
@@ -124,8 +124,8 @@ TEST(SavedRollingOdometry, AnEndAfterAGapIsKept) {
   for (const std::size_t end : {674u, 675u, 676u, 700u, 740u, 760u, 780u}) {
     RollingOdometry one(sphere.params), other(sphere.params);
     Poses told, same;
-    feed(sphere, 0, end, one, told);
-    finish(one, told);
+    feed_units(sphere, 0, end, one, told);
+    finish_rolling(one, told);
     const Status status = other.load(one.save());
     ASSERT_TRUE(status.ok()) << end << ": " << status.message();
     EXPECT_EQ(other.save(), one.save()) << end;

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "thrown_body.hpp"
+#include "thrown_params.hpp"
 #include "tumble/tumble.hpp"
 
 namespace tumble {
@@ -125,10 +126,8 @@ void expect_splits(const TumblingOdometry::Params& params, const Heard& heard, c
   }
 }
 
-TumblingOdometry::Params params_of(const ThrownBody& body) {
-  TumblingOdometry::Params params;
-  params.imu.rate_hz = body.imu_hz;
-  params.lever_arm_I_m = body.lever_arm_I_m;
+TumblingOdometry::Params one_pass(const ThrownBody& body) {
+  TumblingOdometry::Params params = params_of(body);
   params.expert.again.after_s = 0.0;
   return params;
 }
@@ -142,13 +141,13 @@ bool always(const TumblingOdometry&) {
 
 TEST(SavedTumblingOdometry, GoesOnFromRestAndFromFlightWithAClippedGyro) {
   const ThrownBody body;
-  expect_splits(params_of(body), heard(body),
+  expect_splits(one_pass(body), heard(body),
                 {{1, always}, {60, [](const TumblingOdometry& o) { return !gyro_clips(o); }}, {183, gyro_clips}});
 }
 
 TEST(SavedTumblingOdometry, GoesOnInTheMiddleOfTheSecondPass) {
   const ThrownBody body;
-  TumblingOdometry::Params params = params_of(body);
+  TumblingOdometry::Params params = one_pass(body);
   params.lever_arm_I_m += Eigen::Vector3d(0.006, -0.006, 0.006);
   params.expert.again.after_s = 0.9;
   expect_splits(params, heard(body),
@@ -166,13 +165,13 @@ TEST(SavedTumblingOdometry, GoesOnWhileItIsLost) {
           point.position_L_m.cwiseAbs().cwiseProduct(Eigen::Vector3f(1.0f, 0.37f, 0.71f));  // another world
   }
   std::size_t seen_lost = 0;
-  TumblingOdometry probe(params_of(body));
+  TumblingOdometry probe(one_pass(body));
   Told told;
   feed(lost, 0, 240, probe, told);
   for (const auto& sweep : told.sweeps) seen_lost += sweep.report.verdict == SweepVerdict::rejected;
   ASSERT_GT(seen_lost, 0u) << "else this test asks nothing";
   ASSERT_EQ(told.sweeps.back().report.verdict, SweepVerdict::rejected);
-  expect_splits(params_of(body), lost, {{240, always}});
+  expect_splits(one_pass(body), lost, {{240, always}});
 }
 
 TEST(SavedTumblingOdometry, GoesOnInAGapAndWithSweepsThatNobodyTook) {
@@ -182,11 +181,11 @@ TEST(SavedTumblingOdometry, GoesOnInAGapAndWithSweepsThatNobodyTook) {
   Heard gapped = heard(body);
   std::erase_if(gapped.imu, [](const ImuSample& s) { return s.time_ns > 1'500'000'000 && s.time_ns < 3'200'000'000; });
   // one sample after the gap is held back; the next will bear it out
-  expect_splits(params_of(body), gapped,
+  expect_splits(one_pass(body), gapped,
                 {{151, [](const TumblingOdometry& o) { return o.gaps() == 0; }},
                  {152, [](const TumblingOdometry& o) { return o.gaps() == 1; }}});
 
-  TumblingOdometry first(params_of(body)), second(params_of(body));
+  TumblingOdometry first(one_pass(body)), second(one_pass(body));
   for (std::size_t k = 0; k < 100; ++k) ASSERT_TRUE(first.add_imu(gapped.imu[k]).ok());
   ASSERT_TRUE(first.add_sweep(0, 1'000'000, {}).ok());
   const std::vector<LidarPoint> misses(
@@ -209,7 +208,7 @@ TEST(SavedTumblingOdometry, GoesOnInAGapAndWithSweepsThatNobodyTook) {
 
 TEST(SavedTumblingOdometry, ANewOneIsAsItWas) {
   const ThrownBody body;
-  TumblingOdometry one(params_of(body)), other(params_of(body));
+  TumblingOdometry one(one_pass(body)), other(one_pass(body));
   ASSERT_TRUE(other.load(one.save()).ok());
   EXPECT_EQ(other.save(), one.save());
   ASSERT_TRUE(one.add_imu(body.imu()[0]).ok());
@@ -218,7 +217,7 @@ TEST(SavedTumblingOdometry, ANewOneIsAsItWas) {
 
 TEST(SavedTumblingOdometry, OtherParametersAreNamed) {
   const ThrownBody body;
-  TumblingOdometry::Params params = params_of(body);
+  TumblingOdometry::Params params = one_pass(body);
   const std::vector<std::byte> saved = TumblingOdometry(params).save();
   const auto refusal = [&](const TumblingOdometry::Params& other) {
     TumblingOdometry odometry(other);

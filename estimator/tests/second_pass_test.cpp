@@ -62,7 +62,7 @@ void live(const ThrownBody& body, std::size_t from, std::size_t to, TumblingOdom
   run.taken_live = odometry.passed_again();
 }
 
-Outcome whole(const ThrownBody& body, double after_s, const Eigen::Vector3d& side) {
+Outcome outcome_of(const ThrownBody& body, double after_s, const Eigen::Vector3d& side) {
   TumblingOdometry odometry(measured_badly(body, after_s, side));
   Outcome run;
   live(body, 0, body.imu().size(), odometry, run);
@@ -81,7 +81,7 @@ TEST(SecondPass, IsTakenOverAndEndsNoWorse) {
   for (int signs = 0; signs < 8; ++signs) {
     const Eigen::Vector3d side((signs & 1) != 0 ? -1.0 : 1.0, (signs & 2) != 0 ? -1.0 : 1.0,
                                (signs & 4) != 0 ? -1.0 : 1.0);
-    const Outcome twice = whole(body, 0.9, side), once = whole(body, 0.0, side);
+    const Outcome twice = outcome_of(body, 0.9, side), once = outcome_of(body, 0.0, side);
     taken += twice.taken_live;
     EXPECT_FALSE(once.taken_live) << "negative control: without it nothing is passed through again";
     EXPECT_EQ(twice.sweeps, once.sweeps);
@@ -130,7 +130,7 @@ TEST(SecondPass, CatchesUpWhereTheClocksDifferByMoreThanWasKnown) {
 TEST(SecondPass, ACopyMadeWhileItIsUnderWayGoesOnWithTheSameBits) {
   const ThrownBody body;
   const std::size_t count = body.imu().size();
-  const Outcome run = whole(body, 0.9, Eigen::Vector3d::Ones());
+  const Outcome run = outcome_of(body, 0.9, Eigen::Vector3d::Ones());
   for (const std::size_t split : {std::size_t{200}, std::size_t{255}}) {
     Outcome parts;
     TumblingOdometry first(measured_badly(body, 0.9));

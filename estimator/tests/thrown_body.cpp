@@ -11,8 +11,8 @@ namespace tumble::test {
 
 namespace {
 
-constexpr double kGravity_m_s2 = 9.80665;
-constexpr double kThrowX_m_s = 2.0, kThrowZ_m_s = 0.5 * kGravity_m_s2 * 0.8;  // up and down again in flight_s
+constexpr double kFall_m_s2 = 9.80665;
+constexpr double kThrowX_m_s = 2.0, kThrowZ_m_s = 0.5 * kFall_m_s2 * 0.8;  // up and down again in flight_s
 // walls and floor of a room, and a box in it
 const Eigen::AlignedBox3d kRoom{Eigen::Vector3d(-4.0, -3.0, -0.7), Eigen::Vector3d(8.0, 5.0, 3.4)};
 const Eigen::AlignedBox3d kBlock{Eigen::Vector3d(4.0, 2.0, -0.7), Eigen::Vector3d(5.5, 3.5, 1.0)};
@@ -60,8 +60,8 @@ Eigen::Vector3d ThrownBody::velocity_m_s(double t_s) const {
   const double fly_s = rest_s + push_s, until_s = fly_s + flight_s;
   const double up = step((t_s - rest_s) / push_s), down = step((t_s - until_s) / push_s);
   const double fallen_s = std::clamp(t_s - fly_s, 0.0, flight_s);
-  const double z = kThrowZ_m_s * up - kGravity_m_s2 * fallen_s;
-  return {kThrowX_m_s * (up - down), 0.0, t_s < until_s ? z : (kThrowZ_m_s - kGravity_m_s2 * flight_s) * (1.0 - down)};
+  const double z = kThrowZ_m_s * up - kFall_m_s2 * fallen_s;
+  return {kThrowX_m_s * (up - down), 0.0, t_s < until_s ? z : (kThrowZ_m_s - kFall_m_s2 * flight_s) * (1.0 - down)};
 }
 
 Eigen::Vector3d ThrownBody::centre_m(double t_s) const {
@@ -70,8 +70,8 @@ Eigen::Vector3d ThrownBody::centre_m(double t_s) const {
   const double down = push_s * step_integral((t_s - until_s) / push_s);
   const double fallen_s = std::clamp(t_s - fly_s, 0.0, flight_s);
   const double thrown_s = up - std::max(0.0, t_s - until_s);  // as long as it goes up
-  const double last_m_s = kThrowZ_m_s - kGravity_m_s2 * flight_s;
-  const double z = kThrowZ_m_s * thrown_s - 0.5 * kGravity_m_s2 * fallen_s * fallen_s +
+  const double last_m_s = kThrowZ_m_s - kFall_m_s2 * flight_s;
+  const double z = kThrowZ_m_s * thrown_s - 0.5 * kFall_m_s2 * fallen_s * fallen_s +
                    last_m_s * (std::max(0.0, t_s - until_s) - down);
   return {kThrowX_m_s * (up - down), 0.0, z};
 }
@@ -100,7 +100,7 @@ std::vector<ImuSample> ThrownBody::imu() const {
     for (int part = 0; part < kParts; ++part) {
       const double a_s = from_s + part * dt_s / kParts, b_s = a_s + dt_s / kParts;
       const Eigen::Vector3d force_W =
-          (velocity(b_s) - velocity(a_s)) / (b_s - a_s) + kGravity_m_s2 * Eigen::Vector3d::UnitZ();
+          (velocity(b_s) - velocity(a_s)) / (b_s - a_s) + kFall_m_s2 * Eigen::Vector3d::UnitZ();
       sample.specific_force_m_s2 += T_WI(0.5 * (a_s + b_s)).linear().transpose() * force_W / kParts;
     }
     out.push_back(sample);

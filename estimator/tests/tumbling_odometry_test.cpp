@@ -10,7 +10,9 @@
 #include <string>
 #include <vector>
 
+#include "live_readings.hpp"
 #include "thrown_body.hpp"
+#include "thrown_params.hpp"
 #include "tumble/tumble.hpp"
 
 namespace tumble {
@@ -20,22 +22,15 @@ using test::ThrownBody;
 
 constexpr TimeNs kSweep_ns = 100'000'000;
 
-TumblingOdometry::Params params_of(const ThrownBody& body) {
-  TumblingOdometry::Params params;
-  params.imu.rate_hz = body.imu_hz;
-  params.lever_arm_I_m = body.lever_arm_I_m;
-  return params;
-}
-
-struct Heard {
+struct Answers {
   std::vector<TumblingOdometry::Sweep> sweeps;
   std::vector<TimeNs> came_ns;  ///< time of the IMU when each came
   std::vector<RateState> rates;
 };
 
 /// Samples `from` to `to` - 1, each sweep as soon as it has ended.
-void feed(const std::vector<ImuSample>& imu, const std::vector<ThrownBody::Sweep>& sweeps, std::size_t from,
-          std::size_t to, TumblingOdometry& odometry, Heard& run) {
+void feed_as_they_end(const std::vector<ImuSample>& imu, const std::vector<ThrownBody::Sweep>& sweeps, std::size_t from,
+                      std::size_t to, TumblingOdometry& odometry, Answers& run) {
   for (std::size_t k = from; k < to; ++k) {
     ASSERT_TRUE(odometry.add_imu(imu[k]).ok());
     const TimeNs before_ns = k == 0 ? 0 : imu[k - 1].time_ns;
@@ -53,10 +48,10 @@ void feed(const std::vector<ImuSample>& imu, const std::vector<ThrownBody::Sweep
   }
 }
 
-Heard whole(const ThrownBody& body, TumblingOdometry& odometry) {
-  Heard run;
+Answers whole(const ThrownBody& body, TumblingOdometry& odometry) {
+  Answers run;
   const std::vector<ImuSample> imu = body.imu();
-  feed(imu, body.sweeps(), 0, imu.size(), odometry, run);
+  feed_as_they_end(imu, body.sweeps(), 0, imu.size(), odometry, run);
   odometry.finish();
   while (std::optional<TumblingOdometry::Sweep> sweep = odometry.take()) {
     run.sweeps.push_back(std::move(*sweep));
@@ -75,7 +70,7 @@ double attitude_error_rad(const ThrownBody& body, const PoseState& pose) {
 TEST(TumblingOdometry, FollowsAThrowBeyondTheRail) {
   const ThrownBody body;
   TumblingOdometry odometry(params_of(body));
-  const Heard run = whole(body, odometry);
+  const Answers run = whole(body, odometry);
   ASSERT_EQ(run.sweeps.size(), body.sweeps().size());
   for (const TumblingOdometry::Sweep& sweep : run.sweeps) EXPECT_TRUE(sweep.status.ok()) << sweep.status.message();
   // returns without noise: what is left is what the map's planes and the deskewing leave
@@ -111,7 +106,7 @@ TEST(TumblingOdometry, AClippedGyroAloneLosesTheSame) {  // negative control: it
 TEST(TumblingOdometry, RecoversTheRateInFlight) {
   const ThrownBody body;
   TumblingOdometry odometry(params_of(body));
-  const Heard run = whole(body, odometry);
+  const Answers run = whole(body, odometry);
   // from where the push is over to where the stream sees the catch ahead, which begins as gently as this one does
   const double from_s = body.rest_s + body.push_s + 0.1, to_s = body.rest_s + body.push_s + body.flight_s - 0.25;
   int clipped = 0;
@@ -135,8 +130,8 @@ TEST(TumblingOdometry, TheWordsComeInTime) {
     TumblingOdometry odometry(params);
     std::vector<ImuSample> imu = body.imu();
     for (ImuSample& sample : imu) sample.time_ns += later_ns;
-    Heard run;
-    feed(imu, body.sweeps(), 0, imu.size(), odometry, run);
+    Answers run;
+    feed_as_they_end(imu, body.sweeps(), 0, imu.size(), odometry, run);
     ASSERT_GT(run.sweeps.size(), 20u);
     for (std::size_t k = 0; k < run.sweeps.size(); ++k) {
       if (!run.sweeps[k].status.ok()) continue;  // it began before the IMU
@@ -155,10 +150,10 @@ TEST(TumblingOdometry, TheNewestPoseIsCausalAndHonest) {
   const std::vector<ImuSample> imu = body.imu();
   PoseState pose;
   EXPECT_EQ(odometry.newest(pose).trouble, Trouble::empty);
-  Heard heard;
+  Answers heard;
   double worst_m = 0.0, worst_nees = 0.0;
   for (std::size_t k = 0; k < imu.size(); k += 10) {
-    feed(imu, body.sweeps(), k, std::min(k + 10, imu.size()), odometry, heard);
+    feed_as_they_end(imu, body.sweeps(), k, std::min(k + 10, imu.size()), odometry, heard);
     if (heard.sweeps.empty()) continue;
     ASSERT_TRUE(odometry.newest(pose).ok());
     EXPECT_EQ(pose.time_ns, imu[std::min(k + 10, imu.size()) - 1].time_ns);
@@ -173,14 +168,14 @@ TEST(TumblingOdometry, TheNewestPoseIsCausalAndHonest) {
 TEST(TumblingOdometry, ACopyGoesOnWithTheSameBits) {
   const ThrownBody body;
   TumblingOdometry one(params_of(body));
-  const Heard run = whole(body, one);
+  const Answers run = whole(body, one);
   const std::vector<ImuSample> imu = body.imu();
   for (const std::size_t split : {std::size_t{90}, imu.size() / 2 + 3}) {
-    Heard parts;
+    Answers parts;
     TumblingOdometry first(params_of(body));
-    feed(imu, body.sweeps(), 0, split, first, parts);
+    feed_as_they_end(imu, body.sweeps(), 0, split, first, parts);
     TumblingOdometry second(first);
-    feed(imu, body.sweeps(), split, imu.size(), second, parts);
+    feed_as_they_end(imu, body.sweeps(), split, imu.size(), second, parts);
     second.finish();
     while (std::optional<TumblingOdometry::Sweep> sweep = second.take()) parts.sweeps.push_back(std::move(*sweep));
     ASSERT_EQ(parts.sweeps.size(), run.sweeps.size());
@@ -201,8 +196,8 @@ TEST(TumblingOdometry, GoesOnAfterAGapBeyondTheStreamsBound) {
   std::vector<ThrownBody::Sweep> sweeps = body.sweeps();
   std::erase_if(imu, [](const ImuSample& s) { return s.time_ns > 1'500'000'000 && s.time_ns < 3'200'000'000; });
   std::erase_if(sweeps, [](const auto& s) { return s.end_ns > 1'500'000'000 && s.start_ns < 3'200'000'000; });
-  Heard heard;
-  feed(imu, sweeps, 0, 150, odometry, heard);
+  Answers heard;
+  feed_as_they_end(imu, sweeps, 0, 150, odometry, heard);
   // one stamp that is wrong costs one sample
   ImuSample wrong = imu[149];
   wrong.time_ns = 3'600'000'000'000;
@@ -211,7 +206,7 @@ TEST(TumblingOdometry, GoesOnAfterAGapBeyondTheStreamsBound) {
   EXPECT_EQ(odometry.gaps(), 0u);
   ASSERT_TRUE(odometry.add_imu(imu[151]).ok());
   EXPECT_EQ(odometry.gaps(), 1u);
-  feed(imu, sweeps, 152, imu.size(), odometry, heard);
+  feed_as_they_end(imu, sweeps, 152, imu.size(), odometry, heard);
   EXPECT_EQ(odometry.refused_samples(), 0u);
   odometry.finish();
   while (std::optional<TumblingOdometry::Sweep> sweep = odometry.take()) heard.sweeps.push_back(std::move(*sweep));
@@ -227,8 +222,8 @@ TEST(TumblingOdometry, GoesOnAfterItWasFinished) {
   const std::vector<ImuSample> imu = body.imu();
   const std::vector<ThrownBody::Sweep> sweeps = body.sweeps();
   TumblingOdometry odometry(params_of(body));
-  Heard heard;
-  feed(imu, sweeps, 0, 200, odometry, heard);
+  Answers heard;
+  feed_as_they_end(imu, sweeps, 0, 200, odometry, heard);
   odometry.finish();
   odometry.finish();
   ASSERT_TRUE(odometry.settled_rate());
@@ -236,7 +231,7 @@ TEST(TumblingOdometry, GoesOnAfterItWasFinished) {
   PoseState pose;
   EXPECT_TRUE(odometry.newest(pose).ok());
   EXPECT_EQ(odometry.add_imu(imu[199]).trouble, Trouble::time_order);
-  feed(imu, sweeps, 200, imu.size(), odometry, heard);
+  feed_as_they_end(imu, sweeps, 200, imu.size(), odometry, heard);
   odometry.finish();
   while (std::optional<TumblingOdometry::Sweep> sweep = odometry.take()) heard.sweeps.push_back(std::move(*sweep));
   EXPECT_EQ(heard.sweeps.size(), sweeps.size());
@@ -252,8 +247,8 @@ TEST(TumblingOdometry, ALidarThatFallsSilentIsMadeUpForByInertia) {
   std::vector<ThrownBody::Sweep> sweeps = body.sweeps();
   std::erase_if(sweeps, [](const ThrownBody::Sweep& sweep) { return sweep.end_ns > 1'500'000'000; });
   TumblingOdometry odometry(params_of(body));
-  Heard heard;
-  feed(imu, sweeps, 0, imu.size(), odometry, heard);
+  Answers heard;
+  feed_as_they_end(imu, sweeps, 0, imu.size(), odometry, heard);
   const auto made_up = std::count_if(heard.sweeps.begin(), heard.sweeps.end(),
                                      [](const auto& sweep) { return sweep.status.trouble == Trouble::empty; });
   EXPECT_GE(made_up, 3);
@@ -293,9 +288,9 @@ TEST(TumblingOdometry, TroubleIsAValueAndChangesNothing) {
   EXPECT_EQ(odometry.add_sweep(0, kSweep_ns, late).trouble, Trouble::out_of_range);
   EXPECT_EQ(odometry.add_sweep(5, 4, {}).trouble, Trouble::time_order);
   EXPECT_EQ(odometry.add_sweep(0, 3'600'000'000'000, {}).trouble, Trouble::out_of_range);
-  Heard a, b;
-  feed(imu, body.sweeps(), 1, imu.size(), odometry, a);
-  feed(imu, body.sweeps(), 1, imu.size(), untouched, b);
+  Answers a, b;
+  feed_as_they_end(imu, body.sweeps(), 1, imu.size(), odometry, a);
+  feed_as_they_end(imu, body.sweeps(), 1, imu.size(), untouched, b);
   ASSERT_FALSE(a.sweeps.empty());
   EXPECT_EQ(a.sweeps.back().report.pose.p_WA_m, b.sweeps.back().report.pose.p_WA_m);
   EXPECT_EQ(odometry.add_sweep(0, kSweep_ns, {}).trouble, Trouble::time_order);
@@ -339,26 +334,12 @@ TEST(TumblingOdometry, RefusesParametersOutOfTheirBounds) {
   EXPECT_TRUE(names(refuses([&](Params& p) { p.own_body_L = {corner, -corner}; }), "own_body_L"));
 }
 
-/// Readings of a sensor that is alive: no two are the same to the last bit.
-std::vector<ImuSample> noisy(std::vector<ImuSample> imu) {
-  std::uint32_t drawn = 1;
-  const auto draw = [&] { return static_cast<double>((drawn = 1664525 * drawn + 1013904223) >> 8) / 16777216.0 - 0.5; };
-  for (ImuSample& sample : imu) {
-    for (int axis = 0; axis < 3; ++axis) {
-      if (std::abs(sample.angular_velocity_rad_s[axis]) < ThrownBody().rail_rad_s)
-        sample.angular_velocity_rad_s[axis] += 2e-3 * draw();
-      sample.specific_force_m_s2[axis] += 2e-2 * draw();
-    }
-  }
-  return imu;
-}
-
 // Gravity turns as it should in the mirrored world too: only flight tells.
 TEST(TumblingOdometry, TellsAnAccelerometerOfTheOtherSense) {
   ThrownBody body;
   body.rail_rad_s = 20.0;  // so that the flight is read
   TumblingOdometry sound(params_of(body)), mirrored(params_of(body));
-  for (ImuSample sample : noisy(body.imu())) {
+  for (ImuSample sample : test::noisy(body.imu(), body.rail_rad_s)) {
     ASSERT_TRUE(sound.add_imu(sample).ok());
     sample.specific_force_m_s2 *= -1.0;
     ASSERT_TRUE(mirrored.add_imu(sample).ok());
@@ -373,7 +354,7 @@ TEST(TumblingOdometry, NamesAnAxisThatFrozeAndNoLongerStatesToKnowIt) {
   TumblingOdometry::Params params = params_of(body);
   params.imu.gyro_range_rad_s = body.rail_rad_s;
   TumblingOdometry odometry(params);
-  std::vector<ImuSample> imu = noisy(body.imu());
+  std::vector<ImuSample> imu = test::noisy(body.imu(), body.rail_rad_s);
   const auto from = static_cast<std::size_t>((body.rest_s + body.push_s) * body.imu_hz);
   double widest_rad_s = 0.0;
   for (std::size_t k = 0; k < imu.size(); ++k) {
@@ -390,7 +371,7 @@ TEST(TumblingOdometry, NamesAnAxisThatFrozeAndNoLongerStatesToKnowIt) {
   EXPECT_NE(doubt.message().find("gyro x"), std::string::npos) << doubt.message();
   EXPECT_GT(widest_rad_s, 2.0);
   TumblingOdometry sound(params);  // negative control
-  for (const ImuSample& sample : noisy(body.imu())) {
+  for (const ImuSample& sample : test::noisy(body.imu(), body.rail_rad_s)) {
     ASSERT_TRUE(sound.add_imu(sample).ok());
     EXPECT_TRUE(sound.doubt().ok());
   }

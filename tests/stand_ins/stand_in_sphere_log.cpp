@@ -16,8 +16,8 @@ namespace tumble::test {
 
 namespace {
 
-constexpr double kPeriod_s = 0.008, kRadius_m = 0.145;
-constexpr double kGyroNoise_rad_s = 0.002, kAccelNoise_m_s2 = 0.02;
+constexpr double kLogPeriod_s = 0.008, kRadius_m = 0.145;
+constexpr double kSphereGyroNoise_rad_s = 0.002, kSphereAccelNoise_m_s2 = 0.02;
 
 /// Rolls 3 m along x between 3 and 28 s, faster and slower on the way: the centre of the sphere, where the sensor is.
 double way_m(double t) {
@@ -56,10 +56,10 @@ void write_sphere_log(const std::filesystem::path& folder) {
   const baselines::Autogain filter({.profile = baselines::AutogainProfile::code2021, .roll_error_2021 = true});
   baselines::Autogain::State state;
   for (std::size_t k = 0; k < kStandInSphereSamples; ++k) {
-    const double t = kPeriod_s * static_cast<double>(k);
-    const Eigen::Vector3d w = rounded(angular_velocity(motion, t) + noise.vector(kGyroNoise_rad_s));
+    const double t = kLogPeriod_s * static_cast<double>(k);
+    const Eigen::Vector3d w = rounded(angular_velocity(motion, t) + noise.vector(kSphereGyroNoise_rad_s));
     const Eigen::Vector3d f =
-        rounded((specific_force(motion, t) + noise.vector(kAccelNoise_m_s2)) / kStandardGravity_m_s2);
+        rounded((specific_force(motion, t) + noise.vector(kSphereAccelNoise_m_s2)) / kStandardGravity_m_s2);
     ImuSample sample;
     sample.time_ns = static_cast<TimeNs>(k) * 8'000'000;
     sample.angular_velocity_rad_s = w;

@@ -60,6 +60,11 @@ std::vector<DataFolder> data_folders(const std::string& source) {
   return folders;
 }
 
+std::vector<fs::path> published_folders(const std::string& source) {
+  const DataFolder last = data_folders(source).back();
+  return last.real ? std::vector{last.path} : std::vector<fs::path>();
+}
+
 fs::path written(const DataFolder& folder) {
   if (folder.real || fs::exists(folder.path)) return folder.path;
   fs::create_directories(folder.path);

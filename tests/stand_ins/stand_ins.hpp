@@ -23,6 +23,8 @@ struct DataFolder {
 /// The folders of a source ("broad", "norlab", "repoimu", "airbrakes", "sphere_log"): always the stand-in's, and the
 /// real one's after it where it is there. Nothing is written yet; `written` does it.
 std::vector<DataFolder> data_folders(const std::string& source);
+/// The real one alone, where it is there.
+std::vector<std::filesystem::path> published_folders(const std::string& source);
 /// Names a test's parameter: "stand_in", "real".
 struct FolderName {
   template <class Info>

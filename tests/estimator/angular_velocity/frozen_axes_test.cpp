@@ -14,7 +14,7 @@
 namespace tumble {
 namespace {
 
-constexpr double kPeriod_s = 0.01, kRail_rad_s = 5.0, kRail_m_s2 = 40.0;
+constexpr double kSampling_s = 0.01, kGyroRail_rad_s = 5.0, kAccelRail_m_s2 = 40.0;
 
 /// Rests for two seconds, turns and is pushed for four, rests for four: readings with noise, clipped at the rails.
 std::vector<ImuSample> moving_body() {
@@ -22,7 +22,7 @@ std::vector<ImuSample> moving_body() {
   std::normal_distribution<double> noise;
   std::vector<ImuSample> out;
   for (int k = 1; k <= 1000; ++k) {
-    const double t = k * kPeriod_s, moves = t > 2.0 && t < 6.0 ? 1.0 : 0.0;
+    const double t = k * kSampling_s, moves = t > 2.0 && t < 6.0 ? 1.0 : 0.0;
     ImuSample sample;
     sample.time_ns = static_cast<TimeNs>(k) * 10'000'000;
     sample.angular_velocity_rad_s = moves * Eigen::Vector3d(3.0 * std::sin(4.0 * t), 2.0 * std::cos(5.0 * t),
@@ -38,9 +38,9 @@ std::vector<ImuSample> moving_body() {
   return out;
 }
 
-std::vector<ImuSample> clipped(std::vector<ImuSample> samples) {
+std::vector<ImuSample> clipped_samples(std::vector<ImuSample> samples) {
   for (ImuSample& sample : samples)
-    sample.angular_velocity_rad_s = sample.angular_velocity_rad_s.cwiseMax(-kRail_rad_s).cwiseMin(kRail_rad_s);
+    sample.angular_velocity_rad_s = sample.angular_velocity_rad_s.cwiseMax(-kGyroRail_rad_s).cwiseMin(kGyroRail_rad_s);
   return samples;
 }
 
@@ -50,7 +50,7 @@ struct Found {
   FrozenAxes::State state;
 };
 
-Found watch(const std::vector<ImuSample>& samples, const FrozenAxes::Params& params) {
+Found watch_axes(const std::vector<ImuSample>& samples, const FrozenAxes::Params& params) {
   const FrozenAxes detector(params);
   Found out;
   for (const ImuSample& sample : samples) {
@@ -63,21 +63,21 @@ Found watch(const std::vector<ImuSample>& samples, const FrozenAxes::Params& par
   return out;
 }
 
-FrozenAxes::Params stated() {
-  return {.gyro_range_rad_s = kRail_rad_s, .accel_range_m_s2 = kRail_m_s2};
+FrozenAxes::Params stated_ranges() {
+  return {.gyro_range_rad_s = kGyroRail_rad_s, .accel_range_m_s2 = kAccelRail_m_s2};
 }
 
 TEST(FrozenAxes, NamesAnAxisThatRepeatsOneReadingWhileTheOthersMove) {
-  for (const FrozenAxes::Params& params : {FrozenAxes::Params{}, stated()}) {
-    EXPECT_EQ(watch(clipped(moving_body()), params).first, "");
-    std::vector<ImuSample> samples = clipped(moving_body());
+  for (const FrozenAxes::Params& params : {FrozenAxes::Params{}, stated_ranges()}) {
+    EXPECT_EQ(watch_axes(clipped_samples(moving_body()), params).first, "");
+    std::vector<ImuSample> samples = clipped_samples(moving_body());
     for (std::size_t k = 300; k < samples.size(); ++k)
       samples[k].angular_velocity_rad_s.x() = samples[300].angular_velocity_rad_s.x();
-    const Found found = watch(samples, params);
+    const Found found = watch_axes(samples, params);
     EXPECT_NE(found.first.find("gyro x"), std::string::npos) << found.first;
     EXPECT_LT(found.told_ns, samples[300].time_ns + 600'000'000);
     const Eigen::Vector3d variance = FrozenAxes(params).rate_variance_rad2_s2(samples[400].time_ns, found.state);
-    EXPECT_GT(std::sqrt(variance.x()), kRail_rad_s);
+    EXPECT_GT(std::sqrt(variance.x()), kGyroRail_rad_s);
     EXPECT_EQ(variance.y(), 0.0);
     EXPECT_EQ(FrozenAxes(params).rate_variance_rad2_s2(samples[299].time_ns, found.state).x(), 0.0);
   }
@@ -87,36 +87,36 @@ TEST(FrozenAxes, NamesAnAxisOfTheAccelerometer) {
   std::vector<ImuSample> samples = moving_body();
   for (std::size_t k = 300; k < samples.size(); ++k)
     samples[k].specific_force_m_s2.y() = samples[300].specific_force_m_s2.y();
-  EXPECT_NE(watch(samples, stated()).first.find("accel y"), std::string::npos);
+  EXPECT_NE(watch_axes(samples, stated_ranges()).first.find("accel y"), std::string::npos);
 }
 
 // The body lies still at the end, and the axis goes on to read its rail: no body rests that turns so.
 TEST(FrozenAxes, NamesAnAxisThatStandsAtItsRailOnABodyAtRest) {
-  for (const FrozenAxes::Params& params : {FrozenAxes::Params{}, stated()}) {
-    std::vector<ImuSample> samples = clipped(moving_body());
+  for (const FrozenAxes::Params& params : {FrozenAxes::Params{}, stated_ranges()}) {
+    std::vector<ImuSample> samples = clipped_samples(moving_body());
     const auto at_rail = std::find_if(samples.begin(), samples.end(), [](const ImuSample& sample) {
-      return sample.angular_velocity_rad_s.z() == kRail_rad_s;
+      return sample.angular_velocity_rad_s.z() == kGyroRail_rad_s;
     });
     ASSERT_NE(at_rail, samples.end());
-    for (auto sample = at_rail; sample != samples.end(); ++sample) sample->angular_velocity_rad_s.z() = kRail_rad_s;
-    EXPECT_NE(watch(samples, params).first.find("gyro z"), std::string::npos);
+    for (auto sample = at_rail; sample != samples.end(); ++sample) sample->angular_velocity_rad_s.z() = kGyroRail_rad_s;
+    EXPECT_NE(watch_axes(samples, params).first.find("gyro z"), std::string::npos);
     // and so from the beginning
-    for (ImuSample& sample : samples) sample.angular_velocity_rad_s.z() = -kRail_rad_s;
-    EXPECT_NE(watch(samples, params).first.find("gyro z"), std::string::npos);
+    for (ImuSample& sample : samples) sample.angular_velocity_rad_s.z() = -kGyroRail_rad_s;
+    EXPECT_NE(watch_axes(samples, params).first.find("gyro z"), std::string::npos);
   }
   std::vector<ImuSample> samples = moving_body();
-  for (ImuSample& sample : samples) sample.specific_force_m_s2.x() = kRail_m_s2;
-  EXPECT_NE(watch(samples, stated()).first.find("accel x"), std::string::npos);
+  for (ImuSample& sample : samples) sample.specific_force_m_s2.x() = kAccelRail_m_s2;
+  EXPECT_NE(watch_axes(samples, stated_ranges()).first.find("accel x"), std::string::npos);
 }
 
 // A pendulum never lies still: what its axis goes on to read is its rail, and no swing lasts so long.
 TEST(FrozenAxes, NamesAnAxisThatStandsAtItsRailOnABodyThatNeverRests) {
-  const auto swinging = [](double railed_s, double reading = kRail_rad_s) {
+  const auto swinging = [](double railed_s, double reading = kGyroRail_rad_s) {
     std::mt19937 random(2);
     std::normal_distribution<double> noise;
     std::vector<ImuSample> out;
     for (int k = 1; k <= 3000; ++k) {
-      const double t = k * kPeriod_s, read_t = kPeriod_s * (k - k % 3);  // read every third time
+      const double t = k * kSampling_s, read_t = kSampling_s * (k - k % 3);  // read every third time
       ImuSample sample;
       sample.time_ns = static_cast<TimeNs>(k) * 10'000'000;
       sample.angular_velocity_rad_s = {2.0 * std::sin(4.0 * read_t), std::cos(3.0 * read_t), 6.0 * std::sin(2.0 * t)};
@@ -124,26 +124,26 @@ TEST(FrozenAxes, NamesAnAxisThatStandsAtItsRailOnABodyThatNeverRests) {
       if (t > 4.0 && t < 4.0 + railed_s) sample.angular_velocity_rad_s.z() = reading;
       out.push_back(sample);
     }
-    return clipped(std::move(out));
+    return clipped_samples(std::move(out));
   };
-  EXPECT_EQ(watch(swinging(0.0), stated()).first, "");
-  EXPECT_EQ(watch(swinging(3.0), stated()).first, "") << "a throw spins for half as long";
-  const Found found = watch(swinging(20.0), stated());
+  EXPECT_EQ(watch_axes(swinging(0.0), stated_ranges()).first, "");
+  EXPECT_EQ(watch_axes(swinging(3.0), stated_ranges()).first, "") << "a throw spins for half as long";
+  const Found found = watch_axes(swinging(20.0), stated_ranges());
   EXPECT_NE(found.first.find("gyro z"), std::string::npos) << found.first;
   EXPECT_LT(found.told_ns, 10'000'000'000) << "told while it lasts";
-  EXPECT_NE(watch(swinging(20.0, 1.7), stated()).first.find("gyro z"), std::string::npos)
+  EXPECT_NE(watch_axes(swinging(20.0, 1.7), stated_ranges()).first.find("gyro z"), std::string::npos)
       << "beside axes that are held";
 }
 
 // The element meets its rail and is flagged, while what is read out stays at another value.
 TEST(FrozenAxes, AFlagMakesNoRailOfAReadingThatIsFarFromIt) {
-  std::vector<ImuSample> samples = clipped(moving_body());
+  std::vector<ImuSample> samples = clipped_samples(moving_body());
   for (std::size_t k = 205; k < samples.size(); ++k) {
-    if (samples[k].angular_velocity_rad_s.z() == kRail_rad_s) samples[k].device_clip_flags = kClipGyroZ;
+    if (samples[k].angular_velocity_rad_s.z() == kGyroRail_rad_s) samples[k].device_clip_flags = kClipGyroZ;
     samples[k].angular_velocity_rad_s.z() = samples[205].angular_velocity_rad_s.z();
   }
-  ASSERT_LT(std::abs(samples[205].angular_velocity_rad_s.z()), 0.5 * kRail_rad_s);
-  EXPECT_NE(watch(samples, stated()).first.find("gyro z"), std::string::npos);
+  ASSERT_LT(std::abs(samples[205].angular_velocity_rad_s.z()), 0.5 * kGyroRail_rad_s);
+  EXPECT_NE(watch_axes(samples, stated_ranges()).first.find("gyro z"), std::string::npos);
 }
 
 TEST(FrozenAxes, ASensorWithoutNoiseAtRestIsNotFrozen) {
@@ -153,20 +153,20 @@ TEST(FrozenAxes, ASensorWithoutNoiseAtRestIsNotFrozen) {
     sample.angular_velocity_rad_s.setZero();
     sample.specific_force_m_s2 = {0.0, 0.0, 9.81};
   }
-  EXPECT_EQ(watch(samples, {}).first, "");
+  EXPECT_EQ(watch_axes(samples, {}).first, "");
 }
 
 TEST(FrozenAxes, OneThatIsReadMoreSlowlyIsNotFrozen) {
   std::vector<ImuSample> samples = moving_body();
   for (std::size_t k = 0; k < samples.size(); ++k)
     samples[k].angular_velocity_rad_s.x() = samples[k - k % 20].angular_velocity_rad_s.x();
-  EXPECT_EQ(watch(samples, {}).first, "");
+  EXPECT_EQ(watch_axes(samples, {}).first, "");
 }
 
 TEST(FrozenAxes, WhatIsNoReadingIsPassedOver) {
-  const FrozenAxes detector(stated());
+  const FrozenAxes detector(stated_ranges());
   FrozenAxes::State state;
-  for (const ImuSample& sample : clipped(moving_body())) detector.step(sample, state);
+  for (const ImuSample& sample : clipped_samples(moving_body())) detector.step(sample, state);
   const FrozenAxes::State before = state;
   ImuSample nan = moving_body().back();
   nan.time_ns += 1;

@@ -18,7 +18,7 @@ struct Watched {
 
 /// Samples of a body that turns: the gyro reads every `period` of them, a quarter of one after the first. Its rate
 /// rises by 1e-4 rad/s a sample.
-Watched watch(double period, double rate_rad_s, bool clipped = false) {
+Watched watch_holds(double period, double rate_rad_s, bool clipped = false) {
   Watched out;
   const HoldWatch holds;
   double before = -1.0;
@@ -42,7 +42,7 @@ Watched watch(double period, double rate_rad_s, bool clipped = false) {
 
 TEST(HoldWatch, TellsPeriodAndRepeats) {
   for (const double period : {1.25, 1.8, 3.3, 7.9}) {
-    const Watched found = watch(period, 1.0);
+    const Watched found = watch_holds(period, 1.0);
     const HeldReading& gyro = found.state.of(Triad::gyro);
     ASSERT_TRUE(gyro.held()) << period;
     EXPECT_NEAR(gyro.period_samples, period, 0.01 * period);
@@ -56,7 +56,7 @@ TEST(HoldWatch, TellsPeriodAndRepeats) {
 }
 
 TEST(HoldWatch, WhatIsStaleIsTheSlopeTimesTheAge) {
-  const Watched found = watch(3.3, 1.0);
+  const Watched found = watch_holds(3.3, 1.0);
   const HeldReading& gyro = found.state.of(Triad::gyro);
   const double behind = gyro.age_samples + 0.5 * (gyro.period_samples - 1.0);
   EXPECT_NEAR(gyro.stale().y(), 1e-4 * behind, 1e-4 * 0.05 * behind);
@@ -65,11 +65,11 @@ TEST(HoldWatch, WhatIsStaleIsTheSlopeTimesTheAge) {
 
 // Controls: new readings each time, a body that rests, a sensor that froze.
 TEST(HoldWatch, SaysNothingOfOthers) {
-  EXPECT_FALSE(watch(1.0, 1.0).state.of(Triad::gyro).held());
-  EXPECT_EQ(watch(1.0, 1.0).state.of(Triad::gyro).stale(), Eigen::Vector3d::Zero());
-  EXPECT_FALSE(watch(3.3, 0.0).state.of(Triad::gyro).held());
-  EXPECT_FALSE(watch(1e6, 1.0).state.of(Triad::gyro).held());
-  EXPECT_FALSE(watch(3.3, 1.0, true).state.of(Triad::gyro).held());  // at its rails on all axes it repeats too
+  EXPECT_FALSE(watch_holds(1.0, 1.0).state.of(Triad::gyro).held());
+  EXPECT_EQ(watch_holds(1.0, 1.0).state.of(Triad::gyro).stale(), Eigen::Vector3d::Zero());
+  EXPECT_FALSE(watch_holds(3.3, 0.0).state.of(Triad::gyro).held());
+  EXPECT_FALSE(watch_holds(1e6, 1.0).state.of(Triad::gyro).held());
+  EXPECT_FALSE(watch_holds(3.3, 1.0, true).state.of(Triad::gyro).held());  // at its rails on all axes it repeats too
 }
 
 }  // namespace

@@ -7,11 +7,11 @@
 #include <cmath>
 #include <cstdio>
 #include <numeric>
-#include <optional>
 #include <type_traits>
 #include <vector>
 
 #include "estimator/angular_velocity/drawn_elements.hpp"
+#include "estimator/angular_velocity/streamed_rates.hpp"
 #include "estimator/angular_velocity/tumble_recording.hpp"
 #include "oracles/gaussian.hpp"
 #include "scenarios/baselines/angular_velocity/clipped_baseline.hpp"
@@ -36,7 +36,7 @@ struct Tumble {
 };
 
 // A tumble whose accelerometer clips along tilted elements.
-Tumble tumble_of(std::uint64_t seed, double tilt, double rail_m_s2 = kRail_m_s2) {
+Tumble railed_tumble(std::uint64_t seed, double tilt, double rail_m_s2 = kRail_m_s2) {
   TumbleOptions options;
   options.seed = seed;
   Tumble out{make_tumble(options), {}, tilt > 0.0 ? drawn_rows(seed, tilt) : Matrix3d(Matrix3d::Identity())};
@@ -65,7 +65,7 @@ struct Share {
 TEST(RailJudgement, FindsTheTiltedRailsOfAnAccelerometer) {
   Share all, seen;
   for (std::uint64_t seed = 1; seed <= 6; ++seed) {
-    const Tumble tumble = tumble_of(seed, 0.02);
+    const Tumble tumble = railed_tumble(seed, 0.02);
     const ClippingFinder::Found found = ClippingFinder({}).find(tumble.recording.samples);
     EXPECT_TRUE(found.rails.accel_planes.any()) << seed;
     for (std::size_t k = 0; k < found.clippings.size(); ++k) {
@@ -97,7 +97,7 @@ TEST(RailJudgement, FindsTheTiltedRailsOfAnAccelerometer) {
 // Negative control: what never met a rail has none, rest and gravity included.
 TEST(RailJudgement, AnAccelerometerThatDoesNotClipHasNoRail) {
   for (std::uint64_t seed = 1; seed <= 6; ++seed) {
-    const Tumble tumble = tumble_of(seed, 0.02, 1e4);
+    const Tumble tumble = railed_tumble(seed, 0.02, 1e4);
     const ClippingFinder::Found found = ClippingFinder({}).find(tumble.recording.samples);
     EXPECT_FALSE(found.rails.accel_planes.any()) << seed;
     for (const Clipping& clipping : found.clippings) EXPECT_EQ(clipping.accel, 0) << seed;
@@ -107,7 +107,7 @@ TEST(RailJudgement, AnAccelerometerThatDoesNotClipHasNoRail) {
 /// A wand that is swung to and fro about x, beyond its rail: an element without a tilt, whose offset the device takes
 /// off behind it, so that the rails of the two signs differ.
 std::vector<ImuSample> swung_wand(double offset_rad_s, std::vector<bool>& lost) {
-  constexpr double kRail_rad_s = 7.44;
+  constexpr double kSwungRail_rad_s = 7.44;
   oracles::Gaussian noise(5);
   std::vector<ImuSample> out(2000);
   for (std::size_t k = 0; k < out.size(); ++k) {
@@ -117,8 +117,8 @@ std::vector<ImuSample> swung_wand(double offset_rad_s, std::vector<bool>& lost) 
     reading = {size * std::sin(4.0 * t_s) + 0.002 * noise(), 0.2 * std::sin(3.1 * t_s), 0.2 * std::cos(2.3 * t_s)};
     for (int j = 1; j < 3; ++j) reading[j] += 0.002 * noise();
     const double sensed = reading.x() + offset_rad_s;
-    lost.push_back(std::abs(sensed) > kRail_rad_s + 0.05);
-    reading.x() = std::clamp(sensed, -kRail_rad_s, kRail_rad_s) - offset_rad_s + 2e-5 * noise();
+    lost.push_back(std::abs(sensed) > kSwungRail_rad_s + 0.05);
+    reading.x() = std::clamp(sensed, -kSwungRail_rad_s, kSwungRail_rad_s) - offset_rad_s + 2e-5 * noise();
     out[k].specific_force_m_s2 = Vector3d(0.3 * std::sin(t_s), 0.2, 9.8 + 0.1 * noise());
   }
   return out;
@@ -140,7 +140,7 @@ TEST(RailJudgement, RailsOfTwoSignsThatDifferAreNoDevicesOwn) {
   }
 }
 
-struct Errors {
+struct ErrorsAtRails {
   std::vector<double> all;
   int within = 0, axes = 0;
   void add(const Tumble& tumble, const std::vector<RateState>& states) {
@@ -164,11 +164,11 @@ struct Errors {
 };
 
 template <typename Params>
-Errors smooth(Params params, double distance_min) {
+ErrorsAtRails errors_with(Params params, double distance_min) {
   params.expert.accel_planes.distance_min_rad_s = distance_min;
-  Errors out;
+  ErrorsAtRails out;
   for (std::uint64_t seed = 1; seed <= 4; ++seed) {
-    const Tumble tumble = tumble_of(seed, 0.03);
+    const Tumble tumble = railed_tumble(seed, 0.03);
     std::vector<RateState> states;
     if constexpr (std::is_same_v<Params, RateSmoother::Params>) {
       RateReport report;
@@ -176,12 +176,7 @@ Errors smooth(Params params, double distance_min) {
     } else {
       const RateStream stream(params);
       RateStream::State state = stream.start();
-      std::optional<RateState> one;
-      for (const ImuSample& sample : tumble.recording.samples) {
-        EXPECT_TRUE(stream.push(sample, state, one).ok());
-        if (one) states.push_back(*one);
-      }
-      stream.flush(state, states);
+      states = streamed_rates(stream, tumble.recording.samples, state);
     }
     out.add(tumble, states);
   }
@@ -189,9 +184,9 @@ Errors smooth(Params params, double distance_min) {
 }
 
 TEST(RailJudgement, ASaturatedForceIsABoundAlongItsElement) {
-  Errors ours = smooth(with_lever_arm<RateSmoother::Params>(), 15.0);
+  ErrorsAtRails ours = errors_with(with_lever_arm<RateSmoother::Params>(), 15.0);
   // negative control: the same smoother that knows no planes believes forces that are none
-  Errors blind = smooth(with_lever_arm<RateSmoother::Params>(), 1000.0);
+  ErrorsAtRails blind = errors_with(with_lever_arm<RateSmoother::Params>(), 1000.0);
   ASSERT_GT(ours.all.size(), 200u);
   // measured: mean 0.095 and 0.236 rad/s, 90 % 0.13 and 0.81, within 0.990 and 0.938
   EXPECT_LT(ours.mean(), 0.6 * blind.mean());
@@ -201,8 +196,8 @@ TEST(RailJudgement, ASaturatedForceIsABoundAlongItsElement) {
 }
 
 TEST(RailJudgement, TheStreamReadsItAlike) {
-  Errors ours = smooth(with_lever_arm<RateStream::Params>(), 15.0),
-         blind = smooth(with_lever_arm<RateStream::Params>(), 1000.0);
+  ErrorsAtRails ours = errors_with(with_lever_arm<RateStream::Params>(), 15.0),
+                blind = errors_with(with_lever_arm<RateStream::Params>(), 1000.0);
   ASSERT_GT(ours.all.size(), 200u);
   EXPECT_LT(ours.median(), 0.7 * blind.median());
   EXPECT_GT(ours.within, 0.95 * ours.axes);

@@ -33,8 +33,8 @@ Vector3d waving(double t, double scale) {
 }
 
 // What a device with elements along `rows` and `offset` makes of rates: clipped at `rail`.
-std::vector<Vector3d> clipped(const std::vector<Vector3d>& rates, const Eigen::Matrix3d& rows, const Vector3d& offset,
-                              double rail) {
+std::vector<Vector3d> clipped_along(const std::vector<Vector3d>& rates, const Eigen::Matrix3d& rows,
+                                    const Vector3d& offset, double rail) {
   std::vector<Vector3d> out;
   for (const Vector3d& w : rates) {
     const Vector3d sensed = rows * w + offset;
@@ -75,7 +75,7 @@ TEST(RailPlanes, ThePlaneOfAKnownDeviceComesBack) {
   Eigen::Matrix3d rows;
   rows << 1.0, 0.006, -0.018, -0.04, 1.0, 0.02, 0.05, 0.01, 1.0;
   const Vector3d offset(-0.05, 0.13, 0.0);
-  const RailPlanes planes = find(clipped(waved(12.0, 30.0, 0.004, 1), rows, offset, 7.3));
+  const RailPlanes planes = find(clipped_along(waved(12.0, 30.0, 0.004, 1), rows, offset, 7.3));
   for (int j = 0; j < 3; ++j) {
     ASSERT_TRUE(planes.element[static_cast<std::size_t>(j)].has_value()) << j;
     const RailPlane& rail = *planes.element[static_cast<std::size_t>(j)];
@@ -138,7 +138,7 @@ TEST(RailPlanes, SpinsTopsRestAndCreepingAreNoRails) {
 
 TEST(RailPlanes, ReadingsThatRepeatOrAreCoarseDoNotHideARail) {
   const Eigen::Matrix3d rows = drawn_rows(3, 0.03);
-  const std::vector<Vector3d> exact = clipped(waved(18.0, 20.0, 0.004, 5), rows, Vector3d::Zero(), 10.3);
+  const std::vector<Vector3d> exact = clipped_along(waved(18.0, 20.0, 0.004, 5), rows, Vector3d::Zero(), 10.3);
   std::vector<Vector3d> held;
   for (std::size_t k = 0; k < exact.size(); ++k) {
     const Vector3d& latest = exact[k - k % 3];
@@ -162,8 +162,9 @@ TEST(RailPlanes, ReadingsThatRepeatOrAreCoarseDoNotHideARail) {
 // it.
 TEST(RailPlanes, AStatedRangeCountsAsMuchAsItIsWorth) {
   const Eigen::Matrix3d rows = drawn_rows(1, 0.03);
-  const std::vector<ImuSample> many = samples_of(clipped(waved(12.0, 20.0, 0.004, 1), rows, Vector3d::Zero(), 7.3));
-  const std::vector<ImuSample> few = samples_of(clipped(waved(7.6, 2.5, 0.004, 1), rows, Vector3d::Zero(), 7.3));
+  const std::vector<ImuSample> many =
+      samples_of(clipped_along(waved(12.0, 20.0, 0.004, 1), rows, Vector3d::Zero(), 7.3));
+  const std::vector<ImuSample> few = samples_of(clipped_along(waved(7.6, 2.5, 0.004, 1), rows, Vector3d::Zero(), 7.3));
   ASSERT_TRUE(RailPlaneFinder({.stated_rad_s = 7.0}).find(few).any());
   EXPECT_FALSE(RailPlaneFinder({.stated_rad_s = 17.0}).find(few).any());
   EXPECT_TRUE(RailPlaneFinder({.stated_rad_s = 17.0}).find(many).any());

@@ -21,7 +21,7 @@ TumbleRecording short_tumble() {
   return make_tumble(options);
 }
 
-std::vector<RateState> estimate(const std::vector<ImuSample>& samples, RateReport& report) {
+std::vector<RateState> sound_rates(const std::vector<ImuSample>& samples, RateReport& report) {
   std::vector<RateState> out;
   const Status status = RateSmoother(with_lever_arm<RateSmoother::Params>()).estimate(samples, out, report);
   EXPECT_TRUE(status.ok()) << status.message();
@@ -73,7 +73,7 @@ TEST(RateSmootherInput, ShortGapsAreBridged) {
   TumbleRecording tumble = short_tumble();
   tumble.samples.erase(tumble.samples.begin() + 100, tumble.samples.begin() + 107);
   RateReport report;
-  estimate(tumble.samples, report);
+  sound_rates(tumble.samples, report);
 }
 
 TEST(RateSmootherInput, AllAxesClippedForSecondsWithoutFlight) {
@@ -85,7 +85,7 @@ TEST(RateSmootherInput, AllAxesClippedForSecondsWithoutFlight) {
     samples[k].specific_force_m_s2 = {3.0, -40.0, 60.0};  // outwards: no rotation makes that
   }
   RateReport report;
-  const std::vector<RateState> out = estimate(samples, report);
+  const std::vector<RateState> out = sound_rates(samples, report);
   EXPECT_EQ(report.clipped, 400u);
   EXPECT_GT(report.bounded_only, 300u);
   EXPECT_GT(out[300].w_WI_I_rad_s.x(), 10.3);
@@ -97,7 +97,7 @@ TEST(RateSmootherInput, ADeadAxis) {
   TumbleRecording tumble = short_tumble();
   for (ImuSample& sample : tumble.samples) sample.angular_velocity_rad_s.z() = 0.0;
   RateReport report;
-  estimate(tumble.samples, report);
+  sound_rates(tumble.samples, report);
 }
 
 TEST(RateSmootherInput, OverflowsAreNotBelieved) {
@@ -120,7 +120,7 @@ TEST(RateSmootherInput, OverflowsAreNotBelieved) {
   }
   ASSERT_GT(flips, 5u);
   RateReport report;
-  const std::vector<RateState> out = estimate(tumble.samples, report);
+  const std::vector<RateState> out = sound_rates(tumble.samples, report);
   EXPECT_GE(report.void_readings, flips / 2);
   EXPECT_LT(clipped_errors(tumble, rates_of(out), 10.49).median, 0.05);
 }

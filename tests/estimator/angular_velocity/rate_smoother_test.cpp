@@ -35,14 +35,6 @@ Outcome estimate(const TumbleOptions& options, const RateSmoother::Params& param
   return run;
 }
 
-RateSmoother::Params wrong_lever(double error_m, std::uint64_t seed) {
-  auto params = with_lever_arm<RateSmoother::Params>();
-  const double s = static_cast<double>(seed);
-  params.model.nominal.lever_arm_m +=
-      error_m * Vector3d(std::sin(s), std::cos(2.0 * s), std::sin(3.0 * s)).normalized();
-  return params;
-}
-
 TEST(RateSmoother, RecoversTumblesWithTheLeverArmOffByTwentyMillimetres) {
   std::vector<double> medians;
   for (std::uint64_t seed = 1; seed <= 10; ++seed) {
@@ -50,7 +42,7 @@ TEST(RateSmoother, RecoversTumblesWithTheLeverArmOffByTwentyMillimetres) {
     options.seed = seed;
     options.mounting_seed = seed;
     options.roll = false;
-    const Outcome run = estimate(options, wrong_lever(0.02, seed));
+    const Outcome run = estimate(options, with_wrong_lever_arm<RateSmoother::Params>(0.02, seed));
     const ClippedErrors ours = clipped_errors(run.recording, rates_of(run.states), kAtRail);
     const ClippedErrors raw = clipped_errors(run.recording, readings_of(run.recording.samples), kAtRail);
     ASSERT_GT(ours.count, 50u);
@@ -74,7 +66,7 @@ TEST(RateSmoother, HandlesAllAxesClippedAtOnce) {
   options.speed_high_rad_s = 24.0;
   options.gyro_rail_rad_s = 7.0;
   options.roll = false;
-  const Outcome run = estimate(options, wrong_lever(0.02, 4));
+  const Outcome run = estimate(options, with_wrong_lever_arm<RateSmoother::Params>(0.02, 4));
   std::vector<double> errors;
   for (std::size_t k = 0; k < run.states.size(); ++k) {
     if (run.states[k].clipped_axes != 7 || run.recording.phase[k] != Phase::flight) continue;
@@ -93,7 +85,7 @@ TEST(RateSmoother, CoverageInFlight) {
     options.seed = seed;
     options.mounting_seed = seed;
     options.roll = false;
-    RateSmoother::Params params = wrong_lever(0.02, seed);
+    RateSmoother::Params params = with_wrong_lever_arm<RateSmoother::Params>(0.02, seed);
     params.model.expert.error_sizes.gyro = params.model.expert.error_sizes.accel = 0.0;  // nor has the sensor any
     const Outcome run = estimate(options, params);
     for (std::size_t k = 0; k < run.states.size(); ++k) {
@@ -137,7 +129,7 @@ Consistency consistency_with_matrices(double sigma, double stated) {
     options.flights = 2;  // many are a calibration of their own
     for (double& entry : options.gyro_error.reshaped()) entry = sigma * noise();
     for (double& entry : options.accel_error.reshaped()) entry = sigma * noise();
-    RateSmoother::Params params = wrong_lever(0.01, seed);
+    RateSmoother::Params params = with_wrong_lever_arm<RateSmoother::Params>(0.01, seed);
     params.expert.error_rounds_max = 1;
     params.model.expert.error_sizes.gyro = params.model.expert.error_sizes.accel = stated;
     const Outcome run = estimate(options, params);
@@ -221,7 +213,7 @@ TEST(RateSmoother, WhatARunLearnsHelpsTheNext) {
   mild.speed_high_rad_s = 12.0;
   mild.flights = 3;
   mild.roll = false;
-  RateSmoother::Params params = wrong_lever(0.02, 5);
+  RateSmoother::Params params = with_wrong_lever_arm<RateSmoother::Params>(0.02, 5);
   const Outcome first = estimate(hard, params), fresh = estimate(mild, params);
   params.model.calibration = first.report.calibration;
   const Outcome second = estimate(mild, params);
@@ -235,7 +227,8 @@ TEST(RateSmoother, WhatARunLearnsHelpsTheNext) {
 TEST(RateSmoother, SameInputSameBits) {
   TumbleOptions options;
   options.seed = 9;
-  const Outcome a = estimate(options, wrong_lever(0.01, 9)), b = estimate(options, wrong_lever(0.01, 9));
+  const Outcome a = estimate(options, with_wrong_lever_arm<RateSmoother::Params>(0.01, 9)),
+                b = estimate(options, with_wrong_lever_arm<RateSmoother::Params>(0.01, 9));
   for (std::size_t k = 0; k < a.states.size(); ++k) {
     ASSERT_EQ(a.states[k].w_WI_I_rad_s, b.states[k].w_WI_I_rad_s);
     ASSERT_EQ(a.states[k].covariance_rad2_s2, b.states[k].covariance_rad2_s2);

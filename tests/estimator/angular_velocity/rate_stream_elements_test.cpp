@@ -11,6 +11,8 @@
 #include <vector>
 
 #include "estimator/angular_velocity/drawn_elements.hpp"
+#include "estimator/angular_velocity/quantile.hpp"
+#include "estimator/angular_velocity/streamed_rates.hpp"
 #include "estimator/angular_velocity/tumble_recording.hpp"
 #include "oracles/gaussian.hpp"
 #include "tumble/angular_velocity/rate_smoother.hpp"
@@ -20,73 +22,22 @@ namespace tumble {
 namespace {
 
 using Eigen::Vector3d;
+using testing::quantile;
 
-std::vector<RateState> stream(const RateStream& method, const std::vector<ImuSample>& samples,
-                              RateStream::State& state) {
-  std::vector<RateState> out;
-  std::optional<RateState> one;
-  for (const ImuSample& sample : samples) {
-    EXPECT_TRUE(method.push(sample, state, one).ok());
-    if (one) out.push_back(*one);
-  }
-  method.flush(state, out);
-  return out;
-}
-
-TumbleRecording tumble_of(std::uint64_t seed, double tilt) {
-  TumbleOptions options;
-  options.seed = seed;
-  if (tilt > 0.0) options.gyro_rows = drawn_rows(seed, tilt);
-  return make_tumble(options);
-}
-
-struct Pool {
-  std::vector<double> raw, ours;
-  int within = 0, axes = 0, deep = 0, found = 0, called = 0, right = 0;
-
-  void add(const TumbleRecording& tumble, const std::vector<RateState>& states) {
-    ASSERT_EQ(states.size(), tumble.samples.size());
-    for (std::size_t k = 0; k < states.size(); ++k) {
-      for (int j = 0; j < 3; ++j) {
-        const bool clipped = (states[k].clipped_axes >> j & 1u) != 0, is_deep = std::abs(tumble.hidden[k][j]) > 0.1;
-        deep += is_deep;
-        found += is_deep && clipped;
-        called += clipped;
-        // at the rail within the noise counts as there
-        right += clipped && (tumble.hidden[k][j] != 0.0 || std::abs(tumble.samples[k].angular_velocity_rad_s[j]) > 9.0);
-      }
-      if (tumble.hidden[k].isZero()) continue;
-      const Vector3d error = states[k].w_WI_I_rad_s - tumble.truth[k];
-      raw.push_back((tumble.samples[k].angular_velocity_rad_s - tumble.truth[k]).norm());
-      ours.push_back(error.norm());
-      for (int j = 0; j < 3; ++j) {
-        ++axes;
-        within += std::abs(error[j]) <= 3.0 * std::sqrt(states[k].covariance_rad2_s2(j, j));
-      }
-    }
-  }
-  double share_within() const { return static_cast<double>(within) / axes; }
-};
-
-double quantile(std::vector<double> values, double share) {
-  std::sort(values.begin(), values.end());
-  return values.at(static_cast<std::size_t>(share * static_cast<double>(values.size() - 1)));
-}
-
-Pool run(double tilt, const RateStream::Params& params = with_lever_arm<RateStream::Params>()) {
+Pool streamed(double tilt, const RateStream::Params& params = with_lever_arm<RateStream::Params>()) {
   Pool pool;
   for (std::uint64_t seed = 1; seed <= 8; ++seed) {
-    const TumbleRecording tumble = tumble_of(seed, tilt);
+    const TumbleRecording tumble = tilted_tumble(seed, tilt);
     const RateStream method(params);
     RateStream::State state = method.start();
-    pool.add(tumble, stream(method, tumble.samples, state));
+    pool.add(tumble, streamed_rates(method, tumble.samples, state));
     EXPECT_EQ(state.failures, 0u);
   }
   return pool;
 }
 
 TEST(RateStreamElements, ATiltedRailIsReadAsAnUprightOne) {
-  const Pool upright = run(0.0), tilted = run(0.02), steep = run(0.05);
+  const Pool upright = streamed(0.0), tilted = streamed(0.02), steep = streamed(0.05);
   ASSERT_GT(tilted.ours.size(), 800u);
   for (const Pool* pool : {&tilted, &steep}) {
     EXPECT_LT(quantile(pool->ours, 0.5), 0.05 * quantile(pool->raw, 0.5));
@@ -102,7 +53,7 @@ TEST(RateStreamElements, ATiltedRailIsReadAsAnUprightOne) {
 TEST(RateStreamElements, WithoutPlanesItWouldBeSilentlyWrong) {
   auto params = with_lever_arm<RateStream::Params>();
   params.expert.planes.distance_min_rad_s = 1000.0;
-  const Pool pool = run(0.02, params);
+  const Pool pool = streamed(0.02, params);
   EXPECT_GT(quantile(pool.ours, 0.5), 0.3 * quantile(pool.raw, 0.5));
   EXPECT_LT(pool.share_within(), 0.8);
 }
@@ -110,13 +61,13 @@ TEST(RateStreamElements, WithoutPlanesItWouldBeSilentlyWrong) {
 TEST(RateStreamElements, WithALongLagItIsTheBatch) {
   for (const double tilt : {0.0, 0.03}) {
     for (std::uint64_t seed = 3; seed <= 4; ++seed) {
-      const TumbleRecording tumble = tumble_of(seed, tilt);
+      const TumbleRecording tumble = tilted_tumble(seed, tilt);
       auto params = with_lever_arm<RateStream::Params>();
       params.lag_s = 9.0;  // nothing leaves the window
       params.expert.inflation.covariance = 0.0;
       const RateStream method(params);
       RateStream::State state = method.start();
-      const std::vector<RateState> live = stream(method, tumble.samples, state);
+      const std::vector<RateState> live = streamed_rates(method, tumble.samples, state);
       auto batch_params = with_lever_arm<RateSmoother::Params>();
       batch_params.model = params.model;
       std::vector<RateState> batch;
@@ -142,10 +93,10 @@ TEST(RateStreamElements, WithALongLagItIsTheBatch) {
 }
 
 TEST(RateStreamElements, SplittingAnywhereChangesNothing) {
-  const std::vector<ImuSample> samples = tumble_of(5, 0.03).samples;
+  const std::vector<ImuSample> samples = tilted_tumble(5, 0.03).samples;
   const RateStream method(with_lever_arm<RateStream::Params>());
   RateStream::State whole = method.start();
-  const std::vector<RateState> want = stream(method, samples, whole);
+  const std::vector<RateState> want = streamed_rates(method, samples, whole);
   ASSERT_TRUE(whole.rails.known.planes.any());
   for (const std::size_t split : {std::size_t{90}, samples.size() / 3, samples.size() / 2}) {
     RateStream::State state = method.start();
@@ -178,7 +129,7 @@ TEST(RateStreamElements, NothingIsCalledClippedWhereNothingClips) {
     const TumbleRecording tumble = make_tumble(options);
     const RateStream method(with_lever_arm<RateStream::Params>());
     RateStream::State state = method.start();
-    for (const RateState& rate : stream(method, tumble.samples, state)) EXPECT_EQ(rate.clipped_axes, 0) << seed;
+    for (const RateState& rate : streamed_rates(method, tumble.samples, state)) EXPECT_EQ(rate.clipped_axes, 0) << seed;
   }
 }
 
@@ -258,7 +209,7 @@ std::pair<int, int> within_at_known_rail(const RateStream::Params& params) {
     const Swing swing(seed);
     const RateStream method(params);
     RateStream::State state = method.start();
-    const std::vector<RateState> rates = stream(method, swing.samples, state);
+    const std::vector<RateState> rates = streamed_rates(method, swing.samples, state);
     for (std::size_t k = 0; k < rates.size(); ++k) {
       if ((rates[k].clipped_axes & 1u) == 0) continue;
       ++clipped;
@@ -327,7 +278,7 @@ TEST(RateStreamElements, ADoubtStaysUntilItIsGivenOut) {
     samples.resize(402);
     const RateStream method(with_lever_arm<RateStream::Params>());
     RateStream::State state = method.start();
-    const std::vector<RateState> out = stream(method, samples, state);
+    const std::vector<RateState> out = streamed_rates(method, samples, state);
     for (std::size_t k = kTop; k < kTop + 3; ++k) {
       EXPECT_EQ(out[k].source, RateSource::bounded_only) << seed << " " << k;
     }
@@ -358,7 +309,7 @@ TEST(RateStreamElements, SpinsAndTopsAreNoRails) {
       const RateStream method(with_lever_arm<RateStream::Params>());
       RateStream::State state = method.start();
       int called = 0;
-      for (const RateState& out : stream(method, samples, state)) called += out.clipped_axes != 0;
+      for (const RateState& out : streamed_rates(method, samples, state)) called += out.clipped_axes != 0;
       EXPECT_EQ(called, 0) << seed << " " << kind;
       EXPECT_FALSE(state.rails.known.planes.any()) << seed << " " << kind;
     }

@@ -15,9 +15,7 @@ namespace {
 
 using Eigen::Vector3d;
 
-constexpr TimeNs kPeriod = 10'000'000;
-
-Saave::Params stated() {
+Saave::Params stated_device() {
   Saave::Params params;
   params.lever_arm_m = {-0.022, -0.085, 0.055};
   params.saturation_point_rad_s = 10.5;
@@ -26,10 +24,10 @@ Saave::Params stated() {
 
 std::vector<ImuSample> tumbling_run(std::size_t count) {
   std::vector<ImuSample> run(count);
-  const Vector3d lever = stated().lever_arm_m;
+  const Vector3d lever = stated_device().lever_arm_m;
   for (std::size_t k = 0; k < count; ++k) {
     const Vector3d w(9.0 + 4.0 * std::sin(0.05 * k), std::cos(0.03 * k), 0.4);
-    run[k].time_ns = static_cast<TimeNs>(k) * kPeriod;
+    run[k].time_ns = static_cast<TimeNs>(k) * 10'000'000;
     run[k].angular_velocity_rad_s = w.cwiseMin(10.6).cwiseMax(-10.6);
     run[k].specific_force_m_s2 = w.cross(w.cross(lever));
   }
@@ -37,7 +35,7 @@ std::vector<ImuSample> tumbling_run(std::size_t count) {
 }
 
 TEST(SaaveInput, SplittingTheRecursionAnywhereChangesNothing) {
-  const Saave saave(stated());
+  const Saave saave(stated_device());
   const std::vector<ImuSample> run = tumbling_run(120);
   std::vector<Saave::Recovered> whole(run.size());
   Saave::State state;
@@ -51,7 +49,7 @@ TEST(SaaveInput, SplittingTheRecursionAnywhereChangesNothing) {
     Saave::State carried;
     Saave::Recovered got;
     for (std::size_t k = 0; k < split; ++k) ASSERT_TRUE(saave.step(run[k], carried, got).ok());
-    const Saave second(stated());
+    const Saave second(stated_device());
     for (std::size_t k = split; k < run.size(); ++k) {
       ASSERT_TRUE(second.step(run[k], carried, got).ok());
       ASSERT_EQ(got.rate_rad_s, whole[k].rate_rad_s);  // bit for bit
@@ -62,7 +60,7 @@ TEST(SaaveInput, SplittingTheRecursionAnywhereChangesNothing) {
 }
 
 TEST(SaaveInput, TroubleNamesFieldValueAndBoundAndWritesNothing) {
-  const Saave saave(stated());
+  const Saave saave(stated_device());
   std::vector<RateState> out(2);
   out[1].clipped_axes = 5;
   const auto expect = [&](const std::vector<ImuSample>& run, Trouble trouble, const std::string& field) {
@@ -101,7 +99,7 @@ TEST(SaaveInput, TroubleNamesFieldValueAndBoundAndWritesNothing) {
 }
 
 TEST(SaaveInput, AFailedStepLeavesTheStateUsable) {
-  const Saave saave(stated());
+  const Saave saave(stated_device());
   const std::vector<ImuSample> run = tumbling_run(60);
   Saave::State state, clean;
   Saave::Recovered got, want;
@@ -119,18 +117,18 @@ TEST(SaaveInput, AFailedStepLeavesTheStateUsable) {
 
 TEST(SaaveInput, ASingleSampleIsReturnedAsItIs) {
   std::vector<RateState> out;
-  ASSERT_TRUE(Saave(stated()).estimate(std::vector<ImuSample>(1), out).ok());
+  ASSERT_TRUE(Saave(stated_device()).estimate(std::vector<ImuSample>(1), out).ok());
   ASSERT_EQ(out.size(), 1u);
   EXPECT_EQ(out[0].w_WI_I_rad_s, Vector3d::Zero());
 }
 
 TEST(SaaveInput, RefusesParametersOutsideOfTheirBounds) {
   const auto refused = [](auto change) {
-    Saave::Params params = stated();
+    Saave::Params params = stated_device();
     change(params);
     EXPECT_THROW(Saave{params}, InvalidParams);
   };
-  EXPECT_NO_THROW(Saave{stated()});
+  EXPECT_NO_THROW(Saave{stated_device()});
   refused([](Saave::Params& p) { p.lever_arm_m = Saave::Params{}.lever_arm_m; });  // neither has a default
   refused([](Saave::Params& p) { p.saturation_point_rad_s = Saave::Params{}.saturation_point_rad_s; });
   refused([](Saave::Params& p) { p.lever_arm_m.y() = std::nan(""); });

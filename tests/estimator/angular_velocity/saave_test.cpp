@@ -28,7 +28,7 @@ Saave::Params params_below_rail() {
   return params;
 }
 
-Vector3d clipped(const Vector3d& w) {
+Vector3d clipped_rate(const Vector3d& w) {
   return w.cwiseMin(kRail).cwiseMax(-kRail);
 }
 
@@ -66,7 +66,7 @@ TEST(Saave, TakesTheSignOfTheReadingAndSubtractsTheOtherAxes) {
   const Vector3d w(2.0, -15.0, 1.0);
   // axis known exactly, constant rate: the estimate is exact
   const Saave::Recovered out =
-      after_axis(w / 3.0, sample_at(1, clipped(w), w.cross(w.cross(kLever))), params_below_rail());
+      after_axis(w / 3.0, sample_at(1, clipped_rate(w), w.cross(w.cross(kLever))), params_below_rail());
   EXPECT_LE((out.rate_rad_s - w).norm(), 1e-12);
 }
 
@@ -123,7 +123,7 @@ TEST(SaaveEdge, TheIMUOnTheAxisIsRejectedAndNearItUnguarded) {
 TEST(SaaveEdge, OnlyTheFirstOfSeveralClippedAxesIsTreated) {
   const Vector3d w(14.0, 13.0, 12.0);
   const Saave::Recovered out =
-      after_axis(w / 2.0, sample_at(1, clipped(w), w.cross(w.cross(kLever))), params_below_rail());
+      after_axis(w / 2.0, sample_at(1, clipped_rate(w), w.cross(w.cross(kLever))), params_below_rail());
   EXPECT_EQ(out.clipped_axes, 7);
   EXPECT_EQ(out.rate_rad_s.y(), kRail);
   EXPECT_EQ(out.rate_rad_s.z(), kRail);
@@ -134,7 +134,7 @@ TEST(SaaveEdge, OnlyTheFirstOfSeveralClippedAxesIsTreated) {
 
 TEST(SaaveEdge, ClippedAccelerometersAreBelieved) {
   const Vector3d w = 15.0 * Vector3d::UnitX();
-  ImuSample sample = sample_at(1, clipped(w), w.cross(w.cross(kLever)).cwiseMin(10.0).cwiseMax(-10.0));
+  ImuSample sample = sample_at(1, clipped_rate(w), w.cross(w.cross(kLever)).cwiseMin(10.0).cwiseMax(-10.0));
   sample.device_clip_flags = kClipAccelX | kClipAccelY | kClipAccelZ;
   const Saave::Recovered out = after_axis(w / 2.0, sample, params_below_rail());
   EXPECT_TRUE(out.accepted);
@@ -145,7 +145,7 @@ TEST(SaaveEdge, ContactIsBelieved) {
   // resting contact: 1 g along the lever adds g / (2 r w), 3.2 rad/s
   const Vector3d w = 15.0 * Vector3d::UnitX(), to_axis = Vector3d(-0.022, 0, 0) - kLever;
   const Vector3d force = w.cross(w.cross(kLever)) + 9.81 * to_axis.normalized();
-  const Saave::Recovered out = after_axis(w / 2.0, sample_at(1, clipped(w), force), params_below_rail());
+  const Saave::Recovered out = after_axis(w / 2.0, sample_at(1, clipped_rate(w), force), params_below_rail());
   EXPECT_NEAR(out.rate_rad_s.x() - 15.0, 3.2, 0.35);  // the figure is to first order, exact 2.94
 }
 
@@ -167,7 +167,7 @@ TEST(SaaveEdge, TheVarianceOfAnEstimateDependsOnNothing) {
   for (double speed : {11.0, 30.0}) {
     const Vector3d w = speed * Vector3d::UnitY();
     const Saave::Recovered out =
-        after_axis(w / 4.0, sample_at(1, clipped(w), w.cross(w.cross(kLever))), params_below_rail());
+        after_axis(w / 4.0, sample_at(1, clipped_rate(w), w.cross(w.cross(kLever))), params_below_rail());
     EXPECT_EQ(out.variance_rad2_s2.y(), 0.2741);
   }
 }
@@ -195,12 +195,13 @@ TEST(SaaveEdge, StandstillDoesNotPoisonTheAxis) {
 
 // Torque-free bodies with the noise of the MTi-30, as in the stated study.
 
-struct Errors {
+struct TumbleErrors {
   double raw_median, median, maximum;
   std::size_t clipped, several;
 };
 
-Errors tumble_errors(const Vector3d& moments, const Vector3d& w0, const Saave::Params& params, bool noisy = true) {
+TumbleErrors tumble_errors(const Vector3d& moments, const Vector3d& w0, const Saave::Params& params,
+                           bool noisy = true) {
   const oracles::TorqueFreeRotation motion(moments, w0);
   oracles::Gaussian noise(7);
   std::vector<ImuSample> run;
@@ -212,12 +213,12 @@ Errors tumble_errors(const Vector3d& moments, const Vector3d& w0, const Saave::P
     const Vector3d w = ramp * motion.rate(t), gyro_noise = noise.vector(), accel_noise = noise.vector();
     truth.push_back(w);
     const Vector3d force = ramp * ramp * motion.specific_force(t, kLever) + (noisy ? 5.9e-3 : 0.0) * accel_noise;
-    run.push_back(sample_at(k, clipped(w + (noisy ? 5.236e-3 : 0.0) * gyro_noise), force));
+    run.push_back(sample_at(k, clipped_rate(w + (noisy ? 5.236e-3 : 0.0) * gyro_noise), force));
   }
   std::vector<RateState> out;
   EXPECT_TRUE(Saave(params).estimate(run, out).ok());
   std::vector<double> errors, raw;
-  Errors result{};
+  TumbleErrors result{};
   for (std::size_t k = 60; k < run.size(); ++k) {
     if (out[k].clipped_axes == 0) continue;
     errors.push_back((out[k].w_WI_I_rad_s - truth[k]).norm());
@@ -236,7 +237,7 @@ Errors tumble_errors(const Vector3d& moments, const Vector3d& w0, const Saave::P
 
 TEST(SaaveAccuracy, SpinAboutAPrincipalAxis) {
   for (int j = 0; j < 3; ++j) {
-    const Errors e = tumble_errors({1.0, 1.1, 1.3}, 15.0 * Vector3d::Unit(j), params_below_rail());
+    const TumbleErrors e = tumble_errors({1.0, 1.1, 1.3}, 15.0 * Vector3d::Unit(j), params_below_rail());
     ASSERT_GT(e.clipped, 400u);
     EXPECT_NEAR(e.raw_median, 4.5, 0.05);
     EXPECT_LT(e.median, 0.015);  // stated 0.01
@@ -251,7 +252,7 @@ TEST(SaaveAccuracy, WobblingBodies) {
       for (int j : {0, 2}) {
         Vector3d w0 = 15.0 * Vector3d::Unit(j);
         w0[1] = transverse;
-        const Errors e = tumble_errors(moments, w0, params_below_rail());
+        const TumbleErrors e = tumble_errors(moments, w0, params_below_rail());
         ASSERT_GT(e.clipped, 300u);
         if (e.several > 0) continue;
         ++cases;
@@ -271,7 +272,7 @@ TEST(SaaveAccuracy, WobblingBodies) {
 }
 
 TEST(SaaveAccuracy, ASecondClippedAxisCostsRadiansPerSecond) {
-  const Errors e = tumble_errors({1.0, 1.1, 1.3}, {13.0, 13.0, 2.0}, params_below_rail());
+  const TumbleErrors e = tumble_errors({1.0, 1.1, 1.3}, {13.0, 13.0, 2.0}, params_below_rail());
   ASSERT_GT(e.several, 50u);
   EXPECT_GT(e.maximum, 1.5);  // stated: about 2
 }
@@ -279,7 +280,7 @@ TEST(SaaveAccuracy, ASecondClippedAxisCostsRadiansPerSecond) {
 TEST(SaaveAccuracy, ACentimetreOfLeverArmErrorAlongTheLever) {
   Saave::Params params = params_below_rail();
   params.lever_arm_m = kLever * (1.0 + 0.01 / kLever.norm());
-  const Errors e = tumble_errors({1.0, 1.1, 1.3}, 15.0 * Vector3d::UnitX(), params, false);
+  const TumbleErrors e = tumble_errors({1.0, 1.1, 1.3}, 15.0 * Vector3d::UnitX(), params, false);
   ASSERT_GT(e.clipped, 400u);
   const double exact = 15.0 * (1.0 - std::sqrt(kLever.norm() / (kLever.norm() + 0.01)));
   EXPECT_NEAR(e.median, exact, 1e-6);

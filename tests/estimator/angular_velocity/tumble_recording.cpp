@@ -17,8 +17,7 @@ namespace {
 using Eigen::Quaterniond;
 using Eigen::Vector3d;
 
-constexpr double kStep = 5e-4;
-constexpr double kGravity = 9.81;
+constexpr double kStep_s = 5e-4;
 constexpr double kImpactTime = 0.02;
 constexpr double kLeverMax = 8.0;  // rad/m: mass times distance of the contact over a third of the trace of the inertia
 
@@ -32,9 +31,9 @@ Vector3d direction(oracles::Gaussian& noise) {
 }
 
 // The whole motion at 2 kHz.
-class Motion {
+class TumbleMotion {
  public:
-  explicit Motion(const TumbleOptions& options) : options_(options), noise_(options.seed) {
+  explicit TumbleMotion(const TumbleOptions& options) : options_(options), noise_(options.seed) {
     oracles::Gaussian mounting(options.mounting_seed);
     const Vector3d axis = direction(mounting);
     R_IB_ = Eigen::AngleAxisd(3.0 * mounting.uniform(), axis).toRotationMatrix();
@@ -57,6 +56,8 @@ class Motion {
   Eigen::Matrix3d inertia() const { return R_IB_ * options_.moments.asDiagonal() * R_IB_.transpose(); }
 
  private:
+  static constexpr double kGravity = 9.81;
+
   // A vector of any direction and of a length between two bounds. Its direction is drawn first and in a statement of
   // its own: of the factors of a product each compiler takes another first.
   Vector3d within(double low, double high, double unit = 1.0) {
@@ -65,7 +66,7 @@ class Motion {
   }
   void add(const Vector3d& rate, const Vector3d& force, Phase phase) {
     moments_.push_back({rate, force, phase});
-    const Vector3d turn = kStep * rate;
+    const Vector3d turn = kStep_s * rate;
     if (turn.norm() > 0.0) q_WI_ = q_WI_ * Quaterniond(Eigen::AngleAxisd(turn.norm(), turn.normalized()));
   }
   Vector3d support() const { return q_WI_.conjugate() * Vector3d(0.0, 0.0, kGravity); }
@@ -84,16 +85,16 @@ class Motion {
   }
 
   void still(double duration) {
-    for (int k = 0; k < static_cast<int>(duration / kStep); ++k) add(Vector3d::Zero(), support(), Phase::rest);
+    for (int k = 0; k < static_cast<int>(duration / kStep_s); ++k) add(Vector3d::Zero(), support(), Phase::rest);
   }
   Vector3d fly(const Vector3d& rate, double duration) {
     const oracles::TorqueFreeRotation body(options_.moments, R_IB_.transpose() * rate);
-    const int count = static_cast<int>(duration / kStep);
-    for (int k = 1; k <= count; ++k) add(R_IB_ * body.rate(k * kStep), Vector3d::Zero(), Phase::flight);
-    return R_IB_ * body.rate(count * kStep);
+    const int count = static_cast<int>(duration / kStep_s);
+    for (int k = 1; k <= count; ++k) add(R_IB_ * body.rate(k * kStep_s), Vector3d::Zero(), Phase::flight);
+    return R_IB_ * body.rate(count * kStep_s);
   }
   void blend(const Vector3d& from, const Vector3d& to, double duration, Phase phase, const Vector3d& peak) {
-    const int count = static_cast<int>(duration / kStep);
+    const int count = static_cast<int>(duration / kStep_s);
     for (int k = 1; k <= count; ++k) {
       const double s = static_cast<double>(k) / count;
       const Vector3d hold = phase == Phase::impact ? Vector3d::Zero() : support();
@@ -110,14 +111,10 @@ class Motion {
   std::vector<Moment> moments_;
 };
 
-double quantile(const std::vector<double>& sorted, double share) {
-  return sorted[static_cast<std::size_t>(share * static_cast<double>(sorted.size() - 1))];
-}
-
 }  // namespace
 
 TumbleRecording make_tumble(const TumbleOptions& options) {
-  const Motion motion(options);
+  const TumbleMotion motion(options);
   const std::vector<Moment>& moments = motion.moments();
   oracles::Gaussian noise(options.seed + 1000003);
   const std::size_t window = static_cast<std::size_t>(2000 / options.rate_hz);
@@ -129,7 +126,8 @@ TumbleRecording make_tumble(const TumbleOptions& options) {
     Phase phase = moments[k * window].phase;
     for (std::size_t i = k * window; i < (k + 1) * window; ++i) {
       const Vector3d& w = moments[i].rate;
-      const Vector3d alpha = (moments[i + 1].rate - moments[i == 0 ? 0 : i - 1].rate) / (i == 0 ? kStep : 2 * kStep);
+      const Vector3d alpha =
+          (moments[i + 1].rate - moments[i == 0 ? 0 : i - 1].rate) / (i == 0 ? kStep_s : 2 * kStep_s);
       rate += w;
       force += moments[i].force_at_centre + alpha.cross(options.lever_arm_m) + w.cross(w.cross(options.lever_arm_m));
       if (moments[i].phase == Phase::impact) phase = Phase::impact;
@@ -164,7 +162,10 @@ ClippedErrors clipped_errors(const TumbleRecording& recording, const std::vector
   }
   if (errors.empty()) return {};
   std::sort(errors.begin(), errors.end());
-  return {errors.size(), quantile(errors, 0.5), quantile(errors, 0.99), errors.back()};
+  const auto quantile = [&](double share) {
+    return errors[static_cast<std::size_t>(share * static_cast<double>(errors.size() - 1))];
+  };
+  return {errors.size(), quantile(0.5), quantile(0.99), errors.back()};
 }
 
 std::vector<Vector3d> rates_of(const std::vector<RateState>& states) {

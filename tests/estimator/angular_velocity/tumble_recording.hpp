@@ -2,6 +2,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <vector>
@@ -54,6 +55,16 @@ template <class Params>
 Params with_lever_arm(const Eigen::Vector3d& lever_arm_m = TumbleOptions{}.lever_arm_m) {
   Params out;
   out.model.nominal.lever_arm_m = lever_arm_m;
+  return out;
+}
+
+/// The same with a lever arm that is off by `error_m` in a direction of the seed's.
+template <class Params>
+Params with_wrong_lever_arm(double error_m, std::uint64_t seed) {
+  auto out = with_lever_arm<Params>();
+  const double s = static_cast<double>(seed);
+  out.model.nominal.lever_arm_m +=
+      error_m * Eigen::Vector3d(std::sin(s), std::cos(2.0 * s), std::sin(3.0 * s)).normalized();
   return out;
 }
 

@@ -17,10 +17,10 @@ using Eigen::Vector3d;
 using Measurement = WnojSmoother::Measurement;
 using Smoothed = WnojSmoother::Smoothed;
 
-constexpr TimeNs kPeriod = 10'000'000;  // 100 Hz, for which the anchors are stated
+constexpr TimeNs kAnchored_ns = 10'000'000;  // 100 Hz, for which the anchors are stated
 constexpr double kMeasured = 2.741e-5, kEstimated = 0.2741, kAsPrinted = 3.648, kRejected = 1e6;
 
-std::vector<Measurement> constant_run(std::size_t count, double variance, TimeNs period_ns = kPeriod) {
+std::vector<Measurement> constant_run(std::size_t count, double variance, TimeNs period_ns = kAnchored_ns) {
   std::vector<Measurement> run(count);
   for (std::size_t k = 0; k < count; ++k) {
     run[k] = {static_cast<TimeNs>(k) * period_ns, Vector3d::Zero(), Vector3d::Constant(variance)};

@@ -8,19 +8,11 @@
 #include <limits>
 #include <vector>
 
+#include "estimator/angular_velocity/quantile.hpp"
 #include "estimator/attitude/carried_motion.hpp"
 
 /// Errors of rates of a carried body against its motion in closed form.
 namespace tumble::testing {
-
-/// The value below which `share` of them lie.
-inline double quantile(std::vector<double> values, double share) {
-  EXPECT_FALSE(values.empty());
-  if (values.empty()) return std::numeric_limits<double>::infinity();
-  const auto at = values.begin() + static_cast<std::ptrdiff_t>(share * static_cast<double>(values.size() - 1));
-  std::nth_element(values.begin(), at, values.end());
-  return *at;
-}
 
 /// Norms of the errors at clipped samples from `from_s` on; a rate stands for each sample, at its stamp [rad/s].
 inline std::vector<double> clipped_errors(const CarriedRecording& recording, const std::vector<RateState>& rates,

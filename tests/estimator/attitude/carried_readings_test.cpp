@@ -61,20 +61,20 @@ Held held(double duration_s, double mark) {
   return out;
 }
 
-struct Result {
+struct HeldErrors {
   double median_rad_s = 0.0;  ///< of the errors where a reading lost something
   double within = 0.0;        ///< three deviations, of those
   double called_measured = 0.0;
 };
 
-Result run(const Held& recording) {
+HeldErrors errors_of_held(const Held& recording) {
   std::vector<RateState> rates;
   std::vector<AttitudeState> attitudes;
   CarriedSmoother::Report report;
   ClippedElements clipped;
   clipped.signs = recording.signs;
   EXPECT_TRUE(CarriedSmoother({}).estimate(recording.samples, clipped, rates, attitudes, report).ok());
-  Result out;
+  HeldErrors out;
   std::vector<double> errors;
   for (std::size_t k = 0; k < rates.size(); ++k) {
     if (!recording.lost[k]) continue;
@@ -95,7 +95,7 @@ Result run(const Held& recording) {
 /// Negative control: the same readings, but none repeats the one before to the bit, so that each is taken for a new one
 /// at its stamp. Measured: 0.27 rad/s and all within; 0.66 and 0.94.
 TEST(CarriedReadings, ATriadSlowerThanTheLogIsReadOnceAndAtItsOwnTime) {
-  const Result own = run(held(12.0, 0.0)), again = run(held(12.0, 1e-9));
+  const HeldErrors own = errors_of_held(held(12.0, 0.0)), again = errors_of_held(held(12.0, 1e-9));
   std::printf("own times: %.3f rad/s, within %.3f, called measured %.3f; as said again: %.3f, %.3f, %.3f\n",
               own.median_rad_s, own.within, own.called_measured, again.median_rad_s, again.within,
               again.called_measured);

@@ -21,14 +21,14 @@ using testing::CarriedMotion;
 using testing::CarriedRecording;
 using testing::quantile;
 
-struct Result {
+struct CarriedEstimate {
   std::vector<RateState> rates;
   std::vector<AttitudeState> attitudes;
   CarriedSmoother::Report report;
 };
 
-Result run(const CarriedRecording& recording, const CarriedSmoother::Params& params = {}) {
-  Result out;
+CarriedEstimate smoothed_carriage(const CarriedRecording& recording, const CarriedSmoother::Params& params = {}) {
+  CarriedEstimate out;
   ClippedElements clipped;
   clipped.signs = recording.signs;
   const Status status =
@@ -44,7 +44,7 @@ struct RateErrors {
   std::vector<double> clipped, free, raw;
 };
 
-RateErrors rate_errors(const CarriedRecording& recording, const Result& result) {
+RateErrors rate_errors(const CarriedRecording& recording, const CarriedEstimate& result) {
   RateErrors out;
   for (std::size_t k = 0; k < recording.samples.size(); ++k) {
     const double error = (result.rates[k].w_WI_I_rad_s - recording.rate_rad_s[k]).norm();
@@ -60,7 +60,7 @@ RateErrors rate_errors(const CarriedRecording& recording, const Result& result) 
   return out;
 }
 
-double inclination_rms_rad(const CarriedRecording& recording, const Result& result) {
+double inclination_rms_rad(const CarriedRecording& recording, const CarriedEstimate& result) {
   double sum = 0.0;
   for (std::size_t k = 0; k < recording.samples.size(); ++k) {
     const Eigen::Vector3d up(0.0, 0.0, 1.0);
@@ -75,7 +75,7 @@ TEST(CarriedSmoother, ReadingsThatWrapSayNothing) {
   const CarriedRecording clipped = testing::record({}, 100.0, 12.0, 7.3);
   const CarriedRecording wrapped = testing::with_wraps(clipped, ClipSigns::kVoid);
   const auto median = [](const CarriedRecording& recording) {
-    const Result result = run(recording);
+    const CarriedEstimate result = smoothed_carriage(recording);
     std::vector<double> errors;
     for (std::size_t k = 0; k < result.rates.size(); ++k) {
       if (std::abs(recording.rate_rad_s[k].x()) <= 7.3) continue;
@@ -99,7 +99,7 @@ TEST(CarriedSmoother, ARecoveredRateIsBelievedAsFarAsItIsTold) {
     untold[k](0, 0) = 1e-12;
   }
   const auto error = [&](const std::vector<Eigen::Matrix3d>& covariances) {
-    Result out;
+    CarriedEstimate out;
     ClippedElements clipped;
     clipped.signs = recording.signs;
     clipped.recovered_rad2_s2 = covariances;
@@ -130,7 +130,7 @@ TEST(CarriedSmoother, BesideRecoveredRatesAScaleGathersOverTheTurning) {
     ClippedElements clipped;
     const std::vector<Eigen::Matrix3d> none(samples.size(), Eigen::Matrix3d::Zero());
     if (recovered) clipped.recovered_rad2_s2 = none;
-    Result out;
+    CarriedEstimate out;
     const Status status = CarriedSmoother(params).estimate(samples, clipped, out.rates, out.attitudes, out.report);
     EXPECT_TRUE(status.ok()) << status.message();
     return out.attitudes;
@@ -152,7 +152,7 @@ TEST(CarriedSmoother, BesideRecoveredRatesAScaleGathersOverTheTurning) {
 TEST(CarriedSmoother, RefusesRecoveredRatesThatAreNone) {
   const CarriedRecording recording = testing::record({}, 100.0, 1.0, 0.0);
   std::vector<Eigen::Matrix3d> covariances(recording.samples.size() - 1, Eigen::Matrix3d::Zero());
-  Result out;
+  CarriedEstimate out;
   const auto trouble = [&] {
     ClippedElements clipped;
     clipped.recovered_rad2_s2 = covariances;
@@ -182,7 +182,7 @@ TEST(CarriedSmoother, AJudgedSampleHasASignForEachElement) {
 
 TEST(CarriedSmoother, FollowsAFreeGyroAndFindsTheVertical) {
   const CarriedRecording recording = testing::record({}, 100.0, 20.0, 0.0);
-  const Result result = run(recording);
+  const CarriedEstimate result = smoothed_carriage(recording);
   EXPECT_LT(quantile(rate_errors(recording, result).free, 0.5), 0.01);
   EXPECT_LT(inclination_rms_rad(recording, result), 0.01);
 }
@@ -190,7 +190,7 @@ TEST(CarriedSmoother, FollowsAFreeGyroAndFindsTheVertical) {
 TEST(CarriedSmoother, RecoversATwirlBeyondTheRail) {
   // 11.3 rad/s at the peaks, the rail at 7.3, half of each turn lost
   const CarriedRecording recording = testing::record({}, 100.0, 20.0, 7.3);
-  const RateErrors errors = rate_errors(recording, run(recording));
+  const RateErrors errors = rate_errors(recording, smoothed_carriage(recording));
   ASSERT_GT(errors.clipped.size(), 500u);
   std::printf("raw %.3f %.3f, carried %.3f %.3f, free %.4f\n", quantile(errors.raw, 0.5), quantile(errors.raw, 0.9),
               quantile(errors.clipped, 0.5), quantile(errors.clipped, 0.9), quantile(errors.free, 0.5));
@@ -199,10 +199,10 @@ TEST(CarriedSmoother, RecoversATwirlBeyondTheRail) {
 }
 
 TEST(CarriedSmoother, SaysTheSameAtAnyRateOfTheImu) {
-  std::vector<Result> results;
+  std::vector<CarriedEstimate> results;
   for (double hz : {50.0, 200.0, 2000.0}) {
     const CarriedRecording recording = testing::record({}, hz, 8.0, 7.3);
-    results.push_back(run(recording));
+    results.push_back(smoothed_carriage(recording));
     const double median = quantile(rate_errors(recording, results.back()).clipped, 0.5);
     std::printf("%.0f Hz: %.3f rad/s\n", hz, median);
     EXPECT_LT(median, 0.3) << hz;
@@ -227,7 +227,7 @@ TEST(CarriedSmoother, DeviationsHoldTheErrors) {
         sample.specific_force_m_s2[j] += 0.05 * noise();
       }
     }
-    const Result result = run(recording);
+    const CarriedEstimate result = smoothed_carriage(recording);
     for (std::size_t k = 0; k < recording.samples.size(); ++k) {
       if (recording.signs[k].gyro[0] == 0) continue;
       const double sigma = std::sqrt(result.rates[k].covariance_rad2_s2(0, 0));
@@ -248,9 +248,9 @@ TEST(CarriedSmoother, DeviationsHoldTheErrors) {
 /// Negative control: a body that is thrown (specific force about zero for half a second) while it is believed carried.
 TEST(CarriedSmoother, AThrownBodyShows) {
   CarriedRecording recording = testing::record({}, 100.0, 6.0, 0.0);
-  const double carried = run(recording).report.hand_mahalanobis;
+  const double carried = smoothed_carriage(recording).report.hand_mahalanobis;
   for (std::size_t k = 300; k < 350; ++k) recording.samples[k].specific_force_m_s2.setConstant(0.01);
-  const double thrown = run(recording).report.hand_mahalanobis;
+  const double thrown = smoothed_carriage(recording).report.hand_mahalanobis;
   std::printf("mahalanobis: carried %.2f, thrown %.2f\n", carried, thrown);
   EXPECT_LT(carried, 1.0);
   EXPECT_GT(thrown, 2.0);

@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <Eigen/Geometry>
 #include <cmath>
 #include <limits>
 #include <vector>
@@ -15,6 +16,12 @@ namespace tumble::testing {
 
 inline constexpr double kGravity_m_s2 = 9.80665;
 inline constexpr TimeNs kPeriod_ns = 4'000'000;
+
+/// Of the sensor's z axis from the vertical [rad].
+inline double tilt(const Eigen::Quaterniond& q_WI) {
+  const Eigen::Vector3d up = q_WI.conjugate() * Eigen::Vector3d::UnitZ();
+  return std::atan2(std::hypot(up.x(), up.y()), up.z());
+}
 
 /// Samples of a wobbling body, 250 Hz: smooth rates on all axes and a force that is not pure gravity.
 inline std::vector<ImuSample> wobble(int count) {

@@ -8,6 +8,7 @@
 #include <optional>
 #include <random>
 
+#include "estimator/attitude/filter_contract.hpp"
 #include "tumble/attitude/imu_merge.hpp"
 #include "tumble/common/so3.hpp"
 
@@ -15,12 +16,13 @@
 namespace tumble {
 namespace {
 
-constexpr double kGravity = 9.80665;
+using testing::kGravity_m_s2;
+
 constexpr int kCount = 3, kSeconds = 6;
 const std::array<Eigen::Vector3d, kCount> kPlaces = {{{0.08, 0.0, 0.01}, {-0.04, 0.069, 0.01}, {-0.04, -0.069, 0.01}}};
-using Readings = std::array<ImuSample, kCount>;
+using UnitReadings = std::array<ImuSample, kCount>;
 
-ImuMerge::Params params() {
+ImuMerge::Params unit_params() {
   ImuMerge::Params out;
   out.count = kCount;
   for (std::size_t k = 0; k < kCount; ++k) {
@@ -38,13 +40,14 @@ double quantised(double value, double quantum) {
 
 /// A body that rests for a second, then turns about a level axis with 5 rad/s, give or take; noise and quanta of a
 /// Phidget. `harm(k, readings)` before the merge.
-struct Outcome {
+struct HarmedMerge {
   ImuMerge::State state;
   double worst_rate_rad_s = 0.0, worst_force_m_s2 = 0.0;
 };
-Outcome run(int rate_hz, double top_rad_s, double noise, const std::function<void(double, Readings&)>& harm) {
-  const ImuMerge merge(params());
-  Outcome out;
+HarmedMerge merge_harmed(int rate_hz, double top_rad_s, double noise,
+                         const std::function<void(double, UnitReadings&)>& harm) {
+  const ImuMerge merge(unit_params());
+  HarmedMerge out;
   std::mt19937_64 random(5);
   std::normal_distribution<double> normal;
   const Eigen::Vector3d axis = Eigen::Vector3d(0.2, 0.95, -0.24).normalized();
@@ -54,11 +57,12 @@ Outcome run(int rate_hz, double top_rad_s, double noise, const std::function<voi
     const double t = k * dt, since = std::max(0.0, t - 1.0);
     const double rate = top_rad_s * (1.0 - std::cos(1.5 * since)) * 0.5, a = top_rad_s * 0.75 * std::sin(1.5 * since);
     angle += dt * rate;
-    Readings now;
+    UnitReadings now;
     const Eigen::Vector3d up = so3::exp(-angle * axis) * Eigen::Vector3d::UnitZ(), w = rate * axis;
     for (std::size_t unit = 0; unit < kCount; ++unit) {
       now[unit].time_ns = std::llround(t * 1e9);
-      now[unit].specific_force_m_s2 = kGravity * up + a * axis.cross(kPlaces[unit]) + w.cross(w.cross(kPlaces[unit]));
+      now[unit].specific_force_m_s2 =
+          kGravity_m_s2 * up + a * axis.cross(kPlaces[unit]) + w.cross(w.cross(kPlaces[unit]));
       now[unit].angular_velocity_rad_s = w;
       for (int j = 0; j < 3; ++j) {
         double& gyro = now[unit].angular_velocity_rad_s[j];
@@ -72,7 +76,7 @@ Outcome run(int rate_hz, double top_rad_s, double noise, const std::function<voi
     const Status status = merge.step(now, out.state, merged);
     EXPECT_TRUE(status.ok()) << status.message();
     const Eigen::Vector3d place = (kPlaces[0] + kPlaces[1] + kPlaces[2]) / 3.0;
-    const Eigen::Vector3d force = kGravity * up + a * axis.cross(place) + w.cross(w.cross(place));
+    const Eigen::Vector3d force = kGravity_m_s2 * up + a * axis.cross(place) + w.cross(w.cross(place));
     if (t < 3.0) continue;
     out.worst_rate_rad_s = std::max(out.worst_rate_rad_s, (merged->angular_velocity_rad_s - w).norm());
     out.worst_force_m_s2 = std::max(out.worst_force_m_s2, (merged->specific_force_m_s2 - force).norm());
@@ -80,9 +84,9 @@ Outcome run(int rate_hz, double top_rad_s, double noise, const std::function<voi
   return out;
 }
 
-void nothing(double, Readings&) {}
+void nothing(double, UnitReadings&) {}
 
-void expect_only(const Outcome& out, std::size_t frozen, std::size_t disagrees) {
+void expect_only(const HarmedMerge& out, std::size_t frozen, std::size_t disagrees) {
   for (std::size_t k = 0; k < kCount; ++k) {
     EXPECT_EQ(out.state.units[k].frozen, k == frozen) << k;
     EXPECT_EQ(out.state.units[k].disagrees, k == disagrees) << k;
@@ -91,40 +95,41 @@ void expect_only(const Outcome& out, std::size_t frozen, std::size_t disagrees) 
 
 TEST(ImuMergeHealth, GoodUnitsAreNotBlamed) {
   for (const int rate_hz : {50, 250, 1000}) {
-    for (const double top_rad_s : {0.0, 5.0, 20.0}) expect_only(run(rate_hz, top_rad_s, 1.0, nothing), kCount, kCount);
+    for (const double top_rad_s : {0.0, 5.0, 20.0})
+      expect_only(merge_harmed(rate_hz, top_rad_s, 1.0, nothing), kCount, kCount);
   }
   // at rest without noise all readings are equal for ever
-  expect_only(run(250, 0.0, 0.0, nothing), kCount, kCount);
+  expect_only(merge_harmed(250, 0.0, 0.0, nothing), kCount, kCount);
   // and so is one unit's, while the others are noisy
   ImuSample first;
-  expect_only(run(250, 0.0, 1.0,
-                  [&first](double t, Readings& now) {
-                    if (t == 0.0) first = now[1];
-                    now[1].angular_velocity_rad_s = first.angular_velocity_rad_s;
-                    now[1].specific_force_m_s2 = first.specific_force_m_s2;
-                  }),
+  expect_only(merge_harmed(250, 0.0, 1.0,
+                           [&first](double t, UnitReadings& now) {
+                             if (t == 0.0) first = now[1];
+                             now[1].angular_velocity_rad_s = first.angular_velocity_rad_s;
+                             now[1].specific_force_m_s2 = first.specific_force_m_s2;
+                           }),
               kCount, kCount);
 }
 
 TEST(ImuMergeHealth, SampleAndHoldIsNotFrozen) {
-  Readings held;
+  UnitReadings held;
   int k = 0;
-  expect_only(run(1000, 5.0, 1.0,
-                  [&](double, Readings& now) {
-                    if (k++ % 20 == 0) held = now;
-                    for (std::size_t unit = 0; unit < kCount; ++unit) {
-                      now[unit].angular_velocity_rad_s = held[unit].angular_velocity_rad_s;
-                      now[unit].specific_force_m_s2 = held[unit].specific_force_m_s2;
-                    }
-                  }),
+  expect_only(merge_harmed(1000, 5.0, 1.0,
+                           [&](double, UnitReadings& now) {
+                             if (k++ % 20 == 0) held = now;
+                             for (std::size_t unit = 0; unit < kCount; ++unit) {
+                               now[unit].angular_velocity_rad_s = held[unit].angular_velocity_rad_s;
+                               now[unit].specific_force_m_s2 = held[unit].specific_force_m_s2;
+                             }
+                           }),
               kCount, kCount);
 }
 
 TEST(ImuMergeHealth, AUnitThatRepeatsItselfWhileTheOthersMoveIsFrozen) {
-  const Outcome good = run(250, 5.0, 1.0, nothing);
+  const HarmedMerge good = merge_harmed(250, 5.0, 1.0, nothing);
   for (std::size_t unit = 0; unit < kCount; ++unit) {
     ImuSample last;
-    const Outcome out = run(250, 5.0, 1.0, [&](double t, Readings& now) {
+    const HarmedMerge out = merge_harmed(250, 5.0, 1.0, [&](double t, UnitReadings& now) {
       if (t < 2.0) last = now[unit];
       now[unit].angular_velocity_rad_s = last.angular_velocity_rad_s;
       now[unit].specific_force_m_s2 = last.specific_force_m_s2;
@@ -139,7 +144,7 @@ TEST(ImuMergeHealth, AUnitThatRepeatsItselfWhileTheOthersMoveIsFrozen) {
 
 TEST(ImuMergeHealth, AFrozenUnitThatMovesAgainIsBack) {
   ImuSample last;
-  const Outcome out = run(250, 5.0, 1.0, [&](double t, Readings& now) {
+  const HarmedMerge out = merge_harmed(250, 5.0, 1.0, [&](double t, UnitReadings& now) {
     if (t < 2.0) last = now[0];
     if (t > 4.0) return;
     now[0].angular_velocity_rad_s = last.angular_velocity_rad_s;
@@ -150,7 +155,7 @@ TEST(ImuMergeHealth, AFrozenUnitThatMovesAgainIsBack) {
 }
 
 TEST(ImuMergeHealth, AUnitThatDiedIsAbsent) {
-  const Outcome out = run(250, 5.0, 1.0, [](double t, Readings& now) {
+  const HarmedMerge out = merge_harmed(250, 5.0, 1.0, [](double t, UnitReadings& now) {
     if (t > 2.0) now[2].specific_force_m_s2.y() = std::numeric_limits<double>::quiet_NaN();
   });
   EXPECT_GT(out.state.units[2].absent, 900);
@@ -161,9 +166,9 @@ TEST(ImuMergeHealth, AUnitThatDiedIsAbsent) {
 
 // what a unit read before its silence is of another motion: nothing is learnt, or moved in time, across it
 TEST(ImuMergeHealth, AUnitThatComesBackIsNotComparedWithWhatItReadBefore) {
-  const Outcome undisturbed = run(250, 5.0, 1.0, nothing);
+  const HarmedMerge undisturbed = merge_harmed(250, 5.0, 1.0, nothing);
   for (const double back_s : {3.1, 3.3, 3.6, 4.0}) {
-    const Outcome out = run(250, 5.0, 1.0, [&](double t, Readings& now) {
+    const HarmedMerge out = merge_harmed(250, 5.0, 1.0, [&](double t, UnitReadings& now) {
       if (t > 1.6 && t < back_s) now[1].angular_velocity_rad_s.x() = std::numeric_limits<double>::quiet_NaN();
     });
     EXPECT_LT(out.worst_rate_rad_s, 0.02) << back_s;
@@ -176,36 +181,37 @@ TEST(ImuMergeHealth, AUnitThatComesBackIsNotComparedWithWhatItReadBefore) {
 }
 
 TEST(ImuMergeHealth, AUnitThatDisagreesForLongIsLeftOutForGood) {
-  const auto scaled = [](double, Readings& now) {
+  const auto scaled = [](double, UnitReadings& now) {
     now[1].angular_velocity_rad_s *= 1.3;
     now[1].specific_force_m_s2 *= 1.3;
   };
-  expect_only(run(250, 5.0, 1.0, scaled), kCount, 1);
-  const auto swapped = [](double, Readings& now) {
+  expect_only(merge_harmed(250, 5.0, 1.0, scaled), kCount, 1);
+  const auto swapped = [](double, UnitReadings& now) {
     std::swap(now[0].angular_velocity_rad_s.x(), now[0].angular_velocity_rad_s.y());
     std::swap(now[0].specific_force_m_s2.x(), now[0].specific_force_m_s2.y());
   };
-  const Outcome out = run(250, 5.0, 1.0, swapped);
+  const HarmedMerge out = merge_harmed(250, 5.0, 1.0, swapped);
   expect_only(out, kCount, 0);
   EXPECT_LT(out.worst_rate_rad_s, 0.02);
   // borne: 1 % of scale, 0.02 rad/s and 0.2 m/s^2 of bias
-  expect_only(run(250, 5.0, 1.0,
-                  [](double, Readings& now) {
-                    now[1].angular_velocity_rad_s = 1.01 * now[1].angular_velocity_rad_s + Eigen::Vector3d(0.02, 0, 0);
-                    now[1].specific_force_m_s2 = 1.01 * now[1].specific_force_m_s2 + Eigen::Vector3d(0, 0.2, 0);
-                  }),
-              kCount, kCount);
+  expect_only(
+      merge_harmed(250, 5.0, 1.0,
+                   [](double, UnitReadings& now) {
+                     now[1].angular_velocity_rad_s = 1.01 * now[1].angular_velocity_rad_s + Eigen::Vector3d(0.02, 0, 0);
+                     now[1].specific_force_m_s2 = 1.01 * now[1].specific_force_m_s2 + Eigen::Vector3d(0, 0.2, 0);
+                   }),
+      kCount, kCount);
 }
 
 TEST(ImuMergeHealth, TheArmsTellTheSignOfTheAccelerometers) {
-  const auto share = [](const Outcome& out) { return ImuMerge::arm_share(out.state).value_or(0.0); };
-  EXPECT_NEAR(share(run(250, 5.0, 1.0, nothing)), 1.0, 0.05);
-  EXPECT_NEAR(share(run(1000, 5.0, 1.0, nothing)), 1.0, 0.05);
-  const Outcome flipped = run(250, 5.0, 1.0, [](double, Readings& now) {
+  const auto share = [](const HarmedMerge& out) { return ImuMerge::arm_share(out.state).value_or(0.0); };
+  EXPECT_NEAR(share(merge_harmed(250, 5.0, 1.0, nothing)), 1.0, 0.05);
+  EXPECT_NEAR(share(merge_harmed(1000, 5.0, 1.0, nothing)), 1.0, 0.05);
+  const HarmedMerge flipped = merge_harmed(250, 5.0, 1.0, [](double, UnitReadings& now) {
     for (ImuSample& sample : now) sample.specific_force_m_s2 *= -1.0;
   });
   EXPECT_NEAR(share(flipped), -1.0, 0.05);
-  EXPECT_FALSE(ImuMerge::arm_share(run(250, 0.0, 1.0, nothing).state).has_value());
+  EXPECT_FALSE(ImuMerge::arm_share(merge_harmed(250, 0.0, 1.0, nothing).state).has_value());
 }
 
 }  // namespace

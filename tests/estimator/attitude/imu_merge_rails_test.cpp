@@ -8,6 +8,7 @@
 #include <cmath>
 #include <optional>
 
+#include "estimator/attitude/filter_contract.hpp"
 #include "tumble/attitude/imu_merge.hpp"
 #include "tumble/common/so3.hpp"
 
@@ -17,12 +18,14 @@ namespace {
 using Eigen::Matrix3d;
 using Eigen::Vector3d;
 
-constexpr double kGravity = 9.80665, kStated_rad_s = 34.9;
-constexpr TimeNs kPeriod_ns = 4'000'000;
+using testing::kGravity_m_s2;
+
+constexpr double kStated_rad_s = 34.9;
+constexpr TimeNs kTick_ns = 4'000'000;
 constexpr std::uint8_t kGyroFlags = kClipGyroX | kClipGyroY | kClipGyroZ;
 
 /// Three IMUs about the centre of a body that turns about a fixed level axis, up to `top` and down again within 2 s.
-struct Spin {
+struct TiltedSpin {
   double top = 0.0, rail = 1e3;
   std::array<Matrix3d, 3> rows = {Matrix3d::Identity(), Matrix3d::Identity(), Matrix3d::Identity()};
   std::array<Vector3d, 3> place_m{{{0.08, 0.0, 0.01}, {-0.04, 0.069, 0.01}, {-0.04, -0.069, 0.01}}};
@@ -31,10 +34,10 @@ struct Spin {
   Vector3d rate(double t) const { return top * std::clamp(std::min(t, 2.0 - t) / 0.4, 0.0, 1.0) * axis; }
 
   ImuSample sample(std::size_t unit, int k, double angle) const {
-    const double t = seconds(k * kPeriod_ns);
+    const double t = seconds(k * kTick_ns);
     const Vector3d w = rate(t), a = (rate(t + 1e-4) - rate(t - 1e-4)) / 2e-4;
     ImuSample out;
-    out.time_ns = k * kPeriod_ns;
+    out.time_ns = k * kTick_ns;
     const Vector3d sensed = rows[unit] * w, kept = sensed.cwiseMax(-rail).cwiseMin(rail);
     out.angular_velocity_rad_s = rows[unit].inverse() * kept;
     for (int axis_ = 0; axis_ < 3; ++axis_) {
@@ -42,12 +45,12 @@ struct Spin {
       out.device_clip_flags = static_cast<std::uint8_t>(out.device_clip_flags | kClipGyroX << axis_);
     }
     const Vector3d up = so3::exp(-angle * axis) * Vector3d::UnitZ();
-    out.specific_force_m_s2 = kGravity * up + a.cross(place_m[unit]) + w.cross(w.cross(place_m[unit]));
+    out.specific_force_m_s2 = kGravity_m_s2 * up + a.cross(place_m[unit]) + w.cross(w.cross(place_m[unit]));
     return out;
   }
 };
 
-ImuMerge::Params params(const Spin& spin, int count) {
+ImuMerge::Params tilted_params(const TiltedSpin& spin, int count) {
   ImuMerge::Params out;
   out.count = count;
   for (std::size_t k = 0; k < 3; ++k) {
@@ -59,7 +62,7 @@ ImuMerge::Params params(const Spin& spin, int count) {
   return out;
 }
 
-struct Outcome {
+struct RailedMerge {
   double error_rad_s = 0.0;      ///< largest a while after a gyro has clipped
   double raw_error_rad_s = 0.0;  ///< of a gyro alone
   int clipped = 0, unflagged = 0;
@@ -67,14 +70,15 @@ struct Outcome {
 };
 
 /// `flagged` units tell that they clip.
-Outcome run(const Spin& spin, const ImuMerge::Params& p, std::array<bool, 3> flagged = {true, true, true}) {
+RailedMerge merge_tilted(const TiltedSpin& spin, const ImuMerge::Params& p,
+                         std::array<bool, 3> flagged = {true, true, true}) {
   const ImuMerge merge(p);
-  Outcome out;
+  RailedMerge out;
   double angle = 0.0;
   int since = 0;
   for (int k = 0; k <= 500; ++k) {
-    const double t = seconds(k * kPeriod_ns);
-    angle += seconds(kPeriod_ns) * spin.rate(t).norm();
+    const double t = seconds(k * kTick_ns);
+    angle += seconds(kTick_ns) * spin.rate(t).norm();
     std::array<ImuSample, 3> now;
     bool clipped = false;
     for (std::size_t unit = 0; unit < 3; ++unit) {
@@ -94,8 +98,8 @@ Outcome run(const Spin& spin, const ImuMerge::Params& p, std::array<bool, 3> fla
   return out;
 }
 
-Spin tilted() {
-  Spin spin{44.0, 0.96 * kStated_rad_s};
+TiltedSpin tilted() {
+  TiltedSpin spin{44.0, 0.96 * kStated_rad_s};
   spin.rows[0] << 1.0, 0.03, -0.02, 0.04, 1.0, 0.03, -0.05, 0.02, 1.0;
   spin.rows[1] << 1.0, -0.04, 0.03, -0.03, 1.0, 0.05, 0.02, 0.04, 1.0;
   spin.rows[2] << 1.0, 0.05, 0.04, 0.02, 1.0, -0.04, 0.03, -0.05, 1.0;
@@ -103,40 +107,40 @@ Spin tilted() {
 }
 
 TEST(ImuMergeRails, ReadsTiltedElementsAlongTheirRows) {
-  const Spin spin = tilted();
-  const Outcome ours = run(spin, params(spin, 3));
+  const TiltedSpin spin = tilted();
+  const RailedMerge ours = merge_tilted(spin, tilted_params(spin, 3));
   ASSERT_GT(ours.clipped, 100);
   EXPECT_GT(ours.raw_error_rad_s, 5.0);
   EXPECT_LT(ours.error_rad_s, 0.5);
   // negative control: axis by axis the free ones are taken for what they are not
-  ImuMerge::Params upright = params(spin, 3);
+  ImuMerge::Params upright = tilted_params(spin, 3);
   upright.gyro_elements = {};
-  EXPECT_GT(run(spin, upright).error_rad_s, 1.5 * ours.error_rad_s);  // measured: 0.275 and 0.139 rad/s
+  EXPECT_GT(merge_tilted(spin, upright).error_rad_s, 1.5 * ours.error_rad_s);  // measured: 0.275 and 0.139 rad/s
 }
 
 // A device that stops at 12 rad/s where its sheet states 34.9, and says so.
 TEST(ImuMergeRails, AFlagFarBelowTheRangeIsHeard) {
-  const Spin spin{16.0, 12.0};
-  const Outcome ours = run(spin, params(spin, 3));
+  const TiltedSpin spin{16.0, 12.0};
+  const RailedMerge ours = merge_tilted(spin, tilted_params(spin, 3));
   ASSERT_GT(ours.clipped, 100);
   EXPECT_GT(ours.raw_error_rad_s, 2.0);
   EXPECT_LT(ours.error_rad_s, 0.5);
   // negative control: without flags nobody can tell
-  EXPECT_GT(run(spin, params(spin, 3), {false, false, false}).error_rad_s, 2.0);
+  EXPECT_GT(merge_tilted(spin, tilted_params(spin, 3), {false, false, false}).error_rad_s, 2.0);
 }
 
 TEST(ImuMergeRails, OneUnitOrTwoKeepTheirFlags) {
-  const Spin spin{16.0, 12.0};
+  const TiltedSpin spin{16.0, 12.0};
   for (const int count : {1, 2}) {
-    const Outcome ours = run(spin, params(spin, count));
+    const RailedMerge ours = merge_tilted(spin, tilted_params(spin, count));
     ASSERT_GT(ours.clipped, 100);
     EXPECT_EQ(ours.unflagged, 0) << count;
   }
 }
 
 TEST(ImuMergeRails, FlagsTurnWithTheMounting) {
-  const Spin spin{16.0, 12.0};
-  ImuMerge::Params p = params(spin, 1);
+  const TiltedSpin spin{16.0, 12.0};
+  ImuMerge::Params p = tilted_params(spin, 1);
   p.T_CI[0].linear() = so3::exp(0.5 * 3.14159265358979 * Vector3d::UnitZ()).toRotationMatrix();
   const ImuMerge merge(p);
   ImuMerge::State state;
@@ -148,19 +152,19 @@ TEST(ImuMergeRails, FlagsTurnWithTheMounting) {
 }
 
 TEST(ImuMergeRails, OfTwoTheOneThatIsFreeIsBelieved) {
-  Spin spin{16.0, 12.0};
-  const ImuMerge merge(params(spin, 2));
+  TiltedSpin spin{16.0, 12.0};
+  const ImuMerge merge(tilted_params(spin, 2));
   ImuMerge::State state;
   double angle = 0.0, error = 0.0;
   for (int k = 0; k <= 500; ++k) {
-    angle += seconds(kPeriod_ns) * spin.rate(seconds(k * kPeriod_ns)).norm();
+    angle += seconds(kTick_ns) * spin.rate(seconds(k * kTick_ns)).norm();
     std::array<ImuSample, 2> now = {spin.sample(0, k, angle), spin.sample(1, k, angle)};
-    now[1].angular_velocity_rad_s = spin.rate(seconds(k * kPeriod_ns));
+    now[1].angular_velocity_rad_s = spin.rate(seconds(k * kTick_ns));
     now[1].device_clip_flags = 0;
     std::optional<ImuSample> merged;
     ASSERT_TRUE(merge.step(now, state, merged).ok());
     EXPECT_EQ(merged->device_clip_flags, 0) << k;
-    error = std::max(error, (merged->angular_velocity_rad_s - spin.rate(seconds(k * kPeriod_ns))).norm());
+    error = std::max(error, (merged->angular_velocity_rad_s - spin.rate(seconds(k * kTick_ns))).norm());
   }
   EXPECT_LT(error, 1e-6);
   // what the clipped one lacked was taken for no error of its scale or bias

@@ -8,13 +8,16 @@
 #include <cmath>
 #include <optional>
 
+#include "estimator/attitude/filter_contract.hpp"
 #include "tumble/common/so3.hpp"
 
 namespace tumble {
 namespace {
 
-constexpr double kGravity = 9.80665, kGyroRange = 34.9, kAccelRange = 200.0;
-constexpr TimeNs kPeriod_ns = 4'000'000;
+using testing::kGravity_m_s2;
+
+constexpr double kGyroRange = 34.9, kAccelRange = 200.0;
+constexpr TimeNs kUnitPeriod_ns = 4'000'000;
 
 /// Three IMUs at 8 cm about the centre of a body that turns about a fixed level axis.
 struct Spin {
@@ -26,19 +29,19 @@ struct Spin {
   double acceleration(double t, double top) const { return (rate(t + 1e-4, top) - rate(t - 1e-4, top)) / 2e-4; }
 
   ImuSample sample(std::size_t unit, int k, double angle, double top) const {
-    const double t = seconds(k * kPeriod_ns);
+    const double t = seconds(k * kUnitPeriod_ns);
     const Eigen::Vector3d w = rate(t, top) * axis, a = acceleration(t, top) * axis;
     const Eigen::Vector3d up = so3::exp(-angle * axis) * Eigen::Vector3d::UnitZ();
     ImuSample out;
-    out.time_ns = k * kPeriod_ns;
+    out.time_ns = k * kUnitPeriod_ns;
     out.angular_velocity_rad_s = w.cwiseMax(-kGyroRange).cwiseMin(kGyroRange);
-    out.specific_force_m_s2 = kGravity * up + a.cross(place_m[unit]) + w.cross(w.cross(place_m[unit]));
+    out.specific_force_m_s2 = kGravity_m_s2 * up + a.cross(place_m[unit]) + w.cross(w.cross(place_m[unit]));
     out.specific_force_m_s2 = out.specific_force_m_s2.cwiseMax(-kAccelRange).cwiseMin(kAccelRange);
     return out;
   }
 };
 
-ImuMerge::Params params(const Spin& spin, const Eigen::Vector3d& first_arm_error_m = Eigen::Vector3d::Zero()) {
+ImuMerge::Params spin_params(const Spin& spin, const Eigen::Vector3d& first_arm_error_m = Eigen::Vector3d::Zero()) {
   ImuMerge::Params out;
   out.count = 3;
   for (std::size_t k = 0; k < 3; ++k) {
@@ -51,21 +54,21 @@ ImuMerge::Params params(const Spin& spin, const Eigen::Vector3d& first_arm_error
   return out;
 }
 
-struct Outcome {
+struct MergeErrors {
   double rate_error_rad_s = 0.0;     ///< largest after 0.1 s at the rail
   double clipped_error_rad_s = 0.0;  ///< of a gyro alone
   int railed = 0, flagged = 0;
 };
 
-Outcome run(const Spin& spin, const ImuMerge::Params& p, double top) {
+MergeErrors merge_errors(const Spin& spin, const ImuMerge::Params& p, double top) {
   const ImuMerge merge(p);
   ImuMerge::State state;
-  Outcome out;
+  MergeErrors out;
   double angle = 0.0;
   int since = 0;
   for (int k = 0; k <= 500; ++k) {
-    const double t = seconds(k * kPeriod_ns);
-    angle += seconds(kPeriod_ns) * spin.rate(t, top);
+    const double t = seconds(k * kUnitPeriod_ns);
+    angle += seconds(kUnitPeriod_ns) * spin.rate(t, top);
     const std::array<ImuSample, 3> now = {spin.sample(0, k, angle, top), spin.sample(1, k, angle, top),
                                           spin.sample(2, k, angle, top)};
     std::optional<ImuSample> merged;
@@ -83,24 +86,24 @@ Outcome run(const Spin& spin, const ImuMerge::Params& p, double top) {
 
 TEST(ImuMerge, TellsARateBeyondTheRangeByTheAccelerometers) {
   const Spin spin;
-  const Outcome exact = run(spin, params(spin), 44.0);
+  const MergeErrors exact = merge_errors(spin, spin_params(spin), 44.0);
   ASSERT_GT(exact.railed, 100);
   EXPECT_GT(exact.clipped_error_rad_s, 5.0);  // or the test shows nothing
   EXPECT_LT(exact.rate_error_rad_s, 0.5);
   EXPECT_EQ(exact.flagged, 0);
   // 1 mm off in the mounting: learnt below the rail
-  const Outcome askew = run(spin, params(spin, {1e-3, -1e-3, 1e-3}), 44.0);
+  const MergeErrors askew = merge_errors(spin, spin_params(spin, {1e-3, -1e-3, 1e-3}), 44.0);
   EXPECT_LT(askew.rate_error_rad_s, 1.0);
 }
 
 TEST(ImuMerge, BelowTheRangeTheMeanIsLeftAlone) {
   const Spin spin;
-  const ImuMerge merge(params(spin));
+  const ImuMerge merge(spin_params(spin));
   ImuMerge::State state;
   double angle = 0.0;
   for (int k = 0; k <= 500; ++k) {
-    const double t = seconds(k * kPeriod_ns);
-    angle += seconds(kPeriod_ns) * spin.rate(t, 30.0);
+    const double t = seconds(k * kUnitPeriod_ns);
+    angle += seconds(kUnitPeriod_ns) * spin.rate(t, 30.0);
     const std::array<ImuSample, 3> now = {spin.sample(0, k, angle, 30.0), spin.sample(1, k, angle, 30.0),
                                           spin.sample(2, k, angle, 30.0)};
     std::optional<ImuSample> merged;
@@ -112,17 +115,17 @@ TEST(ImuMerge, BelowTheRangeTheMeanIsLeftAlone) {
 
 TEST(ImuMerge, LeavesOutTheOneThatDisagrees) {
   const Spin spin;
-  const ImuMerge merge(params(spin));
+  const ImuMerge merge(spin_params(spin));
   ImuMerge::State state;
   std::optional<ImuSample> merged;
   for (int k = 0; k < 50; ++k) {
     std::array<ImuSample, 3> now = {spin.sample(0, 0, 0.0, 0.0), spin.sample(1, 0, 0.0, 0.0),
                                     spin.sample(2, 0, 0.0, 0.0)};
-    for (ImuSample& sample : now) sample.time_ns = k * kPeriod_ns;
+    for (ImuSample& sample : now) sample.time_ns = k * kUnitPeriod_ns;
     if (k >= 25) now[1].angular_velocity_rad_s.x() += 1.0;
     ASSERT_TRUE(merge.step(now, state, merged).ok());
     EXPECT_LT(merged->angular_velocity_rad_s.norm(), 1e-9) << k;
-    EXPECT_NEAR(merged->specific_force_m_s2.norm(), kGravity, 1e-9) << k;
+    EXPECT_NEAR(merged->specific_force_m_s2.norm(), kGravity_m_s2, 1e-9) << k;
   }
   EXPECT_EQ(state.units[1].left_out, 25);
   EXPECT_EQ(state.units[0].left_out, 0);
@@ -130,15 +133,15 @@ TEST(ImuMerge, LeavesOutTheOneThatDisagrees) {
 
 /// What the mean of all units should read, at their mean place.
 Eigen::Vector3d exact_force(const Spin& spin, int k, double angle, double top) {
-  const double t = seconds(k * kPeriod_ns);
+  const double t = seconds(k * kUnitPeriod_ns);
   const Eigen::Vector3d w = spin.rate(t, top) * spin.axis, a = spin.acceleration(t, top) * spin.axis;
   const Eigen::Vector3d p = (spin.place_m[0] + spin.place_m[1] + spin.place_m[2]) / 3.0;
-  return kGravity * (so3::exp(-angle * spin.axis) * Eigen::Vector3d::UnitZ()) + a.cross(p) + w.cross(w.cross(p));
+  return kGravity_m_s2 * (so3::exp(-angle * spin.axis) * Eigen::Vector3d::UnitZ()) + a.cross(p) + w.cross(w.cross(p));
 }
 
 TEST(ImuMerge, TakesOutMisalignmentsThatLargeForcesShow) {
   const Spin spin;
-  const ImuMerge merge(params(spin));
+  const ImuMerge merge(spin_params(spin));
   ImuMerge::State state;
   std::array<Eigen::Matrix3d, 3> errors;  // together nothing, as what all share cannot be told
   errors[0] << 3e-3, -2e-3, 1e-3, 2e-3, -1e-3, 3e-3, -3e-3, 1e-3, 2e-3;
@@ -146,7 +149,7 @@ TEST(ImuMerge, TakesOutMisalignmentsThatLargeForcesShow) {
   errors[2] = -errors[0] - errors[1];
   double angle = 0.0, plain = 0.0, corrected = 0.0;
   for (int k = 0; k <= 500; ++k) {
-    angle += seconds(kPeriod_ns) * spin.rate(seconds(k * kPeriod_ns), 25.0);
+    angle += seconds(kUnitPeriod_ns) * spin.rate(seconds(k * kUnitPeriod_ns), 25.0);
     std::array<ImuSample, 3> now;
     Eigen::Vector3d mean = Eigen::Vector3d::Zero();
     for (std::size_t unit = 0; unit < 3; ++unit) {
@@ -167,14 +170,14 @@ TEST(ImuMerge, TakesOutMisalignmentsThatLargeForcesShow) {
 
 TEST(ImuMerge, LeavesOutARailThatAnImpactHides) {
   const Spin spin;
-  const ImuMerge merge(params(spin));
+  const ImuMerge merge(spin_params(spin));
   ImuMerge::State state;
   for (int k = 0; k < 50; ++k) {
     std::array<ImuSample, 3> now = {spin.sample(0, 0, 0.0, 0.0), spin.sample(1, 0, 0.0, 0.0),
                                     spin.sample(2, 0, 0.0, 0.0)};
     const bool impact = k == 25;
     for (std::size_t unit = 0; unit < 3; ++unit) {
-      now[unit].time_ns = k * kPeriod_ns;
+      now[unit].time_ns = k * kUnitPeriod_ns;
       if (impact) now[unit].specific_force_m_s2.x() += unit == 1 ? 20.0 : 50.0;  // far from the rail, as a mean
     }
     std::optional<ImuSample> merged;
@@ -188,13 +191,13 @@ TEST(ImuMerge, LeavesOutARailThatAnImpactHides) {
 
 TEST(ImuMerge, RefusesBadInput) {
   const Spin spin;
-  ImuMerge::Params bad = params(spin);
+  ImuMerge::Params bad = spin_params(spin);
   bad.gyro_range_rad_s = 0.0;
   EXPECT_THROW(ImuMerge{bad}, InvalidParams);
-  bad = params(spin);
+  bad = spin_params(spin);
   bad.count = 5;
   EXPECT_THROW(ImuMerge{bad}, InvalidParams);
-  const ImuMerge merge(params(spin));
+  const ImuMerge merge(spin_params(spin));
   ImuMerge::State state;
   std::optional<ImuSample> merged;
   const std::array<ImuSample, 2> two{};

@@ -7,10 +7,12 @@
 #include <cmath>
 #include <functional>
 #include <limits>
+#include <numbers>
 #include <optional>
 #include <string>
 #include <utility>
 
+#include "estimator/attitude/filter_contract.hpp"
 #include "estimator/rolling/rolling_truth.hpp"
 #include "oracles/gaussian.hpp"
 
@@ -167,9 +169,11 @@ TEST(ImuPlausibility, OfABodyThatFliesAndSpinsTheTurningIsNotAsked) {
 // Twice taken far aside by hand and back, then a little aside, and let go: the force of a free pendulum points along
 // its rod however it turns.
 ImuPlausibility::State of_a_pendulum(double gyro_scale) {
-  constexpr double kGravity = 9.80665, kLength_m = 0.5, kPi = 3.141592653589793, kDt_s = 0.01;
+  constexpr double kLength_m = 0.5, kDt_s = 0.01;
   constexpr double kFar_rad = 1.2, kLittle_rad = 0.35, kLift_s = 0.7, kBack_s = 2.8, kLet_go_s = 3.5;
-  const auto lifted = [](double to_rad, double t_s) { return 0.5 * to_rad * (1.0 - std::cos(kPi * t_s / kLift_s)); };
+  const auto lifted = [](double to_rad, double t_s) {
+    return 0.5 * to_rad * (1.0 - std::cos(std::numbers::pi * t_s / kLift_s));
+  };
   const ImuPlausibility plausibility({});
   ImuPlausibility::State state;
   ImuSample sample;
@@ -180,13 +184,14 @@ ImuPlausibility::State of_a_pendulum(double gyro_scale) {
     if (held) {
       angle = t_s < kBack_s ? lifted(kFar_rad, t_s) : lifted(kLittle_rad, t_s - kBack_s);
     } else {
-      rate -= kDt_s * kGravity / kLength_m * std::sin(angle);
+      rate -= kDt_s * testing::kGravity_m_s2 / kLength_m * std::sin(angle);
       angle += kDt_s * rate;
     }
     sample.time_ns = TimeNs{k} * 10'000'000;
     sample.angular_velocity_rad_s = {0.0, gyro_scale * (angle - before) / kDt_s, 0.0};
-    sample.specific_force_m_s2 = held ? kGravity * Eigen::Vector3d(-std::sin(angle), 0.0, std::cos(angle))
-                                      : Eigen::Vector3d(0.0, 0.0, kGravity * std::cos(angle) + kLength_m * rate * rate);
+    sample.specific_force_m_s2 =
+        held ? testing::kGravity_m_s2 * Eigen::Vector3d(-std::sin(angle), 0.0, std::cos(angle))
+             : Eigen::Vector3d(0.0, 0.0, testing::kGravity_m_s2 * std::cos(angle) + kLength_m * rate * rate);
     plausibility.step(sample, state);
   }
   return state;

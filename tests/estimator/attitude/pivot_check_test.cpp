@@ -18,7 +18,7 @@ namespace {
 const std::string kEvidence = "evidence, of turning about a point, for a gyro named or scaled otherwise";
 const std::string kScale = "scale by which rates explain a turning about a point";
 
-struct Motion {
+struct PivotMotion {
   Eigen::Vector3d arm_m = {0.05, -0.1, 0.08};  // from the pivot to the sensor
   double shaken_m_s2 = 0.0;
   int samples = 2000;
@@ -32,16 +32,16 @@ Eigen::Vector3d change_rad_s2(double t_s) {
   return {6.0 * std::cos(2.0 * t_s), -6.2 * std::sin(3.1 * t_s), 1.95 * std::cos(1.3 * t_s + 1.0)};
 }
 
-struct Readings {
+struct PivotReadings {
   std::vector<ImuSample> samples;
   std::vector<RateState> rates;
 };
 
 // A body that turns about a point which stays: what the sensor reads is known in closed form but for its attitude.
-Readings about_a_pivot(const Motion& motion, const std::function<void(RateState&)>& harm = {}) {
+PivotReadings about_a_pivot(const PivotMotion& motion, const std::function<void(RateState&)>& harm = {}) {
   constexpr double kStep_s = 0.01;
   constexpr int kFine = 20;
-  Readings run;
+  PivotReadings run;
   oracles::Gaussian noise(5);
   Eigen::Quaterniond q = Eigen::Quaterniond::Identity();
   for (int k = 0; k < motion.samples; ++k) {
@@ -73,14 +73,14 @@ Readings about_a_pivot(const Motion& motion, const std::function<void(RateState&
   return run;
 }
 
-std::string says(const Readings& run) {
+std::string says(const PivotReadings& run) {
   const PivotCheck check({});
   const Status verdict = check.verdict(check.find(run.samples, run.rates));
   return verdict.ok() ? "" : verdict.field;
 }
 
 TEST(PivotCheck, RatesExplainATurningAboutAPoint) {
-  const Readings run = about_a_pivot({});
+  const PivotReadings run = about_a_pivot({});
   const PivotCheck check({});
   const PivotCheck::Found found = check.find(run.samples, run.rates);
   EXPECT_TRUE(check.verdict(found).ok()) << check.verdict(found).message();
@@ -102,19 +102,19 @@ TEST(PivotCheck, AGyroNamedOrScaledOtherwiseIsTold) {
 }
 
 TEST(PivotCheck, ANearPivotTellsTheScale) {
-  const auto scaled = [](const Motion& motion) {
+  const auto scaled = [](const PivotMotion& motion) {
     return about_a_pivot(motion, [](RateState& rate) { rate.w_WI_I_rad_s *= 1.05; });
   };
-  const Readings run = scaled({});
+  const PivotReadings run = scaled({});
   const PivotCheck check({});
   EXPECT_EQ(says(run), kScale);
   EXPECT_NEAR(check.find(run.samples, run.rates).scale, 1.0 / 1.05, 0.01);
-  const Readings far = scaled({.arm_m = {0.1, 0.2, 0.6}});
+  const PivotReadings far = scaled({.arm_m = {0.1, 0.2, 0.6}});
   EXPECT_EQ(check.find(far.samples, far.rates).scale_segments, 0u) << "a rod is no point: what it gives is larger";
 }
 
 TEST(PivotCheck, WhatTheGyroDidNotMeasureDoesNotCount) {
-  const Readings run = about_a_pivot({}, [](RateState& rate) {
+  const PivotReadings run = about_a_pivot({}, [](RateState& rate) {
     rate.w_WI_I_rad_s.z() *= -1.0;
     if (rate.time_ns % 900'000'000 == 0) rate.source = RateSource::bounded_only;
   });
@@ -124,7 +124,8 @@ TEST(PivotCheck, WhatTheGyroDidNotMeasureDoesNotCount) {
 }
 
 TEST(PivotCheck, ABodyThatIsThrownAboutIsExplainedByNothing) {
-  const Readings run = about_a_pivot({.shaken_m_s2 = 40.0}, [](RateState& rate) { rate.w_WI_I_rad_s.z() *= -1.0; });
+  const PivotReadings run =
+      about_a_pivot({.shaken_m_s2 = 40.0}, [](RateState& rate) { rate.w_WI_I_rad_s.z() *= -1.0; });
   const PivotCheck check({});
   EXPECT_EQ(check.find(run.samples, run.rates).counted, 0u);
   EXPECT_EQ(says(run), "");

@@ -16,7 +16,7 @@ namespace {
 using testing::CarriedMotion;
 using testing::CarriedRecording;
 
-constexpr double kRail_rad_s = 7.0;
+constexpr double kGyroRail_rad_s = 7.0;
 
 RegimeSmoother::Params params_of(const CarriedMotion& motion) {
   RegimeSmoother::Params params;
@@ -38,7 +38,7 @@ double clipped_error(const CarriedRecording& recording, const std::vector<RateSt
 
 TEST(RegimeSmoother, ATwirlIsTheHands) {
   const CarriedMotion motion;
-  const CarriedRecording recording = record(motion, 100.0, 10.0, kRail_rad_s);
+  const CarriedRecording recording = record(motion, 100.0, 10.0, kGyroRail_rad_s);
   std::vector<RateState> alone, joined;
   RateReport of_flight;
   RegimeSmoother::Report report;
@@ -58,7 +58,7 @@ TEST(RegimeSmoother, AForceThatIsHeldIsComparedInItsOwnTime) {
   motion.spin_rad = 4.0;
   motion.spin_hz = motion.hand_hz = 1.0;
   motion.hand_m = 0.15;
-  CarriedRecording recording = record(motion, 100.0, 10.0, kRail_rad_s);
+  CarriedRecording recording = record(motion, 100.0, 10.0, kGyroRail_rad_s);
   constexpr std::size_t kPeriod = 4;
   for (std::size_t k = 0; k < recording.samples.size(); ++k) {
     const double taken_s = 0.01 * static_cast<double>(k / kPeriod * kPeriod);
@@ -78,7 +78,7 @@ TEST(RegimeSmoother, WhoHeldItAtFirstSaysNothingOfTheRest) {
   CarriedMotion motion;
   motion.spin_rad = 4.0;
   motion.spin_hz = motion.hand_hz = 1.0;
-  const CarriedRecording recording = record(motion, 100.0, 10.0, kRail_rad_s);
+  const CarriedRecording recording = record(motion, 100.0, 10.0, kGyroRail_rad_s);
   std::vector<RateState> alone, joined;
   RateReport of_flight;
   RegimeSmoother::Report report;
@@ -90,7 +90,7 @@ TEST(RegimeSmoother, WhoHeldItAtFirstSaysNothingOfTheRest) {
 
 TEST(RegimeSmoother, ASpinInFlightIsNot) {
   const CarriedMotion motion;
-  CarriedRecording recording = record(motion, 100.0, 10.0, kRail_rad_s);
+  CarriedRecording recording = record(motion, 100.0, 10.0, kGyroRail_rad_s);
   for (std::size_t k = 0; k < recording.samples.size(); ++k) {  // the same turning, and nobody who holds the body
     const double t = 0.01 * (static_cast<double>(k) + 0.5);
     const Eigen::Vector3d w = motion.rate(t);

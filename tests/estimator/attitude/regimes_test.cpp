@@ -23,7 +23,7 @@ constexpr double kG = 9.80665;
 
 enum class Regime { flight, contact, carried };
 
-struct Motion {
+struct RegimeRecording {
   std::vector<ImuSample> samples;
   std::vector<RateState> rates;
 
@@ -81,7 +81,7 @@ struct Motion {
 
 TEST(Regimes, EachAloneIsFound) {
   for (const Regime regime : {Regime::flight, Regime::carried}) {
-    Motion motion;
+    RegimeRecording motion;
     motion.go_on(regime, 3.0);
     std::size_t right = 0;
     double off = 0.0;
@@ -95,7 +95,7 @@ TEST(Regimes, EachAloneIsFound) {
 }
 
 TEST(Regimes, ABodyThatIsThrownWhileCarriedIsFoundInFlight) {
-  Motion motion;
+  RegimeRecording motion;
   motion.go_on(Regime::carried, 3.0);
   motion.go_on(Regime::flight, 0.6);
   motion.go_on(Regime::carried, 3.0);
@@ -104,7 +104,7 @@ TEST(Regimes, ABodyThatIsThrownWhileCarriedIsFoundInFlight) {
 }
 
 TEST(Regimes, ABodyThatIsCaughtInFlightIsFoundInTheHand) {
-  Motion motion;
+  RegimeRecording motion;
   motion.go_on(Regime::flight, 0.6);
   motion.go_on(Regime::carried, 3.0);
   motion.go_on(Regime::flight, 0.6);
@@ -113,7 +113,7 @@ TEST(Regimes, ABodyThatIsCaughtInFlightIsFoundInTheHand) {
 }
 
 TEST(Regimes, ATumbleIsNoHand) {
-  Motion motion;
+  RegimeRecording motion;
   for (int i = 0; i < 10; ++i) {
     motion.go_on(Regime::flight, 0.3);
     motion.go_on(Regime::contact, 0.06, 60.0);
@@ -128,7 +128,7 @@ TEST(Regimes, ATumbleIsNoHand) {
 
 TEST(Regimes, AQuietMomentOnTheGroundBetweenFlightsIsNoHand) {
   // as gentle as a hand: only what is about it tells
-  Motion motion;
+  RegimeRecording motion;
   motion.go_on(Regime::flight, 0.5);
   motion.go_on(Regime::carried, 0.3);
   motion.go_on(Regime::flight, 0.5);
@@ -136,13 +136,13 @@ TEST(Regimes, AQuietMomentOnTheGroundBetweenFlightsIsNoHand) {
 }
 
 TEST(Regimes, ARoughHandIsAHand) {
-  Motion motion;
+  RegimeRecording motion;
   motion.go_on(Regime::carried, 4.0, 8.0);
   EXPECT_EQ(motion.called_carried(Regime::carried), 1.0);
 }
 
 TEST(Regimes, ABodyThatDoesNotTurnSaysNothingOfWhoHoldsIt) {
-  Motion motion;
+  RegimeRecording motion;
   motion.go_on(Regime::carried, 2.0, 0.0);
   for (RateState& rate : motion.rates) rate.w_WI_I_rad_s *= 0.01;
   double most = 0.0;
@@ -168,7 +168,7 @@ TEST(Regimes, EitherHoldsBothAnswers) {
 }
 
 TEST(Regimes, RefusesWhatDoesNotBelongTogether) {
-  Motion motion;
+  RegimeRecording motion;
   motion.go_on(Regime::flight, 0.1);
   std::vector<RegimeShares> out(3);
   const RegimeEvidence evidence({});

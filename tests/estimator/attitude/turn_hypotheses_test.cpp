@@ -8,6 +8,7 @@
 #include <numbers>
 #include <vector>
 
+#include "estimator/attitude/filter_contract.hpp"
 #include "estimator/src/attitude/carried_problem.hpp"
 #include "estimator/src/attitude/turn_hypotheses.hpp"
 #include "tumble/attitude/carried_smoother.hpp"
@@ -15,11 +16,13 @@
 namespace tumble {
 namespace {
 
-constexpr double kHz = 100.0, kGravity = 9.80665, kPi = std::numbers::pi;
+using testing::kGravity_m_s2;
+
+constexpr double kHz = 100.0, kPi = std::numbers::pi;
 
 /// A body that spins about its level x axis at base + more sin^2 over one interval of time, where its gyro clips at the
 /// base and its accelerometer may be blind: at rails that every reading lies beyond.
-struct Spin {
+struct ClippedSpin {
   double base_rad_s = 3.0, more_rad_s = 0.0, from_s = 5.0, lasts_s = 1.2, duration_s = 11.2;
   bool blind = true;
 
@@ -35,12 +38,12 @@ struct Spin {
   }
 };
 
-struct Result {
+struct SpinEstimate {
   std::vector<RateState> rates;
   CarriedSmoother::Report report;
 };
 
-CarriedSmoother::Params params() {
+CarriedSmoother::Params smoother_params() {
   CarriedSmoother::Params out;
   out.hand_m_s2 = 1.0;
   out.gyro_bias_sigma_rad_s = 1e-3;
@@ -50,18 +53,19 @@ CarriedSmoother::Params params() {
 }
 
 /// What its IMU says.
-struct Readings {
+struct SpinReadings {
   std::vector<ImuSample> samples;
   std::vector<ClipSigns> signs;
 
-  explicit Readings(const Spin& spin) {
+  explicit SpinReadings(const ClippedSpin& spin) {
     for (int k = 1; k <= static_cast<int>(kHz * spin.duration_s); ++k) {
       const double end = k / kHz, t = end - 0.5 / kHz;
       ImuSample sample;
       ClipSigns sign;
       sample.time_ns = static_cast<TimeNs>(std::llround(end * 1e9));
       sample.angular_velocity_rad_s = {spin.rate(t), 0.0, 0.0};
-      sample.specific_force_m_s2 = {0.0, kGravity * std::sin(spin.angle(t)), kGravity * std::cos(spin.angle(t))};
+      sample.specific_force_m_s2 = {0.0, kGravity_m_s2 * std::sin(spin.angle(t)),
+                                    kGravity_m_s2 * std::cos(spin.angle(t))};
       if (spin.within(t)) {
         sample.angular_velocity_rad_s.x() = spin.base_rad_s;
         sign.gyro[0] = 1;
@@ -81,12 +85,12 @@ struct Readings {
   }
 };
 
-Result run(const Spin& spin) {
-  const Readings readings(spin);
-  Result out;
+SpinEstimate estimated_spin(const ClippedSpin& spin) {
+  const SpinReadings readings(spin);
+  SpinEstimate out;
   std::vector<AttitudeState> attitudes;
-  const Status status =
-      CarriedSmoother(params()).estimate(readings.samples, readings.clipped(), out.rates, attitudes, out.report);
+  const Status status = CarriedSmoother(smoother_params())
+                            .estimate(readings.samples, readings.clipped(), out.rates, attitudes, out.report);
   EXPECT_TRUE(status.ok()) << status.message();
   EXPECT_EQ(out.rates.size(), readings.samples.size());
   const auto middle = static_cast<std::size_t>(kHz * (spin.from_s + 0.5 * spin.lasts_s));
@@ -96,20 +100,20 @@ Result run(const Spin& spin) {
   return out;
 }
 
-RateState middle(const Spin& spin, const Result& result) {
+RateState middle(const ClippedSpin& spin, const SpinEstimate& result) {
   return result.rates[static_cast<std::size_t>(kHz * (spin.from_s + 0.5 * spin.lasts_s))];
 }
 
 /// Where white jerk alone joins both sides, an angle theta beyond the even spin costs 720 theta^2 / (T^5 q), and the
 /// rate that makes it is theta/T 30 u^2 (1 - u)^2: turns more are as likely as that says, fewer lie below the rail.
 TEST(TurnHypotheses, WhatNothingTellsIsCountedInTheCovariance) {
-  Spin spin;
+  ClippedSpin spin;
   spin.more_rad_s = 4.0;
-  const Result result = run(spin);
+  const SpinEstimate result = estimated_spin(spin);
   EXPECT_EQ(result.report.turns_asked, 1);
   EXPECT_EQ(result.report.turns_taken, 0);
   EXPECT_EQ(result.report.turns_open, 1);
-  const double q = std::pow(params().jerk_rad_s3_sqrts, 2.0), T = spin.lasts_s + 1.0 / kHz;
+  const double q = std::pow(smoother_params().jerk_rad_s3_sqrts, 2.0), T = spin.lasts_s + 1.0 / kHz;
   const double theta = 0.5 * spin.more_rad_s * spin.lasts_s;
   double sum = 0.0, second = 0.0;
   for (int n = 0; n < 3; ++n) {
@@ -130,9 +134,9 @@ TEST(TurnHypotheses, WhatNothingTellsIsCountedInTheCovariance) {
 /// the segment tells the angle but for whole turns, and of these the one with the least jerk is taken. More stay
 /// possible.
 TEST(TurnHypotheses, WhatFollowsDecides) {
-  Spin spin;
+  ClippedSpin spin;
   spin.more_rad_s = 7.5;
-  const Result result = run(spin);
+  const SpinEstimate result = estimated_spin(spin);
   const RateState state = middle(spin, result);
   const double error = std::abs(state.w_WI_I_rad_s.x() - spin.rate(spin.from_s + 0.5 * spin.lasts_s));
   EXPECT_GE(result.report.turns_taken, 1);
@@ -143,11 +147,11 @@ TEST(TurnHypotheses, WhatFollowsDecides) {
 
 /// Negative control: an accelerometer that sees the spin leaves nothing to ask, and its deviation stays small.
 TEST(TurnHypotheses, ASegmentThatIsKnownIsNotAsked) {
-  Spin spin;
+  ClippedSpin spin;
   spin.more_rad_s = 4.0;
   spin.lasts_s = 0.6;
   spin.blind = false;
-  const Result result = run(spin);
+  const SpinEstimate result = estimated_spin(spin);
   EXPECT_EQ(result.report.turns_asked, 0);
   EXPECT_EQ(result.report.turns_taken, 0);
   EXPECT_EQ(result.report.turns_open, 0);
@@ -156,12 +160,12 @@ TEST(TurnHypotheses, ASegmentThatIsKnownIsNotAsked) {
 
 /// The problem of such a spin, solved as far as the iterations go.
 struct Solved {
-  Readings readings;
+  SpinReadings readings;
   carried::Collected collected;
   carried::Problem problem;
   CarriedSmoother::Report report;
 
-  Solved(const Spin& spin, const CarriedSmoother::Params& params)
+  Solved(const ClippedSpin& spin, const CarriedSmoother::Params& params)
       : readings(spin),
         collected(carried::collect(params, readings.samples, readings.clipped())),
         problem(params, Eigen::Matrix3d::Identity(), collected, started(params)) {
@@ -180,9 +184,9 @@ struct Solved {
 /// A turn is taken and the whole is solved from there to no end: the answer before stands, with its own figures, and
 /// the turn that is likelier than what stands is in its covariance.
 TEST(TurnHypotheses, WhereTheWholeCannotBeSolvedAgainTheAnswerBeforeStands) {
-  Spin spin;
+  ClippedSpin spin;
   spin.more_rad_s = 7.5;
-  Solved solved(spin, params());
+  Solved solved(spin, smoother_params());
   const std::vector<carried::Node> before(solved.problem.nodes().begin(), solved.problem.nodes().end());
   const CarriedSmoother::Report report = solved.report;
   const auto fails = [](carried::Problem& problem, CarriedSmoother::Report& changed) {
@@ -209,11 +213,11 @@ TEST(TurnHypotheses, WhereTheWholeCannotBeSolvedAgainTheAnswerBeforeStands) {
 /// More iterations lead to no larger cost once the hand's power stands still, however bad the start. Whole steps led
 /// from 99 to 2841, from 1717 to 8231 and from 261116 to 312785 here, within these iterations.
 TEST(CarriedDescent, DoesNotClimb) {
-  const Spin spins[] = {{.more_rad_s = 4.0, .duration_s = 7.5, .blind = false},
-                        {.more_rad_s = 15.0, .duration_s = 7.5},
-                        {.more_rad_s = 15.0, .lasts_s = 0.5, .duration_s = 7.5}};
-  for (const Spin& spin : spins) {
-    CarriedSmoother::Params some = params();
+  const ClippedSpin spins[] = {{.more_rad_s = 4.0, .duration_s = 7.5, .blind = false},
+                               {.more_rad_s = 15.0, .duration_s = 7.5},
+                               {.more_rad_s = 15.0, .lasts_s = 0.5, .duration_s = 7.5}};
+  for (const ClippedSpin& spin : spins) {
+    CarriedSmoother::Params some = smoother_params();
     double least = 1e300;
     for (int count = 10; count <= 15; ++count) {
       some.expert.iterations_max = count;

@@ -16,8 +16,10 @@ namespace {
 
 using Odometry = LidarInertialOdometry;
 
-constexpr int kRuns = 16, kSweeps = 16, kSamplesPerSweep = 10, kColumns = 300;
-constexpr double kNoise_m = 0.02;  // of the RS-16
+using test::kSamplesPerSweep;
+
+constexpr int kRuns = 16, kSweepsOfRun = 16, kColumns = 300;
+constexpr double kRs16Noise_m = 0.02;  // of the RS-16
 
 /// The errors of an IMU as the mapper believes it to be: constant over a sweep and independent from one to the next, as
 /// large as the parameters say (mapping.md, R31 to R33). None at rest, of which the mapper knows.
@@ -65,11 +67,11 @@ double nees_of_run(int run) {
   params.T_IL.translation() = Eigen::Vector3d(0.02, 0.087, 0.04);
   params.T_IL.linear() = so3::exp({0.0, 0.0, -1.5707963267948966}).toRotationMatrix();
   Odometry odometry(params);
-  std::vector<ImuSample> imu = test::make_imu(motion, 0.1 * kSweeps);
+  std::vector<ImuSample> imu = test::make_imu(motion, 0.1 * kSweepsOfRun);
   BelievedImu believed(params, static_cast<std::uint64_t>(run));
   const Eigen::Vector3d bias = believed.accel_bias_m_s2();
   Odometry::SweepReport report;
-  for (int k = 0; k < kSweeps; ++k) {
+  for (int k = 0; k < kSweepsOfRun; ++k) {
     const std::span<ImuSample> sweep =
         std::span(imu).subspan(static_cast<std::size_t>(k * kSamplesPerSweep), kSamplesPerSweep);
     if (k * 0.1 >= motion.rest_s - 1e-9) believed.err(sweep);
@@ -77,11 +79,12 @@ double nees_of_run(int run) {
       sample.specific_force_m_s2 += bias;
       EXPECT_TRUE(odometry.add_imu(sample, test::believe(sample)).ok());
     }
-    const auto points = test::make_sweep(test::Room::box_with_pillars(), motion, params.T_IL, k, kNoise_m, kColumns);
+    const auto points =
+        test::make_sweep(test::Room::box_with_pillars(), motion, params.T_IL, k, kRs16Noise_m, kColumns);
     EXPECT_TRUE(odometry.add_sweep(k * test::kSweep_ns, (k + 1) * test::kSweep_ns, points, report).ok());
     EXPECT_NE(report.verdict, SweepVerdict::rejected) << "run " << run << " sweep " << k;
   }
-  const double end_s = 0.1 * kSweeps;
+  const double end_s = 0.1 * kSweepsOfRun;
   Eigen::Matrix<double, 6, 1> error;
   error << motion.p_m(end_s) - report.pose.p_WA_m, so3::log(motion.q(end_s) * report.pose.q_WA.conjugate());
   return error.dot(report.pose.covariance.llt().solve(error)) / 6.0;
@@ -132,7 +135,7 @@ TEST(Covariance, CountsWhatTheAccelerometersRailHides) {
   EXPECT_LT(std::abs(deviations_after_a_knock(kClipAccelX, 0.0)), 3.0);
   EXPECT_GT(std::abs(deviations_after_a_knock(0, 0.0)), 3.0);  // a knock that nobody owns up to
   // false normals look like surfaces across the way
-  EXPECT_LT(std::abs(deviations_after_a_knock(kClipAccelX, kNoise_m)), 3.0);
+  EXPECT_LT(std::abs(deviations_after_a_knock(kClipAccelX, kRs16Noise_m)), 3.0);
 }
 
 }  // namespace

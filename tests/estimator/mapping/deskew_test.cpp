@@ -14,8 +14,6 @@
 namespace tumble {
 namespace {
 
-constexpr double kGravity = 9.80665;
-
 Eigen::Isometry3d mounting() {
   Eigen::Isometry3d T_IL = Eigen::Isometry3d::Identity();
   T_IL.linear() = so3::exp({0.0, 0.0, -1.5707963267948966}).toRotationMatrix();
@@ -39,7 +37,7 @@ TEST(SweepTrajectory, FollowsTheTrueMotionAtAnyInstant) {
   SweepTrajectory trajectory;
   // neither end falls on a sample
   const MotionState start = true_state(motion, 1'000'300'000);
-  ASSERT_TRUE(trajectory.build(start, samples, 1'200'700'000, kGravity).ok());
+  ASSERT_TRUE(trajectory.build(start, samples, 1'200'700'000, test::kRoomGravity_m_s2).ok());
   for (int i = 0; i <= 50; ++i) {
     const double t = trajectory.duration_s() * i / 50.0;
     const MotionState state = trajectory.state(t);
@@ -58,7 +56,8 @@ TEST(SweepTrajectory, SaysTheSameOfManyPointsAsOfEach) {
     motion.spin_rad_s = spin_rad_s;
     const std::vector<MotionSample> samples = test::motion_samples(test::make_imu(motion, 1.3, 100.0));
     SweepTrajectory trajectory;
-    ASSERT_TRUE(trajectory.build(true_state(motion, 1'003'000'000), samples, 1'102'000'000, kGravity).ok());
+    ASSERT_TRUE(
+        trajectory.build(true_state(motion, 1'003'000'000), samples, 1'102'000'000, test::kRoomGravity_m_s2).ok());
     std::vector<SweepPoint> points;
     for (std::uint64_t i = 0; i < 3000; ++i) {
       SweepPoint& point = points.emplace_back();
@@ -125,11 +124,11 @@ TEST(SweepTrajectory, SaysWhatItLacks) {
   const std::vector<MotionSample> samples = test::motion_samples(test::make_imu(test::Motion{}, 0.2));
   SweepTrajectory trajectory;
   MotionState start;
-  EXPECT_EQ(trajectory.build(start, {}, 100, kGravity).trouble, Trouble::too_few);
-  EXPECT_EQ(trajectory.build(start, samples, 200'000'001, kGravity).trouble, Trouble::too_few);
-  EXPECT_EQ(trajectory.build(start, samples, -1, kGravity).trouble, Trouble::time_order);
+  EXPECT_EQ(trajectory.build(start, {}, 100, test::kRoomGravity_m_s2).trouble, Trouble::too_few);
+  EXPECT_EQ(trajectory.build(start, samples, 200'000'001, test::kRoomGravity_m_s2).trouble, Trouble::too_few);
+  EXPECT_EQ(trajectory.build(start, samples, -1, test::kRoomGravity_m_s2).trouble, Trouble::time_order);
   start.time_ns = -1;
-  EXPECT_EQ(trajectory.build(start, samples, 100'000'000, kGravity).trouble, Trouble::gap);
+  EXPECT_EQ(trajectory.build(start, samples, 100'000'000, test::kRoomGravity_m_s2).trouble, Trouble::gap);
 }
 
 TEST(SweepTrajectory, CovarianceMatchesDifferences) {
@@ -138,7 +137,7 @@ TEST(SweepTrajectory, CovarianceMatchesDifferences) {
   MotionState start = true_state(motion, 1'000'000'000);
   start.covariance.setIdentity();
   SweepTrajectory trajectory;
-  ASSERT_TRUE(trajectory.build(start, samples, 1'100'000'000, kGravity).ok());
+  ASSERT_TRUE(trajectory.build(start, samples, 1'100'000'000, test::kRoomGravity_m_s2).ok());
   const MotionState nominal = trajectory.state(0.1);
   Eigen::Matrix<double, 9, 9> F;
   const double h = 1e-6;
@@ -149,7 +148,7 @@ TEST(SweepTrajectory, CovarianceMatchesDifferences) {
     moved.p_WI_m += d.head<3>();
     moved.q_WI = so3::exp(d.segment<3>(3)) * moved.q_WI;
     moved.v_WI_m_s += d.tail<3>();
-    ASSERT_TRUE(trajectory.build(moved, samples, 1'100'000'000, kGravity).ok());
+    ASSERT_TRUE(trajectory.build(moved, samples, 1'100'000'000, test::kRoomGravity_m_s2).ok());
     const MotionState end = trajectory.state(0.1);
     F.col(i) << (end.p_WI_m - nominal.p_WI_m) / h, so3::log(end.q_WI * nominal.q_WI.conjugate()) / h,
         (end.v_WI_m_s - nominal.v_WI_m_s) / h;
@@ -170,7 +169,8 @@ class DeskewedSweep : public testing::Test {
     const std::vector<LidarPoint> points = test::make_sweep(room, motion, mounting(), 11);
     EXPECT_GT(points.size(), 10'000u);
     SweepTrajectory trajectory;
-    EXPECT_TRUE(trajectory.build(true_state(motion, 1'100'000'000), samples, 1'200'000'000, kGravity).ok());
+    EXPECT_TRUE(
+        trajectory.build(true_state(motion, 1'100'000'000), samples, 1'200'000'000, test::kRoomGravity_m_s2).ok());
     std::vector<SweepPoint> selected;
     const PointCounts counts = select_points(points, {0.0, 100.0, Eigen::AlignedBox3d()}, mounting(), 0.0, selected);
     EXPECT_EQ(counts.used, points.size());

@@ -11,7 +11,7 @@
 namespace tumble {
 namespace {
 
-constexpr double kGravity = 9.80665;
+constexpr double kFall_m_s2 = 9.80665;
 constexpr TimeNs kFlight_ns = 600'000'000;
 
 MotionState thrown() {
@@ -24,7 +24,7 @@ MotionState thrown() {
 }
 
 /// The IMU's motion at the end of a flight by the arc.
-MotionState fly(const FlyingBody& body, const Eigen::Vector3d& w, TimeNs step_ns, double gravity = kGravity) {
+MotionState fly(const FlyingBody& body, const Eigen::Vector3d& w, TimeNs step_ns, double gravity = kFall_m_s2) {
   const MotionState start = thrown();
   std::vector<MotionSample> samples;
   EXPECT_TRUE(flight_arc(body, w, start.time_ns, start.time_ns + kFlight_ns, step_ns, samples).ok());
@@ -43,7 +43,7 @@ TEST(FlightArc, OfEqualMomentsIsTheClosedForm) {
   const double t = seconds(kFlight_ns);
   const Eigen::Quaterniond q = start.q_WI * so3::exp(w * t);
   const Eigen::Vector3d v_WB = start.v_WI_m_s + start.q_WI * w.cross(body.p_IB_I_m);
-  const Eigen::Vector3d fall(0.0, 0.0, -kGravity);
+  const Eigen::Vector3d fall(0.0, 0.0, -kFall_m_s2);
   const Eigen::Vector3d p_WI =
       start.p_WI_m + start.q_WI * body.p_IB_I_m + t * v_WB + 0.5 * t * t * fall - q * body.p_IB_I_m;
   const Eigen::Vector3d v_WI = v_WB + t * fall - q * w.cross(body.p_IB_I_m);

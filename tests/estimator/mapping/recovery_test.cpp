@@ -13,9 +13,9 @@ namespace {
 
 using Odometry = LidarInertialOdometry;
 
-constexpr double kNoise_m = 0.01;
-constexpr int kSamplesPerSweep = 10;
-constexpr int kColumns = 450;
+using test::kHalfColumns;
+using test::kRoomNoise_m;
+using test::kSamplesPerSweep;
 
 Odometry::Params true_params() {
   Odometry::Params params;
@@ -53,7 +53,7 @@ struct Rig {
     }
   }
   std::vector<LidarPoint> points(int sweep) const {
-    return test::make_sweep(room, motion, true_params().T_IL, sweep, kNoise_m, kColumns);
+    return test::make_sweep(room, motion, true_params().T_IL, sweep, kRoomNoise_m, kHalfColumns);
   }
   Status sweep(int k, std::span<const LidarPoint> given) {
     return odometry.add_sweep(k * test::kSweep_ns, (k + 1) * test::kSweep_ns, given, report);
@@ -88,7 +88,7 @@ void run_miscalibrated(Odometry& odometry, const test::Motion& motion, int sweep
     }
     Odometry::SweepReport report;
     const auto points =
-        test::make_sweep(test::Room::box_with_pillars(), motion, true_params().T_IL, k, kNoise_m, kColumns);
+        test::make_sweep(test::Room::box_with_pillars(), motion, true_params().T_IL, k, kRoomNoise_m, kHalfColumns);
     ASSERT_TRUE(odometry.add_sweep(start_ns, start_ns + test::kSweep_ns, points, report).ok());
     ASSERT_NE(report.verdict, SweepVerdict::rejected) << k;
   }
@@ -178,7 +178,7 @@ TEST(Recovery, ADegenerateSegmentIsSaidAndLeft) {
   for (int k = 15; k < 20; ++k) {
     rig.feed_imu(k);
     const auto floor =
-        test::make_sweep(test::Room::floor_only(), rig.motion, true_params().T_IL, k, kNoise_m, kColumns);
+        test::make_sweep(test::Room::floor_only(), rig.motion, true_params().T_IL, k, kRoomNoise_m, kHalfColumns);
     ASSERT_TRUE(rig.sweep(k, floor).ok());
     EXPECT_EQ(rig.report.verdict, SweepVerdict::degenerate) << k;
     // held by the prior in the free directions, by the floor in the others
@@ -207,7 +207,7 @@ TEST(Equivariance, ToARotatedMounting) {
       ASSERT_TRUE(b.add_imu(sample, test::believe(sample)).ok());
     }
     const auto points =
-        test::make_sweep(test::Room::box_with_pillars(), motion, true_params().T_IL, k, kNoise_m, kColumns);
+        test::make_sweep(test::Room::box_with_pillars(), motion, true_params().T_IL, k, kRoomNoise_m, kHalfColumns);
     ASSERT_TRUE(a.add_sweep(k * test::kSweep_ns, (k + 1) * test::kSweep_ns, points, ra).ok());
     ASSERT_TRUE(b.add_sweep(k * test::kSweep_ns, (k + 1) * test::kSweep_ns, points, rb).ok());
   }

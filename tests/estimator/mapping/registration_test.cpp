@@ -15,13 +15,11 @@ namespace {
 using test::loose_prior;
 using test::map_of;
 
-constexpr double kGravity = 9.80665;
-
 /// A still IMU over 0.1 s at the origin.
 std::vector<MotionSample> still_samples() {
   MotionSample sample;
   sample.time_ns = test::kSweep_ns;
-  sample.f_I_m_s2 = Eigen::Vector3d(0, 0, kGravity);
+  sample.f_I_m_s2 = Eigen::Vector3d(0, 0, test::kRoomGravity_m_s2);
   return {sample};
 }
 

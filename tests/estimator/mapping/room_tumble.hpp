@@ -10,9 +10,6 @@
 /// Sensor data of one tumble through a box room with pillars, and how the odometry is run over it.
 namespace tumble::test {
 
-inline constexpr int kSamplesPerSweep = 10;
-inline constexpr double kRoomNoise_m = 0.01;
-
 LidarInertialOdometry::Params rig_params();
 
 struct RoomTumble {

@@ -12,7 +12,6 @@ namespace tumble::test {
 
 namespace {
 
-constexpr double kGravity = 9.80665;
 constexpr int kRings = 16;
 
 const Room::Plane kFloor{{0, 0, -1.5}, {0, 0, 1}};
@@ -132,7 +131,7 @@ std::vector<ImuSample> make_imu(const Motion& motion, double duration_s, double 
       // a hair inside of the window, where the jump of acceleration at the end of rest belongs to one side
       const double t = t0 + dt * (1e-6 + (1.0 - 2e-6) * i / kParts);
       const double weight = (i == 0 || i == kParts) ? 1.0 : (i % 2 == 1 ? 4.0 : 2.0);
-      force += weight * (motion.q(t).conjugate() * (motion.a_m_s2(t) + Eigen::Vector3d(0, 0, kGravity)));
+      force += weight * (motion.q(t).conjugate() * (motion.a_m_s2(t) + Eigen::Vector3d(0, 0, kRoomGravity_m_s2)));
     }
     sample.specific_force_m_s2 = force / (3.0 * kParts);
   }

@@ -14,6 +14,11 @@
 /// An analytic world, motion and pair of sensors: what the mapping code must explain, made without any of it.
 namespace tumble::test {
 
+inline constexpr double kRoomGravity_m_s2 = 9.80665;
+inline constexpr int kSamplesPerSweep = 10;
+inline constexpr int kHalfColumns = 450;  ///< of a sweep, where fewer do
+inline constexpr double kRoomNoise_m = 0.01;
+
 /// Planes (point, normal towards the free side) and vertical round pillars.
 struct Room {
   struct Plane {

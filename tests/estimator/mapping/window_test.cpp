@@ -14,8 +14,9 @@ namespace {
 
 using Odometry = LidarInertialOdometry;
 
-constexpr double kNoise_m = 0.01, kRail_rad_s = 8.0;
-constexpr int kSamplesPerSweep = 10, kColumns = 450;
+using test::kSamplesPerSweep;
+
+constexpr double kRail_rad_s = 8.0;
 
 Odometry::Params given() {
   Odometry::Params params;
@@ -51,7 +52,8 @@ struct Drive {
       }
       std::vector<LidarPoint> points;
       if (!covered) {
-        points = test::make_sweep(test::Room::box_with_pillars(), motion, given().T_IL, k, kNoise_m, kColumns);
+        points = test::make_sweep(test::Room::box_with_pillars(), motion, given().T_IL, k, test::kRoomNoise_m,
+                                  test::kHalfColumns);
       }
       const Status status = odometry.add_sweep(k * test::kSweep_ns, (k + 1) * test::kSweep_ns, points, report);
       ASSERT_EQ(status.trouble, covered ? Trouble::empty : Trouble::none) << status.message();

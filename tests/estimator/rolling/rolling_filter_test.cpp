@@ -62,7 +62,7 @@ Contact event(double start_s, double length_s, const Eigen::Vector3d& u) {
   };
 }
 
-const Eigen::Vector3d kLeverArm(0.02, -0.01, 0.03);
+using testing::kLeverArm;
 
 RollingTruth truth_of(const Contact& velocity, const Contact& contact, double duration_s = 10.0) {
   return testing::roll({.velocity_m_s = velocity,
@@ -90,7 +90,7 @@ struct Result {
   double delay_s = 0.0;                  ///< from a contact velocity of 50 mm/s to the first sample not gripping
 };
 
-Result run(const RollingTruth& truth, const Contact& contact, const RollingFilter::Params& params) {
+Result filtered(const RollingTruth& truth, const Contact& contact, const RollingFilter::Params& params) {
   const RollingFilter filter(params);
   const auto state = std::make_unique<RollingFilter::State>();  // 360 KiB
   int hit = 0, missed = 0, wrong = 0;
@@ -142,7 +142,7 @@ TEST(RollingFilter, PerfectSensorsLeaveLittle) {
   for (const Case& c : cases()) {
     const RollingTruth truth = truth_of(c.velocity, c.contact);
     EXPECT_GE(rolling_error(truth), c.rolling_at_least_m) << c.name;
-    EXPECT_LT(run(truth, c.contact, {.radius_m = testing::kRadius_m, .lever_arm_m = kLeverArm}).end_error_m, 0.004)
+    EXPECT_LT(filtered(truth, c.contact, {.radius_m = testing::kRadius_m, .lever_arm_m = kLeverArm}).end_error_m, 0.004)
         << c.name;  // measured 0 to 2.4 mm
   }
 }
@@ -215,7 +215,7 @@ TEST(RollingFilter, FindsItsWayThroughSlipAndSlide) {
     for (const std::uint64_t seed : {1001, 1002, 1003}) {  // others than those of development
       RollingTruth truth = truth_of(c.velocity, c.contact);
       add_errors(seed, truth);
-      const Result r = run(truth, c.contact, {.radius_m = testing::kRadius_m, .lever_arm_m = kLeverArm});
+      const Result r = filtered(truth, c.contact, {.radius_m = testing::kRadius_m, .lever_arm_m = kLeverArm});
       std::printf("%-18s seed %d: end %.4f m, sigma %.4f, recall %.2f, precision %.2f, delay %.3f s\n", c.name,
                   static_cast<int>(seed), r.end_error_m, r.end_sigma_m, r.recall, r.precision, r.delay_s);
       EXPECT_LT(r.end_error_m, 0.02) << c.name << " " << seed;  // 1 % of the path; measured up to 0.5 %
@@ -241,7 +241,7 @@ TEST(RollingFilter, AHeldSpinIsNotTakenForGrip) {
     const Contact contact = [=](double t) { return along(held * rise((t - 4.0) / 0.1) * rise((6.0 - t) / 0.1)); };
     RollingTruth truth = truth_of(velocity, contact);
     add_errors(seed, truth);
-    const Result r = run(truth, contact, {.radius_m = testing::kRadius_m, .lever_arm_m = kLeverArm});
+    const Result r = filtered(truth, contact, {.radius_m = testing::kRadius_m, .lever_arm_m = kLeverArm});
     std::printf("held spin %.2f m/s: end %.4f m, sigma %.4f, recall %.2f\n", held, r.end_error_m, r.end_sigma_m,
                 r.recall);
     EXPECT_LT(r.end_error_m, 0.03) << held;  // of 2.5 m
@@ -255,7 +255,7 @@ TEST(RollingFilter, KnowsThatALongSpinIsLessCertain) {
     const Contact contact = event(2.8, k == 0 ? 0.3 : 2.0, {-0.6, 0.1, 0.0});
     RollingTruth truth = truth_of(l_shape, contact);
     add_errors(1006, truth);
-    const Result r = run(truth, contact, {.radius_m = testing::kRadius_m, .lever_arm_m = kLeverArm});
+    const Result r = filtered(truth, contact, {.radius_m = testing::kRadius_m, .lever_arm_m = kLeverArm});
     EXPECT_LT(r.end_error_m, 4.0 * r.end_sigma_m) << k;
     sigma[k] = r.end_sigma_m;
   }
@@ -268,9 +268,11 @@ TEST(RollingFilter, LateAccelerometerIsFoundOut) {
   for (std::size_t k = truth.samples.size() - 1; k > 1; --k) {  // 8 ms
     truth.samples[k].specific_force_m_s2 = truth.samples[k - 2].specific_force_m_s2;
   }
-  const double with = run(truth, slip.contact, {.radius_m = testing::kRadius_m, .lever_arm_m = kLeverArm}).end_error_m;
+  const double with =
+      filtered(truth, slip.contact, {.radius_m = testing::kRadius_m, .lever_arm_m = kLeverArm}).end_error_m;
   const double without =
-      run(truth, slip.contact,
+      filtered(
+          truth, slip.contact,
           {.radius_m = testing::kRadius_m, .lever_arm_m = kLeverArm, .expert = {.prior = {.accel_delay_sigma_s = 0.0}}})
           .end_error_m;
   EXPECT_LT(with, 0.02);

@@ -38,7 +38,7 @@ thread_local std::size_t held = 0, held_most = 0;
 namespace tumble {
 namespace {
 
-const Eigen::Vector3d kLeverArm(0.02, -0.01, 0.03);
+using testing::kLeverArm;
 
 testing::RollingTruth way(double duration_s) {
   return testing::roll({.velocity_m_s = testing::l_shape,

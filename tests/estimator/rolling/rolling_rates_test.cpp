@@ -6,6 +6,7 @@
 #include <random>
 #include <vector>
 
+#include "estimator/rolling/lagged_params.hpp"
 #include "estimator/rolling/rolling_truth.hpp"
 #include "tumble/rolling/rolling_smoother.hpp"
 
@@ -13,14 +14,14 @@
 namespace tumble {
 namespace {
 
-const Eigen::Vector3d kLeverArm(0.02, -0.01, 0.03);
+using testing::kLeverArm;
 
 Eigen::Vector3d spins(double t) {
   return {-testing::minimum_jerk_speed(t, 2.8, 0.8, 0.25), 0.05 * testing::minimum_jerk_speed(t, 2.8, 0.8, 0.25), 0.0};
 }
 
 /// An L of 2 m with a spell of slip; errors of the Phidget class, noise of 4e-4 rad/s and 2e-3 m/s^2 per root of Hz.
-testing::RollingTruth slipping(TimeNs period_ns) {
+testing::RollingTruth slipping_sampled(TimeNs period_ns) {
   testing::RollingTruth truth = testing::roll({.velocity_m_s = testing::l_shape,
                                                .contact_velocity_m_s = spins,
                                                .lever_arm_m = kLeverArm,
@@ -38,20 +39,12 @@ testing::RollingTruth slipping(TimeNs period_ns) {
   return truth;
 }
 
-RollingSmoother::Params params(double lag_s) {
-  RollingSmoother::Params out;
-  out.filter.radius_m = testing::kRadius_m;
-  out.filter.lever_arm_m = kLeverArm;
-  out.lag_s = lag_s;
-  return out;
-}
-
 struct Smoothed {
   std::vector<RollingEstimate> out;
   std::unique_ptr<RollingSmoother::State> state = std::make_unique<RollingSmoother::State>();
 };
 
-Smoothed run(const std::vector<ImuSample>& samples, const RollingSmoother::Params& p) {
+Smoothed smoothed_samples(const std::vector<ImuSample>& samples, const RollingSmoother::Params& p) {
   const RollingSmoother smoother(p);
   Smoothed run;
   for (const ImuSample& sample : samples) {
@@ -64,7 +57,7 @@ Smoothed run(const std::vector<ImuSample>& samples, const RollingSmoother::Param
 }
 
 double end_error_m(const std::vector<ImuSample>& samples, const Eigen::Vector3d& end_m, double lag_s) {
-  return (run(samples, params(lag_s)).out.back().p_WG_m - end_m).norm();
+  return (smoothed_samples(samples, testing::lagged_params(lag_s)).out.back().p_WG_m - end_m).norm();
 }
 
 // 50 Hz to 8 kHz, and rates that divide nothing
@@ -73,8 +66,8 @@ constexpr TimeNs kPeriods_ns[] = {20'000'000, 8'000'000, 3'000'000, 1'000'000, 7
 // measured: 10 to 17 mm at every rate, whole and live, 14 mm at 250 Hz; what differs is the draw of the noise
 TEST(RollingRates, TheSameAnswerFrom50HzTo8kHz) {
   for (const TimeNs period_ns : kPeriods_ns) {
-    const testing::RollingTruth truth = slipping(period_ns);
-    const Smoothed own = run(truth.samples, params(RollingSmoother::kWholeRun));
+    const testing::RollingTruth truth = slipping_sampled(period_ns);
+    const Smoothed own = smoothed_samples(truth.samples, testing::lagged_params(RollingSmoother::kWholeRun));
     const Eigen::Vector3d& end_m = truth.p_WG_m.back();
     EXPECT_LT((own.out.back().p_WG_m - end_m).norm(), 0.02) << period_ns;
     EXPECT_LT((own.state->live.p_WG_m - end_m).norm(), 0.02) << period_ns;
@@ -82,20 +75,20 @@ TEST(RollingRates, TheSameAnswerFrom50HzTo8kHz) {
 }
 
 TEST(RollingRates, ReadingsAsLongAsTheWindowAreTakenAsTheyAre) {
-  const testing::RollingTruth truth = slipping(4'000'000);
-  RollingSmoother::Params one_by_one = params(RollingSmoother::kWholeRun);
+  const testing::RollingTruth truth = slipping_sampled(4'000'000);
+  RollingSmoother::Params one_by_one = testing::lagged_params(RollingSmoother::kWholeRun);
   one_by_one.filter.expert.reading_s = 0.0;
-  const Smoothed averaged = run(truth.samples, params(RollingSmoother::kWholeRun)),
-                 plain = run(truth.samples, one_by_one);
+  const Smoothed averaged = smoothed_samples(truth.samples, testing::lagged_params(RollingSmoother::kWholeRun)),
+                 plain = smoothed_samples(truth.samples, one_by_one);
   EXPECT_TRUE(averaged.out.back().p_WG_m == plain.out.back().p_WG_m);
   EXPECT_TRUE(averaged.out.back().covariance == plain.out.back().covariance);
 }
 
 TEST(RollingRates, JitterOfTheStampsAndReadingsThatRepeatAreBorne) {
-  const testing::RollingTruth truth = slipping(1'000'000);
+  const testing::RollingTruth truth = slipping_sampled(1'000'000);
   const Eigen::Vector3d& end_m = truth.p_WG_m.back();
   const double exact = end_error_m(truth.samples, end_m, RollingSmoother::kWholeRun);
-  std::vector<ImuSample> held = truth.samples, jittered = slipping(4'000'000).samples;
+  std::vector<ImuSample> held = truth.samples, jittered = slipping_sampled(4'000'000).samples;
   // a device of 200 Hz read at 1 kHz
   for (std::size_t k = 0; k < held.size(); ++k) {
     held[k].angular_velocity_rad_s = truth.samples[k - k % 5].angular_velocity_rad_s;
@@ -112,11 +105,11 @@ TEST(RollingRates, JitterOfTheStampsAndReadingsThatRepeatAreBorne) {
 }
 
 TEST(RollingRates, SplitRunsEqualWithAveragesAndGaps) {
-  std::vector<ImuSample> samples = slipping(1'000'000).samples;
+  std::vector<ImuSample> samples = slipping_sampled(1'000'000).samples;
   std::erase_if(samples, [](const ImuSample& s) { return s.time_ns > 4'200'000'000 && s.time_ns < 4'700'000'000; });
   for (const double lag_s : {0.5}) {
-    const RollingSmoother smoother(params(lag_s));
-    const Smoothed whole = run(samples, params(lag_s));
+    const RollingSmoother smoother(testing::lagged_params(lag_s));
+    const Smoothed whole = smoothed_samples(samples, testing::lagged_params(lag_s));
     for (const std::size_t cut : {4003UL, 4401UL, 5001UL}) {
       Smoothed split;
       for (std::size_t k = 0; k < cut; ++k) ASSERT_TRUE(smoother.step(samples[k], *split.state, split.out).ok());
@@ -132,7 +125,7 @@ TEST(RollingRates, SplitRunsEqualWithAveragesAndGaps) {
 }
 
 TEST(RollingRates, AGapCostsWhatItMustAndIsTold) {
-  const testing::RollingTruth truth = slipping(4'000'000);
+  const testing::RollingTruth truth = slipping_sampled(4'000'000);
   const Eigen::Vector3d& end_m = truth.p_WG_m.back();
   const auto without = [&](double from_s, double length_s) {
     std::vector<ImuSample> samples = truth.samples;
@@ -145,11 +138,11 @@ TEST(RollingRates, AGapCostsWhatItMustAndIsTold) {
     return std::sqrt(of.out.back().covariance.topLeftCorner<3, 3>().trace());
   };
   const double whole = RollingSmoother::kWholeRun;
-  const Smoothed none = run(truth.samples, params(whole));
+  const Smoothed none = smoothed_samples(truth.samples, testing::lagged_params(whole));
   EXPECT_EQ(none.state->live.gaps, 0);
   for (const double length_s : {0.2, 0.95}) {
     for (const double lag_s : {whole, 0.5}) {
-      const Smoothed moving = run(without(6.3, length_s), params(lag_s));
+      const Smoothed moving = smoothed_samples(without(6.3, length_s), testing::lagged_params(lag_s));
       const double error = (moving.out.back().p_WG_m - end_m).norm();
       EXPECT_EQ(moving.state->live.gaps, 1);
       EXPECT_NEAR(moving.state->live.gap_longest_s, length_s, 9e-3);
@@ -158,10 +151,10 @@ TEST(RollingRates, AGapCostsWhatItMustAndIsTold) {
       EXPECT_GT(sigma(moving), sigma(none)) << length_s;
     }
   }
-  const Smoothed resting = run(without(0.8, 0.5), params(whole));
+  const Smoothed resting = smoothed_samples(without(0.8, 0.5), testing::lagged_params(whole));
   EXPECT_LT((resting.out.back().p_WG_m - end_m).norm(), 0.03);
 
-  const RollingFilter filter(params(1.0).filter);
+  const RollingFilter filter(testing::lagged_params(1.0).filter);
   const auto state = std::make_unique<RollingFilter::State>();
   Status status;
   for (const ImuSample& sample : without(6.3, 1.1)) {
@@ -173,7 +166,7 @@ TEST(RollingRates, AGapCostsWhatItMustAndIsTold) {
 }
 
 TEST(RollingRates, AStartInMotionIsToldAndBelievedLess) {
-  const testing::RollingTruth truth = slipping(4'000'000);
+  const testing::RollingTruth truth = slipping_sampled(4'000'000);
   for (const double from_s : {2.4, 3.2, 6.7}) {
     std::vector<ImuSample> samples;
     std::size_t first = 0;
@@ -182,7 +175,7 @@ TEST(RollingRates, AStartInMotionIsToldAndBelievedLess) {
       if (samples.empty()) first = k;
       samples.push_back(truth.samples[k]);
     }
-    const Smoothed moving = run(samples, params(RollingSmoother::kWholeRun));
+    const Smoothed moving = smoothed_samples(samples, testing::lagged_params(RollingSmoother::kWholeRun));
     EXPECT_TRUE(moving.state->live.started_in_motion);
     // heading and place of the start are those of the world: about its own heading the way is as long
     const Eigen::Quaterniond q = truth.q_WI[first] * moving.out.front().q_WI.conjugate();
@@ -192,7 +185,8 @@ TEST(RollingRates, AStartInMotionIsToldAndBelievedLess) {
     const double sigma = std::sqrt(moving.out.back().covariance.topLeftCorner<3, 3>().trace());
     EXPECT_LT(error.norm(), 3.0 * sigma) << from_s;
   }
-  EXPECT_FALSE(run(truth.samples, params(RollingSmoother::kWholeRun)).state->live.started_in_motion);
+  EXPECT_FALSE(smoothed_samples(truth.samples, testing::lagged_params(RollingSmoother::kWholeRun))
+                   .state->live.started_in_motion);
 }
 
 }  // namespace

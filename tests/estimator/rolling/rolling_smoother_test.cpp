@@ -9,13 +9,14 @@
 #include <utility>
 #include <vector>
 
+#include "estimator/rolling/lagged_params.hpp"
 #include "estimator/rolling/rolling_truth.hpp"
 #include "oracles/gaussian.hpp"
 
 namespace tumble {
 namespace {
 
-const Eigen::Vector3d kLeverArm(0.02, -0.01, 0.03);
+using testing::kLeverArm;
 
 /// An L of 2 m with a spell of slip of 0.8 s by `slip_m`, seen by sensors without errors.
 testing::RollingTruth seen_exactly(const Eigen::Vector3d& lever_arm_m,
@@ -38,16 +39,8 @@ testing::RollingTruth slipping() {
   return truth;
 }
 
-RollingSmoother::Params params(double lag_s) {
-  RollingSmoother::Params out;
-  out.filter.radius_m = testing::kRadius_m;
-  out.filter.lever_arm_m = kLeverArm;
-  out.lag_s = lag_s;
-  return out;
-}
-
-std::vector<RollingEstimate> run(const testing::RollingTruth& truth, double lag_s) {
-  const RollingSmoother smoother(params(lag_s));
+std::vector<RollingEstimate> smoothed_truth(const testing::RollingTruth& truth, double lag_s) {
+  const RollingSmoother smoother(testing::lagged_params(lag_s));
   const auto state = std::make_unique<RollingSmoother::State>();
   std::vector<RollingEstimate> out;
   for (const ImuSample& sample : truth.samples) EXPECT_TRUE(smoother.step(sample, *state, out).ok());
@@ -58,7 +51,7 @@ std::vector<RollingEstimate> run(const testing::RollingTruth& truth, double lag_
 TEST(RollingSmoother, OneEstimateForEachSampleWithWholeRunAndWithLag) {
   const testing::RollingTruth truth = slipping();
   for (const double lag_s : {RollingSmoother::kWholeRun, 2.0, 0.5}) {
-    const std::vector<RollingEstimate> out = run(truth, lag_s);
+    const std::vector<RollingEstimate> out = smoothed_truth(truth, lag_s);
     ASSERT_EQ(out.size(), truth.samples.size()) << lag_s;
     for (std::size_t k = 0; k < out.size(); ++k) ASSERT_EQ(out[k].time_ns, truth.samples[k].time_ns) << lag_s;
     // 1 % of the path; measured 0.6 %: the error of scale alone is 0.2 %
@@ -68,8 +61,8 @@ TEST(RollingSmoother, OneEstimateForEachSampleWithWholeRunAndWithLag) {
 
 TEST(RollingSmoother, MendsTheWayInsideAnEvent) {
   const testing::RollingTruth truth = slipping();
-  const std::vector<RollingEstimate> whole = run(truth, RollingSmoother::kWholeRun);
-  const RollingFilter filter(params(1.0).filter);
+  const std::vector<RollingEstimate> whole = smoothed_truth(truth, RollingSmoother::kWholeRun);
+  const RollingFilter filter(testing::lagged_params(1.0).filter);
   const auto state = std::make_unique<RollingFilter::State>();
   double live = 0.0, smoothed = 0.0, in_event = 0.0;
   ASSERT_EQ(whole.size(), truth.samples.size());
@@ -115,8 +108,8 @@ Normalised normalised_errors(double lag_s) {
   constexpr std::size_t kWithin = 1500;  // 6 s: the slip is over, the second leg is not
   Normalised mean;
   for (std::uint64_t seed = 1; seed <= kDraws; ++seed) {
-    const testing::RollingTruth truth = drawn_way(seed, params(1.0).filter);
-    const std::vector<RollingEstimate> out = run(truth, lag_s);
+    const testing::RollingTruth truth = drawn_way(seed, testing::lagged_params(1.0).filter);
+    const std::vector<RollingEstimate> out = smoothed_truth(truth, lag_s);
     const auto add = [&](std::size_t k, double& sum) {
       const Eigen::Vector3d error = out[k].p_WG_m - truth.p_WG_m[k];
       const Eigen::Matrix3d covariance = out[k].covariance.topLeftCorner<3, 3>();
@@ -142,7 +135,7 @@ TEST(RollingSmoother, ItsCovarianceIsNeitherTooSmallNorTooLarge) {
 TEST(RollingSmoother, ErrorsLieWithinItsCovariance) {
   const testing::RollingTruth truth = slipping();
   for (const double lag_s : {RollingSmoother::kWholeRun, 1.0}) {
-    const std::vector<RollingEstimate> out = run(truth, lag_s);
+    const std::vector<RollingEstimate> out = smoothed_truth(truth, lag_s);
     int inside = 0, total = 0;
     for (std::size_t k = 600; k < out.size(); ++k) {
       const Eigen::Vector3d error = out[k].p_WG_m - truth.p_WG_m[k];
@@ -159,7 +152,7 @@ TEST(RollingSmoother, ErrorsLieWithinItsCovariance) {
 TEST(RollingSmoother, WithALagAStandstillHasNoDrift) {
   const testing::RollingTruth truth = slipping();
   for (const double lag_s : {0.3, 1.0}) {
-    const std::vector<RollingEstimate> out = run(truth, lag_s);
+    const std::vector<RollingEstimate> out = smoothed_truth(truth, lag_s);
     ASSERT_EQ(out.size(), truth.samples.size());
     for (const auto& [from_s, to_s] : {std::pair(0.5, 1.9), std::pair(4.6, 5.4), std::pair(8.1, 10.0)}) {
       const auto first = static_cast<std::size_t>(from_s / 0.004), end = static_cast<std::size_t>(to_s / 0.004);
@@ -179,8 +172,8 @@ TEST(RollingSmoother, ASlowTurnAtTheEndIsNoBias) {
     if (seconds(turning.samples[k].time_ns) < 8.2) continue;  // the way ends at 8.0 s
     turning.samples[k].angular_velocity_rad_s += turning.q_WI[k].conjugate() * Eigen::Vector3d(0.0, 0.0, 0.014);
   }
-  const std::vector<RollingEstimate> without = run(still, RollingSmoother::kWholeRun);
-  const std::vector<RollingEstimate> with = run(turning, RollingSmoother::kWholeRun);
+  const std::vector<RollingEstimate> without = smoothed_truth(still, RollingSmoother::kWholeRun);
+  const std::vector<RollingEstimate> with = smoothed_truth(turning, RollingSmoother::kWholeRun);
   ASSERT_EQ(with.size(), without.size());
   EXPECT_TRUE(with.back().at_rest) << "the turn was not taken for rest at all";
   EXPECT_LT((with.back().p_WG_m - without.back().p_WG_m).norm(), 0.002);
@@ -192,7 +185,7 @@ TEST(RollingSmoother, AKnownDistanceTellsTheRadius) {
   constexpr double kBelieved_m = 0.148, kTrue_m = 0.145;
   const testing::RollingTruth truth = slipping();
   const Eigen::Vector3d end = truth.p_WG_m.back() - truth.p_WG_m.front();
-  RollingSmoother::Params given = params(RollingSmoother::kWholeRun);
+  RollingSmoother::Params given = testing::lagged_params(RollingSmoother::kWholeRun);
   given.filter.radius_m = kBelieved_m;
   const auto end_error = [&](double radius_sigma_m, double distance_m, RollingSmoother::State& state) {
     RollingSmoother::Params p = given;
@@ -223,7 +216,7 @@ TEST(RollingSmoother, AKnownDistanceTellsTheRadius) {
 
 TEST(RollingSmoother, SplitRunsEqual) {
   const testing::RollingTruth truth = slipping();
-  const RollingSmoother smoother(params(0.5));
+  const RollingSmoother smoother(testing::lagged_params(0.5));
   const auto whole = std::make_unique<RollingSmoother::State>();
   std::vector<RollingEstimate> out_whole, out_split;
   constexpr std::size_t kCut = 901, kEnd = 1200;
@@ -240,7 +233,7 @@ TEST(RollingSmoother, SplitRunsEqual) {
 }
 
 TEST(RollingSmoother, AStateOfMoreSamplesThanALagHoldsIsRefused) {
-  const RollingSmoother smoother(params(1.0));
+  const RollingSmoother smoother(testing::lagged_params(1.0));
   const auto state = std::make_unique<RollingSmoother::State>();
   std::vector<RollingEstimate> out;
   const testing::RollingTruth truth = slipping();
@@ -256,15 +249,15 @@ TEST(RollingSmoother, AStateOfMoreSamplesThanALagHoldsIsRefused) {
 }
 
 TEST(RollingSmoother, RefusesBadParamsAndBadSamples) {
-  EXPECT_THROW(RollingSmoother(params(0.0)), InvalidParams);
-  RollingSmoother::Params bad = params(1.0);
+  EXPECT_THROW(RollingSmoother(testing::lagged_params(0.0)), InvalidParams);
+  RollingSmoother::Params bad = testing::lagged_params(1.0);
   bad.path_noise = 0.0;
   EXPECT_THROW(RollingSmoother{bad}, InvalidParams);
-  bad = params(1.0);
+  bad = testing::lagged_params(1.0);
   bad.known_distance_m = -1.0;
   EXPECT_THROW(RollingSmoother{bad}, InvalidParams);
   const testing::RollingTruth truth = slipping();
-  const RollingSmoother smoother(params(1.0));
+  const RollingSmoother smoother(testing::lagged_params(1.0));
   const auto state = std::make_unique<RollingSmoother::State>();
   std::vector<RollingEstimate> out;
   for (std::size_t k = 0; k < 10; ++k) ASSERT_TRUE(smoother.step(truth.samples[k], *state, out).ok());

@@ -19,6 +19,7 @@ struct RollingTruth {
   std::vector<bool> gripping;  ///< contact velocity below 1 mm/s
 };
 
+inline const Eigen::Vector3d kLeverArm(0.02, -0.01, 0.03);  ///< of the IMU in them, where it is not in the middle
 inline constexpr double kRadius_m = 0.145;  ///< of the spheres of these tests, unless they say otherwise
 
 struct RollingMotion {

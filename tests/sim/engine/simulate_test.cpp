@@ -134,7 +134,7 @@ TEST(Simulate, AWarningOfTheEngineFailsTheDraw) {
     FAIL() << "a force that is not a number went through";
   } catch (const SimulationFailure& error) {
     EXPECT_THAT(error.what(),
-                testing::AllOf(testing::HasSubstr("engine warning: bad number"), testing::HasSubstr(" s")));
+                ::testing::AllOf(::testing::HasSubstr("engine warning: bad number"), ::testing::HasSubstr(" s")));
   }
 }
 
@@ -148,7 +148,7 @@ TEST(Simulate, LeavingTheWorldFailsTheDraw) {
         try {
           simulate(built(situation));
         } catch (const SimulationFailure& error) {
-          EXPECT_THAT(error.what(), testing::HasSubstr("left its world at"));
+          EXPECT_THAT(error.what(), ::testing::HasSubstr("left its world at"));
           throw;
         }
       },
@@ -169,7 +169,7 @@ TEST(Simulate, StayingInTheGroundFailsTheDraw) {
         try {
           simulate(built(situation));
         } catch (const SimulationFailure& error) {
-          EXPECT_THAT(error.what(), testing::HasSubstr("'imu' was below the ground for"));
+          EXPECT_THAT(error.what(), ::testing::HasSubstr("'imu' was below the ground for"));
           throw;
         }
       },
@@ -192,7 +192,7 @@ TEST(Simulate, AnUnknownSiteNamesTheNearest) {
     simulate(built(situation));
     FAIL() << "site mti3 was accepted";
   } catch (const InvalidSituation& error) {
-    EXPECT_THAT(error.what(), testing::HasSubstr("did you mean 'mti30'"));
+    EXPECT_THAT(error.what(), ::testing::HasSubstr("did you mean 'mti30'"));
   }
 }
 
@@ -201,8 +201,8 @@ TEST(Simulate, AMissingFolderOfModelsIsOneLine) {
     simulate(BuiltSituation(resolve(tumble_down(1.0, 100.0)), "/nowhere"));
     FAIL() << "no models, no error";
   } catch (const InvalidSituation& error) {
-    EXPECT_THAT(error.what(), testing::HasSubstr("rig.xml"));
-    EXPECT_THAT(std::string(error.what()), testing::Not(testing::HasSubstr("\n")));
+    EXPECT_THAT(error.what(), ::testing::HasSubstr("rig.xml"));
+    EXPECT_THAT(std::string(error.what()), ::testing::Not(::testing::HasSubstr("\n")));
   }
 }
 

@@ -21,10 +21,10 @@ std::vector<std::string> names(std::span<const ComponentType> types) {
 }
 
 TEST(Registries, HoldTheKindsOfThisVersion) {
-  EXPECT_THAT(names(world_types()), testing::IsSupersetOf({"hill", "floor"}));
-  EXPECT_THAT(names(robot_types()), testing::IsSupersetOf({"rig", "sphere"}));
-  EXPECT_THAT(names(motion_types()), testing::IsSupersetOf({"push", "hand_roll"}));
-  EXPECT_THAT(names(sensor_types()), testing::IsSupersetOf({"imu", "spinning_lidar", "rosette_lidar"}));
+  EXPECT_THAT(names(world_types()), ::testing::IsSupersetOf({"hill", "floor"}));
+  EXPECT_THAT(names(robot_types()), ::testing::IsSupersetOf({"rig", "sphere"}));
+  EXPECT_THAT(names(motion_types()), ::testing::IsSupersetOf({"push", "hand_roll"}));
+  EXPECT_THAT(names(sensor_types()), ::testing::IsSupersetOf({"imu", "spinning_lidar", "rosette_lidar"}));
 }
 
 TEST(Registries, EveryParameterIsDocumentedAndItsDefaultWithinItsBounds) {
@@ -71,8 +71,8 @@ std::string complaint(const std::function<void(Situation&)>& change) {
 }
 
 TEST(Resolve, SaysWhatIsWrongAndWhere) {
-  using testing::AllOf;
-  using testing::HasSubstr;
+  using ::testing::AllOf;
+  using ::testing::HasSubstr;
   EXPECT_THAT(complaint([](Situation& s) { s.world.type = "hil"; }), AllOf(HasSubstr("world"), HasSubstr("'hill'")));
   EXPECT_THAT(complaint([](Situation& s) { s.robot.type = "spere"; }),
               AllOf(HasSubstr("robot"), HasSubstr("'sphere'")));

@@ -9,6 +9,7 @@
 #include "sim/imu/imu_simulation.hpp"
 #include "sim/simulate.hpp"
 #include "tests/sim/engine/worlds.hpp"
+#include "tests/sim/imu/simulated_imu.hpp"
 
 namespace tumble::sim {
 namespace {
@@ -16,7 +17,6 @@ namespace {
 using Eigen::Quaterniond;
 using Eigen::Vector3d;
 
-constexpr double kGravity_m_s2 = 9.80665;
 constexpr double kStep_s = 0.0005;
 
 Eigen::Isometry3d mounting(const Vector3d& p_BI_m) {
@@ -62,17 +62,10 @@ Truth flight_with_impacts(double duration_s) {
   return truth;
 }
 
-struct Result {
-  ImuRecord record;
-  ImuTruth truth;
-};
-
-Result ideal_imu(const Truth& truth, double rate_hz, const Eigen::Isometry3d& T_BI) {
+SimulatedImu ideal_imu(const Truth& truth, double rate_hz, const Eigen::Isometry3d& T_BI) {
   SensorSpec sensor = imu_at("imu", "", rate_hz);
   sensor.values = resolve("sensors.imu", sensor.values, imu_parameters());
-  Result result;
-  simulate_imu(truth, sensor, T_BI, kGravity_m_s2, 1, result.record, result.truth);
-  return result;
+  return simulated(truth, sensor, T_BI);
 }
 
 struct Departure {
@@ -104,7 +97,7 @@ Departure dead_reckon(const ImuRecord& imu, const Truth& truth, const Eigen::Iso
 TEST(IdealMotion, CentreOfMassFeelsNothingInFlight) {
   const Truth truth = flight(2.0);
   for (const double rate_hz : {100.0, 200.0, 250.0, 400.0, 2000.0}) {
-    const Result r = ideal_imu(truth, rate_hz, mounting(Vector3d::Zero()));
+    const SimulatedImu r = ideal_imu(truth, rate_hz, mounting(Vector3d::Zero()));
     ASSERT_EQ(r.record.accel_m_s2.size(), static_cast<std::size_t>(2.0 * rate_hz));
     for (const Vector3d& f : r.record.accel_m_s2) ASSERT_LT(f.norm(), 1e-6) << rate_hz;  // measured 4e-12
   }
@@ -112,7 +105,7 @@ TEST(IdealMotion, CentreOfMassFeelsNothingInFlight) {
 
 TEST(IdealMotion, AMillimetreBesideTheCentreOfMassIsFelt) {
   // negative control of the test above: w^2 r = 0.32 m/s^2 beside the axis
-  const Result r = ideal_imu(flight(0.5), 100.0, mounting({0.001, 0, 0}));
+  const SimulatedImu r = ideal_imu(flight(0.5), 100.0, mounting({0.001, 0, 0}));
   ASSERT_FALSE(r.record.accel_m_s2.empty());
   for (const Vector3d& f : r.record.accel_m_s2) ASSERT_GT(f.norm(), 1e-3);
 }
@@ -121,7 +114,7 @@ TEST(IdealMotion, LeverArmFeelsWhatTheClosedFormSays) {
   // at 2000 Hz a step of 9 mrad: the mean over it is short of the middle by (9e-3)^2/24 and by jerk, together 1e-5
   const oracles::TorqueFreeRotation rotation({0.14, 0.161, 0.154}, {0.3, 0.2, 18.0});
   const Eigen::Isometry3d T_BI = mounting({-0.022, -0.085, 0.055});
-  const Result r = ideal_imu(flight(0.5), 2000.0, T_BI);
+  const SimulatedImu r = ideal_imu(flight(0.5), 2000.0, T_BI);
   ASSERT_EQ(r.record.accel_m_s2.size(), 1000u);
   for (std::size_t i = 0; i < 1000; ++i) {
     const double middle_s = (static_cast<double>(i) + 0.5) * kStep_s;
@@ -136,7 +129,7 @@ TEST(IdealMotion, SamplesIntegrateToTheMotionThroughImpactsAtEveryRate) {
   const Truth truth = flight_with_impacts(2.0);
   const Eigen::Isometry3d T_BI = mounting({-0.022, -0.085, 0.055});
   for (const double rate_hz : {100.0, 200.0, 250.0, 400.0, 2000.0}) {
-    const Result r = ideal_imu(truth, rate_hz, T_BI);
+    const SimulatedImu r = ideal_imu(truth, rate_hz, T_BI);
     const Departure d = dead_reckon(r.record, truth, T_BI);
     EXPECT_LT(d.attitude_rad, 1e-7) << rate_hz;  // acos near 1 resolves 1.5e-8
     EXPECT_LT(d.velocity_m_s, 1e-9) << rate_hz;
@@ -158,8 +151,8 @@ TEST(IdealMotion, PlainMeansWouldNotIntegrateToTheMotion) {
   // negative control: the means of the steps' rates, as if a window did not turn
   const Truth truth = flight_with_impacts(2.0);
   const Eigen::Isometry3d T_BI = mounting({-0.022, -0.085, 0.055});
-  const Result fine = ideal_imu(truth, 2000.0, T_BI);
-  Result coarse = ideal_imu(truth, 100.0, T_BI);
+  const SimulatedImu fine = ideal_imu(truth, 2000.0, T_BI);
+  SimulatedImu coarse = ideal_imu(truth, 100.0, T_BI);
   for (std::size_t i = 0; i < coarse.record.time_ns.size(); ++i) {
     coarse.record.gyro_rad_s[i].setZero();
     coarse.record.accel_m_s2[i].setZero();
@@ -187,7 +180,7 @@ TEST(IdealMotion, ImpulseAndTimeOfAnImpactDoNotDependOnTheSamplingPhase) {
       truth.p_WB_m.push_back(Vector3d::Zero());
       truth.v_WB_m_s.push_back(k >= impact ? struck_m_s : Vector3d::Zero());
     }
-    const Result r = ideal_imu(truth, 100.0, Eigen::Isometry3d::Identity());
+    const SimulatedImu r = ideal_imu(truth, 100.0, Eigen::Isometry3d::Identity());
     Vector3d impulse_m_s = Vector3d::Zero();
     double moment = 0.0;
     for (std::size_t i = 0; i < r.record.time_ns.size(); ++i) {

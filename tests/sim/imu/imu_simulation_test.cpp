@@ -10,11 +10,12 @@
 #include <utility>
 #include <vector>
 
+#include "tests/sim/imu/simulated_imu.hpp"
+
 namespace tumble::sim {
 namespace {
 
 using Eigen::Vector3d;
-constexpr double kGravity_m_s2 = 9.80665;
 
 /// A body that turns about z with a constant rate while its origin moves along x by an acceleration of a sin.
 Truth turning(double rate_rad_s, double duration_s, double acceleration_m_s2 = 3.0) {
@@ -50,20 +51,8 @@ SensorSpec ideal(double rate_hz = 100.0) {
   return sensor;
 }
 
-struct Result {
-  ImuRecord record;
-  ImuTruth truth;
-};
-
-Result run(const Truth& truth, const SensorSpec& sensor, const Eigen::Isometry3d& T_BI = Eigen::Isometry3d::Identity(),
-           std::uint64_t seed = 1) {
-  Result result;
-  simulate_imu(truth, sensor, T_BI, kGravity_m_s2, seed, result.record, result.truth);
-  return result;
-}
-
 TEST(ImuSimulation, IdealDeviceSaysTheTruth) {
-  const Result r = run(turning(12.0, 1.0), ideal());
+  const SimulatedImu r = simulated(turning(12.0, 1.0), ideal());
   ASSERT_EQ(r.record.time_ns.size(), 100u);
   EXPECT_EQ(r.record.period_ns, 10'000'000);
   EXPECT_EQ(r.record.time_ns.front(), 10'000'000);
@@ -78,7 +67,7 @@ TEST(ImuSimulation, IdealDeviceSaysTheTruth) {
 TEST(ImuSimulation, LeverArmGivesTheCentripetalForce) {
   Eigen::Isometry3d T_BI = Eigen::Isometry3d::Identity();
   T_BI.translation() = Vector3d(0.1, 0, 0.03);
-  const Result r = run(turning(15.0, 0.5, 0.0), ideal(), T_BI);
+  const SimulatedImu r = simulated(turning(15.0, 0.5, 0.0), ideal(), T_BI);
   // w^2 r towards the axis, as a gain of velocity over a turn of 0.15 rad: the chord is shorter than the arc
   const Vector3d expected(-22.5 * std::sin(0.075) / 0.075, 0, kGravity_m_s2);
   ASSERT_EQ(r.record.accel_m_s2.size(), 50u);
@@ -88,7 +77,7 @@ TEST(ImuSimulation, LeverArmGivesTheCentripetalForce) {
 TEST(ImuSimulation, MountingTurnsTheAxes) {
   Eigen::Isometry3d T_BI = Eigen::Isometry3d::Identity();
   T_BI.linear() = Eigen::AngleAxisd(M_PI / 2, Vector3d::UnitX()).toRotationMatrix();  // y of I is z of B
-  const Result r = run(turning(5.0, 0.1, 0.0), ideal(), T_BI);
+  const SimulatedImu r = simulated(turning(5.0, 0.1, 0.0), ideal(), T_BI);
   ASSERT_EQ(r.record.gyro_rad_s.size(), 10u);
   EXPECT_NEAR((r.record.gyro_rad_s[5] - Vector3d(0, 5, 0)).norm(), 0.0, 1e-9);
   EXPECT_NEAR((r.record.accel_m_s2[5] - Vector3d(0, kGravity_m_s2, 0)).norm(), 0.0, 1e-9);
@@ -98,7 +87,7 @@ TEST(ImuSimulation, RailClipsTheReadingAndNotTheTwin) {
   SensorSpec sensor = ideal();
   sensor.values.set("gyro_rail_rad_s", 10.5);
   sensor.values.set("clip_flags", 1);
-  const Result clipped = run(turning(12.0, 0.1), sensor), free = run(turning(10.0, 0.1), sensor);
+  const SimulatedImu clipped = simulated(turning(12.0, 0.1), sensor), free = simulated(turning(10.0, 0.1), sensor);
   for (std::size_t k = 0; k < 10; ++k) {
     ASSERT_DOUBLE_EQ(clipped.record.gyro_rad_s[k].z(), 10.5);
     ASSERT_NEAR(clipped.truth.gyro_unclipped_rad_s[k].z(), 12.0, 1e-9);
@@ -116,9 +105,9 @@ TEST(ImuSimulation, RailBeforeTheMeanCutsAnOscillationThatTheMeanHides) {
   SensorSpec sensor = ideal();
   sensor.values.set("accel_rail_m_s2", 50.0);
   sensor.values.set("clip_flags", 1);
-  const Result before = run(truth, sensor);
+  const SimulatedImu before = simulated(truth, sensor);
   sensor.values.set("clip_after_low_pass", 1);
-  const Result after = run(truth, sensor);
+  const SimulatedImu after = simulated(truth, sensor);
   ASSERT_EQ(before.record.accel_m_s2.size(), 20u);
   EXPECT_LT(before.record.accel_m_s2[5].x(), 18.0);  // measured 12.98: the upper halves are cut, the lower ones less
   EXPECT_EQ(before.record.clip_flags[5], 0b001000);
@@ -131,7 +120,7 @@ TEST(ImuSimulation, TwinHasTheSameNoise) {
   SensorSpec sensor = ideal();
   sensor.values.set("gyro_noise_rad_s_sqrt_hz", 0.01);
   sensor.values.set("gyro_rail_rad_s", 10.5);
-  const Result r = run(turning(5.0, 1.0), sensor);
+  const SimulatedImu r = simulated(turning(5.0, 1.0), sensor);
   EXPECT_EQ(r.record.gyro_rad_s, r.truth.gyro_unclipped_rad_s);
   EXPECT_NE(r.record.gyro_rad_s, r.truth.rate_rad_s);
 }
@@ -140,7 +129,7 @@ TEST(ImuSimulation, NoiseOfAReadingFollowsTheOutputRate) {
   for (const double rate_hz : {100.0, 400.0}) {
     SensorSpec sensor = ideal(rate_hz);
     sensor.values.set("gyro_noise_rad_s_sqrt_hz", 0.01);
-    const Result r = run(turning(1.0, 10.0), sensor);
+    const SimulatedImu r = simulated(turning(1.0, 10.0), sensor);
     double sum = 0.0;
     for (std::size_t k = 0; k < r.record.gyro_rad_s.size(); ++k)
       sum += (r.record.gyro_rad_s[k] - r.truth.rate_rad_s[k]).squaredNorm();
@@ -153,7 +142,7 @@ TEST(ImuSimulation, BiasInForceIsTheErrorOfTheReading) {
   SensorSpec sensor = ideal(2000.0);
   sensor.values.set("accel_bias_turn_on_m_s2", 0.1);
   sensor.values.set("accel_bias_walk_m_s2_sqrt_s", 0.01);
-  const Result r = run(turning(1.0, 0.2), sensor);
+  const SimulatedImu r = simulated(turning(1.0, 0.2), sensor);
   ASSERT_EQ(r.record.accel_m_s2.size(), 400u);
   for (std::size_t k = 0; k < 400; ++k) {
     ASSERT_NEAR((r.record.accel_m_s2[k] - r.truth.specific_force_m_s2[k] - r.truth.accel_bias_m_s2[k]).norm(), 0.0,
@@ -165,7 +154,7 @@ TEST(ImuSimulation, BiasInForceIsTheErrorOfTheReading) {
 TEST(ImuSimulation, GyroFeelsTheSpecificForce) {
   SensorSpec sensor = ideal();
   sensor.values.set("gyro_g_sensitivity_s_m", 1e-3);
-  const Result r = run(turning(0.0, 0.1, 0.0), sensor);
+  const SimulatedImu r = simulated(turning(0.0, 0.1, 0.0), sensor);
   ASSERT_FALSE(r.record.gyro_rad_s.empty());
   EXPECT_NEAR((r.record.gyro_rad_s[0] - Vector3d(0, 0, 1e-3 * kGravity_m_s2)).norm(), 0.0, 1e-12);
 }
@@ -173,7 +162,7 @@ TEST(ImuSimulation, GyroFeelsTheSpecificForce) {
 TEST(ImuSimulation, ReadingsAtTheRateOfTheConverterAreMultiplesOfTheQuantum) {
   SensorSpec sensor = ideal(2000.0);
   sensor.values.set("accel_quantum_m_s2", 0.25);
-  const Result r = run(turning(3.0, 0.5), sensor);
+  const SimulatedImu r = simulated(turning(3.0, 0.5), sensor);
   ASSERT_EQ(r.record.accel_m_s2.size(), 1000u);
   for (std::size_t k = 0; k < 1000; ++k) {
     const Vector3d steps = r.record.accel_m_s2[k] / 0.25;
@@ -184,7 +173,7 @@ TEST(ImuSimulation, ReadingsAtTheRateOfTheConverterAreMultiplesOfTheQuantum) {
 
 TEST(ImuSimulation, EachOptionOffIsTheIdealSignalAndOnIsNot) {
   const Truth motion = swinging(1.0);
-  const Result exact = run(motion, ideal());
+  const SimulatedImu exact = simulated(motion, ideal());
   ASSERT_EQ(exact.record.gyro_rad_s, exact.truth.rate_rad_s);
   // every number that makes an error, at a size that must show, after those without which it does nothing
   const std::vector<std::vector<std::pair<const char*, double>>> options = {
@@ -235,14 +224,14 @@ TEST(ImuSimulation, EachOptionOffIsTheIdealSignalAndOnIsNot) {
   for (const auto& option : options) {
     SensorSpec sensor = ideal();
     for (const auto& [name, value] : option) sensor.values.set(name, value);
-    const Result on = run(motion, sensor);
+    const SimulatedImu on = simulated(motion, sensor);
     sensor.values.set(option.back().first, resolve("imu", {}, imu_parameters()).at(option.back().first));
-    const Result without = run(motion, sensor);
+    const SimulatedImu without = simulated(motion, sensor);
     EXPECT_TRUE(on.record.gyro_rad_s != without.record.gyro_rad_s ||
                 on.record.accel_m_s2 != without.record.accel_m_s2 || on.record.time_ns != without.record.time_ns)
         << option.back().first << " changed nothing";
     for (const auto& [name, value] : option) sensor.values.set(name, resolve("imu", {}, imu_parameters()).at(name));
-    const Result off = run(motion, sensor);
+    const SimulatedImu off = simulated(motion, sensor);
     ASSERT_EQ(off.record.gyro_rad_s, exact.record.gyro_rad_s) << option.back().first;
     ASSERT_EQ(off.record.accel_m_s2, exact.record.accel_m_s2) << option.back().first;
     ASSERT_EQ(off.record.time_ns, exact.record.time_ns) << option.back().first;
@@ -260,7 +249,7 @@ TEST(ImuSimulation, TwinIsTheReadingWhereverNothingClippedOnThatAxis) {
                                                              {"gyro_bandwidth_hz", 400.0},
                                                              {"clip_flags", 1.0}})
     sensor.values.set(name, value);
-  const Result r = run(swinging(1.0), sensor);
+  const SimulatedImu r = simulated(swinging(1.0), sensor);
   int clipped = 0, free = 0;
   for (std::size_t k = 0; k < r.record.gyro_rad_s.size(); ++k) {
     for (int j = 0; j < 3; ++j) {
@@ -286,7 +275,7 @@ TEST(ImuSimulation, WholeWindowsAtTheRailReadExactlyTheRail) {
     const double t = static_cast<double>(k) * 0.0005;
     truth.q_WB[k] = Eigen::AngleAxisd(12.0 * t, Vector3d::UnitZ()) * Eigen::AngleAxisd(5.0 * t, Vector3d::UnitX());
   }
-  const Result r = run(truth, sensor);
+  const SimulatedImu r = simulated(truth, sensor);
   int whole = 0;
   for (std::size_t k = 0; k < r.record.gyro_rad_s.size(); ++k) {
     for (int j = 0; j < 3; ++j) {
@@ -302,9 +291,9 @@ TEST(ImuSimulation, AccelerometerComesLateAgainstTheGyroscope) {
   Truth truth = turning(0.0, 0.2, 0.0);
   for (std::size_t k = 200; k < truth.q_WB.size(); ++k) truth.v_WB_m_s[k].x() = 0.5;  // an impact at 0.1 s
   SensorSpec sensor = ideal(1000.0);
-  const Result now = run(truth, sensor);
+  const SimulatedImu now = simulated(truth, sensor);
   sensor.values.set("accel_delay_s", 0.004);
-  const Result late = run(truth, sensor);
+  const SimulatedImu late = simulated(truth, sensor);
   EXPECT_NEAR(now.record.accel_m_s2[99].x(), 500.0, 1e-9);
   EXPECT_NEAR(late.record.accel_m_s2[99].x(), 0.0, 1e-9);
   EXPECT_NEAR(late.record.accel_m_s2[103].x(), 500.0, 1e-9);
@@ -314,7 +303,7 @@ TEST(ImuSimulation, AccelerometerComesLateAgainstTheGyroscope) {
 TEST(ImuSimulation, LostSamplesAreLostFromTheTruthToo) {
   SensorSpec sensor = ideal();
   sensor.values.set("dropout_share", 0.3);
-  const Result r = run(turning(3.0, 2.0), sensor), all = run(turning(3.0, 2.0), ideal());
+  const SimulatedImu r = simulated(turning(3.0, 2.0), sensor), all = simulated(turning(3.0, 2.0), ideal());
   ASSERT_LT(r.record.time_ns.size(), 180u);
   ASSERT_GT(r.record.time_ns.size(), 80u);
   ASSERT_EQ(r.truth.rate_rad_s.size(), r.record.time_ns.size());
@@ -332,7 +321,7 @@ TEST(ImuSimulation, HandoverQuietensSlowAxes) {
                                                              {"gyro_handover_rad_s", 1.745},
                                                              {"gyro_precise_noise_rad_s_sqrt_hz", 0.001}})
     sensor.values.set(name, value);
-  const Result r = run(turning(5.0, 10.0), sensor);  // z turns fast
+  const SimulatedImu r = simulated(turning(5.0, 10.0), sensor);  // z turns fast
   Vector3d sum = Vector3d::Zero();
   for (std::size_t k = 0; k < r.record.gyro_rad_s.size(); ++k)
     sum += (r.record.gyro_rad_s[k] - r.truth.rate_rad_s[k]).cwiseAbs2();
@@ -347,7 +336,7 @@ TEST(ImuSimulation, RefusesNumbersThatContradictEachOther) {
     SensorSpec sensor = ideal();
     for (const auto& [name, value] : numbers) sensor.values.set(name, value);
     try {
-      run(turning(1.0, 0.1), sensor);
+      simulated(turning(1.0, 0.1), sensor);
     } catch (const InvalidSituation& error) {
       return error.what();
     }
@@ -365,9 +354,9 @@ TEST(ImuSimulation, RefusesNumbersThatContradictEachOther) {
 
 TEST(ImuSimulation, TimeOffsetMovesTheStampsAlone) {
   SensorSpec sensor = ideal();
-  const Result exact = run(turning(3.0, 0.1), sensor);
+  const SimulatedImu exact = simulated(turning(3.0, 0.1), sensor);
   sensor.values.set("time_offset_s", -0.004);
-  const Result late = run(turning(3.0, 0.1), sensor);
+  const SimulatedImu late = simulated(turning(3.0, 0.1), sensor);
   EXPECT_EQ(late.record.time_ns.front(), 6'000'000);
   EXPECT_EQ(late.record.gyro_rad_s, exact.record.gyro_rad_s);
 }
@@ -376,10 +365,11 @@ TEST(ImuSimulation, SeedAndNameDecideTheNoise) {
   SensorSpec sensor = ideal();
   sensor.values.set("gyro_noise_rad_s_sqrt_hz", 0.01);
   const auto same_T = Eigen::Isometry3d::Identity();
-  const Result a = run(turning(3.0, 0.1), sensor, same_T, 1), again = run(turning(3.0, 0.1), sensor, same_T, 1);
-  const Result b = run(turning(3.0, 0.1), sensor, same_T, 2);
+  const SimulatedImu a = simulated(turning(3.0, 0.1), sensor, same_T, 1),
+                     again = simulated(turning(3.0, 0.1), sensor, same_T, 1);
+  const SimulatedImu b = simulated(turning(3.0, 0.1), sensor, same_T, 2);
   sensor.name = "imu_2";
-  const Result c = run(turning(3.0, 0.1), sensor, same_T, 1);
+  const SimulatedImu c = simulated(turning(3.0, 0.1), sensor, same_T, 1);
   EXPECT_EQ(a.record.gyro_rad_s, again.record.gyro_rad_s);
   EXPECT_NE(a.record.gyro_rad_s, b.record.gyro_rad_s);
   EXPECT_NE(a.record.gyro_rad_s, c.record.gyro_rad_s);
@@ -387,7 +377,7 @@ TEST(ImuSimulation, SeedAndNameDecideTheNoise) {
 
 TEST(ImuSimulation, RefusesARateThatDoesNotDivideThePhysics) {
   try {
-    run(turning(1.0, 0.1), ideal(300.0));
+    simulated(turning(1.0, 0.1), ideal(300.0));
     FAIL() << "300 Hz was accepted";
   } catch (const InvalidSituation& error) {
     EXPECT_THAT(error.what(), testing::HasSubstr("sensors.imu.output_rate_hz is 300"));

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "sim/imu/imu_simulation.hpp"
+#include "tests/sim/imu/simulated_imu.hpp"
 
 namespace tumble::sim {
 namespace {
@@ -120,35 +121,29 @@ Truth turning_along() {
   return truth;
 }
 
-struct Result {
-  ImuRecord record;
-  ImuTruth truth;
-};
-
-Result run(const std::map<std::string, double>& given) {
+SimulatedImu measured_field(const std::map<std::string, double>& given) {
   SensorSpec sensor;
   sensor.name = "imu";
   sensor.values = numbers(given);
   Eigen::Isometry3d T_BI = Eigen::Isometry3d::Identity();
   T_BI.linear() = Eigen::AngleAxisd(std::numbers::pi / 2, Vector3d::UnitX()).toRotationMatrix();
   T_BI.translation() = Vector3d(0.1, 0, 0);
-  Result result;
-  simulate_imu(turning_along(), sensor, T_BI, 9.80665, 3, result.record, result.truth);
-  return result;
+  return simulated(turning_along(), sensor, T_BI, 3);
 }
 
 TEST(ImuMagnetometer, IsOffUnlessAskedForAndChangesNothingElse) {
-  const Result off = run({{"gyro_noise_rad_s_sqrt_hz", 1e-3}});
+  const SimulatedImu off = measured_field({{"gyro_noise_rad_s_sqrt_hz", 1e-3}});
   EXPECT_TRUE(off.record.magnetic_field_t.empty());
   EXPECT_TRUE(off.truth.magnetic_field_t.empty());
   EXPECT_EQ(off.record.earth_field_W_t, Vector3d::Zero());
-  const Result on = run({{"gyro_noise_rad_s_sqrt_hz", 1e-3}, {"magnetometer", 1}, {"mag_noise_t", 1e-7}});
+  const SimulatedImu on =
+      measured_field({{"gyro_noise_rad_s_sqrt_hz", 1e-3}, {"magnetometer", 1}, {"mag_noise_t", 1e-7}});
   EXPECT_EQ(on.record.magnetic_field_t.size(), 100u);
   EXPECT_EQ(on.record.gyro_rad_s, off.record.gyro_rad_s);
 }
 
 TEST(ImuMagnetometer, ReadsTheEarthInItsOwnAxes) {
-  const Result r = run({{"magnetometer", 1}});
+  const SimulatedImu r = measured_field({{"magnetometer", 1}});
   ASSERT_EQ(r.record.magnetic_field_t.size(), 100u);
   EXPECT_EQ(r.record.magnetic_field_t, r.truth.magnetic_field_t);
   for (std::size_t i = 0; i < 100; ++i) {
@@ -162,7 +157,8 @@ TEST(ImuMagnetometer, ReadsTheEarthInItsOwnAxes) {
 }
 
 TEST(ImuMagnetometer, SourcesDisturbTheFieldBesideTheWay) {
-  const Result calm = run({{"magnetometer", 1}}), disturbed = run({{"magnetometer", 1}, {"magnetic_sources", 8}});
+  const SimulatedImu calm = measured_field({{"magnetometer", 1}}),
+                     disturbed = measured_field({{"magnetometer", 1}, {"magnetic_sources", 8}});
   double largest = 0.0, smallest = 1.0;
   for (std::size_t i = 0; i < 100; ++i) {
     const double difference = (disturbed.record.magnetic_field_t[i] - calm.record.magnetic_field_t[i]).norm();

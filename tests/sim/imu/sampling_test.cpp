@@ -11,6 +11,7 @@
 #include <utility>
 
 #include "sim/imu/imu_simulation.hpp"
+#include "tests/sim/imu/simulated_imu.hpp"
 
 namespace tumble::sim {
 namespace {
@@ -18,11 +19,10 @@ namespace {
 using Eigen::Vector3d;
 using Numbers = std::initializer_list<std::pair<const char*, double>>;
 
-constexpr double kRate_hz = 2000.0;
-constexpr double kGravity_m_s2 = 9.80665;
+constexpr double kSteps_hz = 2000.0;
 
 Sampling sampling(const Sampling::Params& params, std::uint64_t seed = 1) {
-  return {params, kRate_hz, Stream(seed, "test")};
+  return {params, kSteps_hz, Stream(seed, "test")};
 }
 
 Sampling::Reading step(double value, std::uint8_t railed = 0) {
@@ -49,7 +49,7 @@ TEST(Sampling, AWindowIsThePlainMeanOfItsLastSteps) {
 }
 
 TEST(Sampling, ARateOfItsOwnHoldsTheLastReading) {
-  Sampling held = sampling({.window_s = 1.0 / kRate_hz, .update_hz = 100.0});
+  Sampling held = sampling({.window_s = 1.0 / kSteps_hz, .update_hz = 100.0});
   std::vector<double> changes;
   double last = 0.0;
   for (int k = 1; k <= 2000; ++k) {
@@ -66,7 +66,7 @@ TEST(Sampling, ARateOfItsOwnHoldsTheLastReading) {
 }
 
 TEST(Sampling, ARateThatDoesNotDivideTheStepsIsKeptOnTheMean) {
-  Sampling held = sampling({.window_s = 1.0 / kRate_hz, .update_hz = 37.0});
+  Sampling held = sampling({.window_s = 1.0 / kSteps_hz, .update_hz = 37.0});
   int changes = 0;
   double last = 0.0;
   for (int k = 1; k <= 20000; ++k) {
@@ -80,7 +80,7 @@ TEST(Sampling, ARateThatDoesNotDivideTheStepsIsKeptOnTheMean) {
 
 TEST(Sampling, ThePhaseIsDrawn) {
   const auto first_change = [](std::uint64_t seed) {
-    Sampling held = sampling({.window_s = 1.0 / kRate_hz, .update_hz = 10.0}, seed);
+    Sampling held = sampling({.window_s = 1.0 / kSteps_hz, .update_hz = 10.0}, seed);
     int k = 0;
     do held.add(step(++k));
     while (k < 400 && (k < 201 || held.output().delivered.x() != k));
@@ -93,8 +93,8 @@ TEST(Sampling, ThePhaseIsDrawn) {
 /// Turns about z by a rate that rises by 10 rad/s^2 from 1 rad/s; pushed along x by as many m/s^2.
 Truth ramp(double duration_s) {
   Truth truth;
-  for (int k = 0; k <= std::lround(duration_s * kRate_hz); ++k) {
-    const double t = k / kRate_hz;
+  for (int k = 0; k <= std::lround(duration_s * kSteps_hz); ++k) {
+    const double t = k / kSteps_hz;
     truth.q_WB.emplace_back(Eigen::AngleAxisd(t + 5.0 * t * t, Vector3d::UnitZ()));
     truth.w_WB_B_rad_s.emplace_back(0.0, 0.0, 1.0 + 10.0 * t);
     truth.v_WB_m_s.emplace_back(0.0, 0.0, t + 5.0 * t * t);
@@ -103,12 +103,7 @@ Truth ramp(double duration_s) {
   return truth;
 }
 
-struct Result {
-  ImuRecord record;
-  ImuTruth truth;
-};
-
-Result run(Numbers numbers, double rate_hz = 100.0) {
+SimulatedImu sampled_ramp(Numbers numbers, double rate_hz = 100.0) {
   SensorSpec sensor;
   sensor.name = "imu";
   sensor.kind = "imu";
@@ -116,13 +111,12 @@ Result run(Numbers numbers, double rate_hz = 100.0) {
   given.set("output_rate_hz", rate_hz);
   for (const auto& [name, value] : numbers) given.set(name, value);
   sensor.values = resolve("sensors.imu", given, imu_parameters());
-  Result out;
-  simulate_imu(ramp(1.0), sensor, Eigen::Isometry3d::Identity(), kGravity_m_s2, 1, out.record, out.truth);
-  return out;
+  return simulated(ramp(1.0), sensor);
 }
 
 TEST(SampledDevice, AWindowAsLongAsTheOutputsSaysTheSameAboutOneAxis) {
-  const Result plain = run({}), sampled = run({{"gyro_window_s", 0.01}, {"accel_window_s", 0.01}});
+  const SimulatedImu plain = sampled_ramp({}),
+                     sampled = sampled_ramp({{"gyro_window_s", 0.01}, {"accel_window_s", 0.01}});
   ASSERT_EQ(sampled.record.gyro_rad_s.size(), 100u);
   for (std::size_t k = 0; k < 100; ++k) {
     ASSERT_NEAR((sampled.record.gyro_rad_s[k] - plain.record.gyro_rad_s[k]).norm(), 0.0, 1e-9);
@@ -133,8 +127,8 @@ TEST(SampledDevice, AWindowAsLongAsTheOutputsSaysTheSameAboutOneAxis) {
 
 TEST(SampledDevice, WindowsAndDelaysOfGyroAndAccelerometerAreTenMillisecondsApart) {
   // over a ramp a mean over T is late by T / 2, and a delay by itself: the truth is the mean over the output's 10 ms
-  const Result r = run({{"gyro_window_s", 0.03}, {"accel_window_s", 0.0005}, {"accel_delay_s", 0.01}});
-  const Result late = run({{"gyro_delay_s", 0.01}});
+  const SimulatedImu r = sampled_ramp({{"gyro_window_s", 0.03}, {"accel_window_s", 0.0005}, {"accel_delay_s", 0.01}});
+  const SimulatedImu late = sampled_ramp({{"gyro_delay_s", 0.01}});
   for (std::size_t k = 5; k < 100; ++k) {
     const double rate = r.truth.rate_rad_s[k].z(), force = r.truth.specific_force_m_s2[k].z();
     ASSERT_NEAR(r.record.gyro_rad_s[k].z(), rate - 10.0 * 0.010, 1e-9);
@@ -146,7 +140,7 @@ TEST(SampledDevice, WindowsAndDelaysOfGyroAndAccelerometerAreTenMillisecondsApar
 
 TEST(SampledDevice, ALogFasterThanItsSensorRepeats) {
   // 40 readings a second in a log of 100: 60 % repeat the one before
-  const Result r = run({{"gyro_update_hz", 40.0}, {"accel_update_hz", 25.0}});
+  const SimulatedImu r = sampled_ramp({{"gyro_update_hz", 40.0}, {"accel_update_hz", 25.0}});
   int gyro = 0, accel = 0;
   for (std::size_t k = 4; k < 100; ++k) {
     gyro += r.record.gyro_rad_s[k] == r.record.gyro_rad_s[k - 1];
@@ -160,7 +154,7 @@ TEST(SampledDevice, ALogFasterThanItsSensorRepeats) {
 }
 
 TEST(SampledDevice, HeldReadingsKeepTheirFlags) {
-  const Result r = run({{"gyro_update_hz", 20.0}, {"gyro_rail_rad_s", 5.0}, {"clip_flags", 1.0}});
+  const SimulatedImu r = sampled_ramp({{"gyro_update_hz", 20.0}, {"gyro_rail_rad_s", 5.0}, {"clip_flags", 1.0}});
   int clipped = 0;
   for (std::size_t k = 6; k < 100; ++k) {
     const bool lost = r.record.gyro_rad_s[k] != r.truth.gyro_unclipped_rad_s[k];
@@ -174,7 +168,7 @@ TEST(SampledDevice, HeldReadingsKeepTheirFlags) {
 }
 
 TEST(SampledDevice, TheSpreadOfTheGSensitivityIsDrawn) {
-  const Result none = run({}), r = run({{"gyro_g_sensitivity_spread_s_m", 1e-3}});
+  const SimulatedImu none = sampled_ramp({}), r = sampled_ramp({{"gyro_g_sensitivity_spread_s_m", 1e-3}});
   // about x and y nothing turns: what is read there is column z of the matrix times the force
   const Vector3d first = r.record.gyro_rad_s[10] - none.record.gyro_rad_s[10];
   const Vector3d last = r.record.gyro_rad_s[90] - none.record.gyro_rad_s[90];

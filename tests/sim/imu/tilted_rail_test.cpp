@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "sim/imu/imu_simulation.hpp"
+#include "tests/sim/imu/simulated_imu.hpp"
 
 namespace tumble::sim {
 namespace {
@@ -18,7 +19,6 @@ using Eigen::Matrix3d;
 using Eigen::Vector3d;
 using Numbers = std::initializer_list<std::pair<const char*, double>>;
 
-constexpr double kGravity_m_s2 = 9.80665;
 constexpr double kRail_rad_s = 10.0;
 
 /// Turns about an axis that itself turns (coning), up to `size` times 15 rad/s about z and 6 about the others, and is
@@ -51,17 +51,6 @@ SensorSpec device(Numbers numbers, double rate_hz = 100.0) {
   return sensor;
 }
 
-struct Result {
-  ImuRecord record;
-  ImuTruth truth;
-};
-
-Result run(const Truth& truth, const SensorSpec& sensor, std::uint64_t seed = 1) {
-  Result result;
-  simulate_imu(truth, sensor, Eigen::Isometry3d::Identity(), kGravity_m_s2, seed, result.record, result.truth);
-  return result;
-}
-
 Matrix3d matrix(const std::vector<Vector3d>& rows) {
   Matrix3d out;
   for (int i = 0; i < 3; ++i) out.row(i) = rows.at(static_cast<std::size_t>(i));
@@ -69,7 +58,7 @@ Matrix3d matrix(const std::vector<Vector3d>& rows) {
 }
 
 /// Largest distance of a whole window at the positive rail of z from `row` . y = `level`; the number of such windows.
-std::pair<double, int> off_plane(const Result& r, const Vector3d& row, double level) {
+std::pair<double, int> off_plane(const SimulatedImu& r, const Vector3d& row, double level) {
   double largest = 0.0;
   int windows = 0;
   for (std::size_t k = 1; k + 1 < r.record.gyro_rad_s.size(); ++k) {
@@ -83,10 +72,10 @@ std::pair<double, int> off_plane(const Result& r, const Vector3d& row, double le
 
 TEST(TiltedRail, WholeWindowsLieOnThePlaneOfTheElement) {
   for (const double after : {0.0, 1.0}) {
-    const Result r = run(wobbling(2.0, 1.0), device({{"gyro_element_misalignment", 0.05},
-                                                     {"gyro_element_scale", 0.01},
-                                                     {"gyro_element_offset_rad_s", 0.05},
-                                                     {"clip_after_low_pass", after}}));
+    const SimulatedImu r = simulated(wobbling(2.0, 1.0), device({{"gyro_element_misalignment", 0.05},
+                                                                 {"gyro_element_scale", 0.01},
+                                                                 {"gyro_element_offset_rad_s", 0.05},
+                                                                 {"clip_after_low_pass", after}}));
     ASSERT_EQ(r.truth.gyro_elements.size(), 3u);
     const double level = kRail_rad_s - r.truth.gyro_element_offset_rad_s.z();
     const auto [off, windows] = off_plane(r, r.truth.gyro_elements[2], level);
@@ -99,7 +88,7 @@ TEST(TiltedRail, WholeWindowsLieOnThePlaneOfTheElement) {
 }
 
 TEST(TiltedRail, FreeElementsAreRightAndFreeAxesAreNot) {
-  const Result r = run(wobbling(2.0, 1.0), device({{"gyro_element_misalignment", 0.05}}, 500.0));
+  const SimulatedImu r = simulated(wobbling(2.0, 1.0), device({{"gyro_element_misalignment", 0.05}}, 500.0));
   const Matrix3d axes = matrix(r.truth.gyro_elements);
   int clipped = 0;
   double largest = 0.0;
@@ -138,20 +127,21 @@ TEST(TiltedRail, CannotBeSeenWhileNothingClips) {
     tilted.values.set(name, value);
   }
   const Truth slow = wobbling(1.0, 0.4);
-  const Result a = run(slow, upright), b = run(slow, tilted);
+  const SimulatedImu a = simulated(slow, upright), b = simulated(slow, tilted);
   ASSERT_EQ(a.record.gyro_rad_s.size(), 100u);
   EXPECT_EQ(a.record.gyro_rad_s, b.record.gyro_rad_s);
   EXPECT_EQ(a.record.accel_m_s2, b.record.accel_m_s2);
   EXPECT_THAT(b.record.clip_flags, testing::Each(0));
   const Truth fast = wobbling(1.0, 1.0);
-  const Result c = run(fast, upright), d = run(fast, tilted);
+  const SimulatedImu c = simulated(fast, upright), d = simulated(fast, tilted);
   EXPECT_NE(c.record.gyro_rad_s, d.record.gyro_rad_s);  // and can when something does
   EXPECT_EQ(c.truth.gyro_unclipped_rad_s, d.truth.gyro_unclipped_rad_s);
 }
 
 TEST(TiltedRail, AccelerometerHasElementsOfItsOwn) {
   const Numbers numbers = {{"accel_rail_m_s2", 9.0}, {"accel_element_misalignment", 0.05}};
-  const Result r = run(wobbling(1.0, 0.1), device(numbers, 2000.0));  // a sample a step: no mean hides the plane
+  const SimulatedImu r =
+      simulated(wobbling(1.0, 0.1), device(numbers, 2000.0));  // a sample a step: no mean hides the plane
   ASSERT_EQ(r.truth.accel_elements.size(), 3u);
   EXPECT_TRUE(r.truth.gyro_elements.empty());  // upright: nothing to say
   int clipped = 0;
@@ -168,7 +158,9 @@ TEST(TiltedRail, AccelerometerHasElementsOfItsOwn) {
 TEST(TiltedRail, TheSeedDrawsTheDevice) {
   const SensorSpec sensor = device({{"gyro_element_misalignment", 0.02}, {"accel_element_misalignment", 0.02}});
   const Truth still = wobbling(0.1, 0.1);
-  const Result a = run(still, sensor, 1), again = run(still, sensor, 1), b = run(still, sensor, 2);
+  const Eigen::Isometry3d same_T = Eigen::Isometry3d::Identity();
+  const SimulatedImu a = simulated(still, sensor), again = simulated(still, sensor),
+                     b = simulated(still, sensor, same_T, 2);
   EXPECT_EQ(a.truth.gyro_elements, again.truth.gyro_elements);
   EXPECT_NE(a.truth.gyro_elements, b.truth.gyro_elements);
   EXPECT_NE(a.truth.gyro_elements, a.truth.accel_elements);
@@ -176,7 +168,7 @@ TEST(TiltedRail, TheSeedDrawsTheDevice) {
 
 TEST(TiltedRail, RefusesOffsetsThatLeaveNoRail) {
   try {
-    run(wobbling(0.1, 0.1), device({{"gyro_element_offset_rad_s", 4.0}}));
+    simulated(wobbling(0.1, 0.1), device({{"gyro_element_offset_rad_s", 4.0}}));
     FAIL() << "an offset of 4 was accepted for a rail of 10";
   } catch (const InvalidSituation& error) {
     EXPECT_THAT(error.what(), testing::HasSubstr("gyro_element_offset_rad_s"));

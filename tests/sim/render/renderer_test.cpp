@@ -11,21 +11,12 @@
 #include <thread>
 
 #include "sim/render/framing.hpp"
-#include "tests/tree.hpp"
+#include "tests/sim/render/built_world.hpp"
 
 namespace tumble::sim {
 namespace {
 
 using Eigen::Vector3d;
-
-BuiltSituation built(const std::string& world, const std::string& robot) {
-  Situation situation;
-  situation.seed = 3;
-  situation.world.type = world;
-  situation.robot.type = robot;
-  situation.motion.type = robot == "sphere" ? "hand_roll" : "push";
-  return {resolve(situation), test::source_dir() / "models"};
-}
 
 View small_view() {
   View view;
@@ -57,7 +48,7 @@ std::size_t colours(const Picture& picture) {
 
 TEST(Renderer, DrawsWorldAndPathWithoutADisplay) {
   unsetenv("DISPLAY");
-  Renderer renderer(built("hill", "rig"));
+  Renderer renderer(built_world("hill", "rig"));
   View view = small_view();
   const Picture with_path = renderer.draw(view);
   ASSERT_EQ(with_path.rgb.size(), 320u * 180u * 3u);
@@ -72,7 +63,7 @@ TEST(Renderer, DrawsWorldAndPathWithoutADisplay) {
 }
 
 TEST(Renderer, DrawsTheRobotAtEveryPose) {
-  Renderer renderer(built("floor", "sphere"));
+  Renderer renderer(built_world("floor", "sphere"));
   View view;
   view.width = 320;
   view.height = 180;
@@ -98,7 +89,7 @@ TEST(Renderer, DrawsTheRobotAtEveryPose) {
 TEST(Renderer, TwiceInOneProcessAndOnAnotherThreadGivesTheSamePicture) {
   Picture first, second, third;
   {
-    Renderer renderer(built("hill", "rig"));
+    Renderer renderer(built_world("hill", "rig"));
     first = renderer.draw(small_view());
     View large = small_view();
     large.width = 400;
@@ -106,18 +97,18 @@ TEST(Renderer, TwiceInOneProcessAndOnAnotherThreadGivesTheSamePicture) {
     EXPECT_EQ(renderer.draw(large).rgb.size(), 400u * 300u * 3u);
     std::thread([&] { second = renderer.draw(small_view()); }).join();
   }
-  Renderer again(built("hill", "rig"));
+  Renderer again(built_world("hill", "rig"));
   third = again.draw(small_view());
   EXPECT_EQ(first.rgb, second.rgb);
   EXPECT_EQ(first.rgb, third.rgb);
 }
 
 TEST(Renderer, BadInput) {
-  Renderer renderer(built("floor", "sphere"));
+  Renderer renderer(built_world("floor", "sphere"));
   View view;
   view.width = 0;
   EXPECT_THROW(renderer.draw(view), std::invalid_argument);
-  EXPECT_THROW(Renderer(built("no_such_world", "rig")), InvalidSituation);
+  EXPECT_THROW(Renderer(built_world("no_such_world", "rig")), InvalidSituation);
 }
 
 TEST(Framing, APathThatRanAwayDoesNotShrinkTheRobots) {

@@ -9,22 +9,13 @@
 
 #include "sim/lidar/surface.hpp"
 #include "sim/render/tessellation.hpp"
-#include "tests/tree.hpp"
+#include "tests/sim/render/built_world.hpp"
 
 namespace tumble::sim {
 namespace {
 
 using Eigen::Vector3d;
 using Eigen::Vector3f;
-
-BuiltSituation built(const std::string& world, const std::string& robot) {
-  Situation situation;
-  situation.seed = 3;
-  situation.world.type = world;
-  situation.robot.type = robot;
-  situation.motion.type = robot == "sphere" ? "hand_roll" : "push";
-  return {resolve(situation), test::source_dir() / "models"};
-}
 
 /// What the triangles enclose, positive where they turn to the left seen from outside (divergence theorem).
 double volume(const Tessellation& mesh) {
@@ -83,7 +74,7 @@ TEST(Tessellation, VerticesLieOnTheSurface) {
 }
 
 TEST(WorldMesh, LiesOnTheSurfaceThatMapsAreScoredBy) {
-  const BuiltSituation hill = built("hill", "rig");
+  const BuiltSituation hill = built_world("hill", "rig");
   const Surface surface(hill);
   const std::vector<MeshPart> parts = world_mesh(hill);
   ASSERT_GT(parts.size(), 20u) << "rocks and trunks";
@@ -104,7 +95,7 @@ TEST(WorldMesh, LiesOnTheSurfaceThatMapsAreScoredBy) {
 }
 
 TEST(WorldMesh, OfAPlaneIsAFieldOfOneCellThatLooksUp) {
-  const std::vector<MeshPart> parts = world_mesh(built("floor", "sphere"));
+  const std::vector<MeshPart> parts = world_mesh(built_world("floor", "sphere"));
   const auto floor = std::find_if(parts.begin(), parts.end(), [](const MeshPart& part) { return part.rows == 2; });
   ASSERT_NE(floor, parts.end());
   ASSERT_EQ(floor->vertices_m.size(), 4u);
@@ -114,14 +105,14 @@ TEST(WorldMesh, OfAPlaneIsAFieldOfOneCellThatLooksUp) {
 
 TEST(RobotMesh, HasTheRobotsSize) {
   double farthest = 0.0;
-  for (const MeshPart& part : robot_mesh(built("hill", "rig"))) {
+  for (const MeshPart& part : robot_mesh(built_world("hill", "rig"))) {
     for (const Vector3f& vertex : part.vertices_m) farthest = std::max<double>(farthest, vertex.norm());
   }
   // models/rig.xml: the corner of the cage, half its tube
   const double corner = Vector3d(0.3095, 0.0261, 0.185).norm();
   EXPECT_GT(farthest, corner - 0.03);
   EXPECT_LT(farthest, corner + 0.06);
-  const std::vector<MeshPart> sphere = robot_mesh(built("floor", "sphere"));
+  const std::vector<MeshPart> sphere = robot_mesh(built_world("floor", "sphere"));
   ASSERT_FALSE(sphere.empty());
   EXPECT_TRUE(std::any_of(sphere.begin(), sphere.end(), [](const MeshPart& p) { return p.rgba[3] < 1.0f; })) << "shell";
 }
