@@ -119,7 +119,7 @@ std::vector<fs::path> sources_below(const std::vector<std::string>& folders) {
   return out;
 }
 
-std::vector<fs::path> sources() {
+std::vector<fs::path> all_sources() {
   return sources_below({"estimator", "sim", "scenarios", "tools", "python/bindings", "python/evalio/bindings"});
 }
 
@@ -151,7 +151,7 @@ std::string output_of(const std::string& command) {
 }
 
 TEST(Architecture, EveryIncludeFollowsTheTable) {
-  const std::vector<fs::path> files = sources();
+  const std::vector<fs::path> files = all_sources();
   ASSERT_GT(files.size(), 40u) << "the scan found too few files to mean anything";
   for (const fs::path& file : files) {
     for (const std::string& include : includes_of(file)) {
@@ -335,7 +335,7 @@ std::vector<std::pair<std::string, std::string>> borrowed_sources() {
 }
 
 TEST(Architecture, NoFoldersUseEachOther) {
-  const auto uses = folder_uses(sources());
+  const auto uses = folder_uses(all_sources());
   ASSERT_GT(uses.size(), 200u) << "the scan found too little to mean anything";
   EXPECT_EQ(mutual_folders(uses), std::set<std::string>{});
   // negative controls
@@ -361,7 +361,7 @@ TEST(Architecture, NoFoldersOfTestsUseEachOther) {
 
 TEST(Architecture, FilesStayBelowTheirCeilings) {
   std::vector<fs::path> files = sources_below({"tests"});
-  for (const fs::path& file : sources()) files.push_back(file);
+  for (const fs::path& file : all_sources()) files.push_back(file);
   for (const fs::path& file : files) {
     std::ifstream stream(file);
     const auto lines = std::count(std::istreambuf_iterator<char>(stream), std::istreambuf_iterator<char>(), '\n');
@@ -370,7 +370,7 @@ TEST(Architecture, FilesStayBelowTheirCeilings) {
 }
 
 TEST(Architecture, EverySourceCarriesTheLicence) {
-  for (const fs::path& file : sources()) {
+  for (const fs::path& file : all_sources()) {
     std::ifstream stream(file);
     std::string line;
     std::getline(stream, line);

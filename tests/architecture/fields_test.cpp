@@ -18,7 +18,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-std::string text_of(const fs::path& file) {
+std::string code_of(const fs::path& file) {
   std::ostringstream out;
   out << std::ifstream(file).rdbuf();
   return std::regex_replace(out.str(), std::regex("//[^\n]*"), "");
@@ -81,7 +81,7 @@ std::vector<std::string> forgotten(const std::string& body) {
   return out;
 }
 
-std::vector<fs::path> headers() {
+std::vector<fs::path> headers_with_params() {
   std::vector<fs::path> out;
   for (const char* folder : {"estimator/include", "estimator/src", "scenarios/baselines"})
     for (const auto& entry : fs::recursive_directory_iterator(tumble::test::source_dir() / folder))
@@ -91,8 +91,8 @@ std::vector<fs::path> headers() {
 
 TEST(Fields, NameEachNumberOfAParams) {
   std::size_t structs = 0, numbers = 0;
-  for (const fs::path& header_path : headers()) {
-    const std::string header = text_of(header_path);
+  for (const fs::path& header_path : headers_with_params()) {
+    const std::string header = code_of(header_path);
     for (const std::string& body : params_in(header)) {
       for (const std::string& number : forgotten(body)) {
         ADD_FAILURE() << header_path.string() << ": " << number << " is no field";
@@ -110,8 +110,8 @@ const std::set<std::string> kDerived = {"carried_model.hpp", "force_errors.hpp",
 
 TEST(Fields, EveryParamsHasThem) {
   std::set<std::string> without;
-  for (const fs::path& header : headers()) {
-    for (const std::string& body : structs_in(text_of(header), R"(struct \w*Params \{)")) {
+  for (const fs::path& header : headers_with_params()) {
+    for (const std::string& body : structs_in(code_of(header), R"(struct \w*Params \{)")) {
       if (!has_fields(body) && !numbers_in(body).empty()) without.insert(header.filename().string());
     }
   }
@@ -134,10 +134,10 @@ std::vector<std::string> offered_in(const std::string& header) {
 TEST(Fields, OfAPublicParamsAreTenAtMostBesideExpert) {
   std::size_t offered = 0, with_expert = 0;
   const fs::path library = tumble::test::source_dir() / "estimator/include";
-  for (const fs::path& header : headers()) {
+  for (const fs::path& header : headers_with_params()) {
     const bool is_public = header.string().starts_with(library.string()) && header.parent_path().filename() != "detail";
     if (!is_public) continue;
-    for (const std::string& body : offered_in(text_of(header))) {
+    for (const std::string& body : offered_in(code_of(header))) {
       EXPECT_LE(own_options(body), 10u) << header;
       ++offered;
       with_expert += body.find("Expert expert") != std::string::npos ? 1 : 0;

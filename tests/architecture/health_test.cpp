@@ -27,7 +27,7 @@ std::vector<std::string> reads_of_health(const std::string& source) {
 }
 
 /// Sources of the harness, by their place in the tree.
-std::vector<std::string> sources() {
+std::vector<std::string> harness_sources() {
   std::vector<std::string> out;
   for (const char* folder : {"scenarios", "tools"}) {
     for (const auto& entry : fs::recursive_directory_iterator(tumble::test::source_dir() / folder)) {
@@ -41,7 +41,7 @@ std::vector<std::string> sources() {
 
 TEST(Health, IsReadByNoStage) {
   std::size_t writers = 0;
-  for (const std::string& file : sources()) {
+  for (const std::string& file : harness_sources()) {
     // takes the doubts of a finished estimate back, for those who judge whether they were right
     if (file == "scenarios/methods/imu_check.cpp") continue;
     std::ostringstream text;

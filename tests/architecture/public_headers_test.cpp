@@ -34,7 +34,7 @@ Names listed(const std::string& readme) {
   return found_in(readme, R"(`((?:[a-z_0-9]+/)?[a-z_0-9]+\.hpp)`)");
 }
 
-std::vector<fs::path> headers() {
+std::vector<fs::path> public_headers() {
   std::vector<fs::path> out;
   for (const auto& entry : fs::recursive_directory_iterator(tumble::test::source_dir() / "estimator/include/tumble"))
     if (entry.path().extension() == ".hpp") out.push_back(entry.path());
@@ -44,7 +44,7 @@ std::vector<fs::path> headers() {
 /// Headers that stand outside of folders called detail.
 Names open_headers() {
   Names out;
-  for (const fs::path& header : headers()) {
+  for (const fs::path& header : public_headers()) {
     const fs::path path = fs::relative(header, tumble::test::source_dir() / "estimator/include/tumble");
     if (path.parent_path().filename() != "detail") out.insert(path.generic_string());
   }
@@ -87,7 +87,7 @@ TEST(PublicHeaders, AreReadInOneGo) {
 
 TEST(PublicHeaders, IncludeNothingThatIsNotInstalled) {
   std::size_t includes = 0;
-  for (const fs::path& header : headers()) {
+  for (const fs::path& header : public_headers()) {
     for (const std::string& own : found_in(text_of(header), R"re(#\s*include\s*"([^"]+)")re")) {
       ++includes;
       EXPECT_TRUE(fs::exists(tumble::test::source_dir() / "estimator/include" / own)) << header << " includes " << own;

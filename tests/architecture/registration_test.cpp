@@ -3,12 +3,11 @@
 // a list declares is called where the list is made.
 #include <gtest/gtest.h>
 
-#include <fstream>
 #include <regex>
-#include <sstream>
 #include <string>
 #include <vector>
 
+#include "tests/architecture/text_of.hpp"
 #include "tests/tree.hpp"
 
 namespace {
@@ -19,12 +18,6 @@ struct Registry {
   std::string list;             ///< the source that has to name each of them
   std::size_t least;            ///< so many there are at least, or they are not found
 };
-
-std::string text_of(const std::string& file) {
-  std::ostringstream out;
-  out << std::ifstream(tumble::test::source_dir() / file).rdbuf();
-  return out.str();
-}
 
 std::vector<std::string> declared(const std::string& text, const std::string& returns, const std::string& arguments) {
   const std::regex function("(?:^|\n)" + returns + R"( ([a-z0-9_]+)\()" + arguments + R"(\);)");
@@ -52,9 +45,11 @@ TEST(Registration, NothingThatIsDeclaredIsLeftOut) {
       {"tools/tumble/verbs.hpp", "Action", "[^;{]*", "tools/tumble/verbs.cpp", 15},
   };
   for (const Registry& registry : registries) {
-    const std::vector<std::string> names = declared(text_of(registry.header), registry.returns, registry.arguments);
+    const std::vector<std::string> names = declared(tumble::test::text_of(tumble::test::source_dir() / registry.header),
+                                                    registry.returns, registry.arguments);
     EXPECT_GE(names.size(), registry.least) << registry.header;
-    EXPECT_EQ(left_out(names, text_of(registry.list)), std::vector<std::string>())
+    EXPECT_EQ(left_out(names, tumble::test::text_of(tumble::test::source_dir() / registry.list)),
+              std::vector<std::string>())
         << registry.header << " declares what " << registry.list << " does not name";
   }
 }

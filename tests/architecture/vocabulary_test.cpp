@@ -126,13 +126,13 @@ TEST(Vocabulary, ANameThatComesBackIsFound) {
       "| |");
   EXPECT_EQ(old, (std::set<std::string>{"old_name"})) << "members and single words may mean something else";
   const auto found = [&](const char* text, Text kind) { return come_back(text, kind, old); };
-  using Names = std::vector<std::string>;
-  EXPECT_EQ(found("set `old_name` to 1, to my surprise", Text::prose), Names{"old_name"});
-  EXPECT_EQ(found("double my_old_name = new_name;", Text::source), Names{});
-  EXPECT_EQ(found("struct Stretch { double kStretch_s; };", Text::source), (Names{"Stretch", "kStretch_s"}));
-  EXPECT_EQ(found("health[\"excess_a\"] = f(\"in excess\");  // no excess_b", Text::source), Names{"excess_a"});
-  EXPECT_EQ(found("excess_rad_s = 1  # in excess_b\n", Text::script), Names{"excess_rad_s"});
-  EXPECT_EQ(found("int outstretched = stretched_to;", Text::source), Names{});
+  using Words = std::vector<std::string>;
+  EXPECT_EQ(found("set `old_name` to 1, to my surprise", Text::prose), Words{"old_name"});
+  EXPECT_EQ(found("double my_old_name = new_name;", Text::source), Words{});
+  EXPECT_EQ(found("struct Stretch { double kStretch_s; };", Text::source), (Words{"Stretch", "kStretch_s"}));
+  EXPECT_EQ(found("health[\"excess_a\"] = f(\"in excess\");  // no excess_b", Text::source), Words{"excess_a"});
+  EXPECT_EQ(found("excess_rad_s = 1  # in excess_b\n", Text::script), Words{"excess_rad_s"});
+  EXPECT_EQ(found("int outstretched = stretched_to;", Text::source), Words{});
 }
 
 }  // namespace

@@ -19,11 +19,11 @@ using scenarios::Summary;
 using ::testing::HasSubstr;
 using ::testing::Not;
 
-constexpr const char* kError = "rate_error_clipped_median_rad_s";
+constexpr const char* kRateError = "rate_error_clipped_median_rad_s";
 constexpr double kInfinite = std::numeric_limits<double>::infinity();
 
 /// Values by rising seed; infinite: the run failed.
-MethodSummary method(const std::string& name, const std::vector<double>& values, const char* metric = kError) {
+MethodSummary method(const std::string& name, const std::vector<double>& values, const char* metric = kRateError) {
   MethodSummary out;
   out.method = name;
   for (std::size_t i = 0; i < values.size(); ++i) {
@@ -39,7 +39,7 @@ MethodSummary method(const std::string& name, const std::vector<double>& values,
   return out;
 }
 
-Summary summary_of(std::vector<MethodSummary> methods, Kind kind = Kind::rate, const char* metric = kError) {
+Summary summary_of(std::vector<MethodSummary> methods, Kind kind = Kind::rate, const char* metric = kRateError) {
   Section section;
   section.scenario = "hill";
   section.kind = kind;

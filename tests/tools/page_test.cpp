@@ -30,7 +30,7 @@ MetricSummary metric(std::vector<double> values) {
   return out;
 }
 
-Summary summary_of(const std::string& scenario, const std::string& method = "saave") {
+Summary page_summary(const std::string& scenario, const std::string& method = "saave") {
   MethodSummary raw, saave;
   raw.method = "raw";
   raw.metrics["rate_error_clipped_median_rad_s"] = metric({2.0, 3.0});
@@ -65,7 +65,7 @@ ShownExample evil_example(const std::string& evil) {
 TEST(Page, AsksTheNetworkNothing) {
   PageContent content;
   content.title = "title";
-  content.summary = summary_of("hill");
+  content.summary = page_summary("hill");
   content.errors = {box_figure(content.summary, Kind::rate, "rate_error_clipped_median_rad_s", "caption")};
   const std::string page = page_html(content, "/* bundle */");
   for (const char* outside : {"http:", "https:", "src=\"/", "@import", "url(", "<link"})
@@ -89,7 +89,7 @@ TEST(Page, EscapesEveryTextItIsGiven) {
       {evil, 7, {{"motion_peak_rate_rad_s", 10.0}, {"motion_peak_accel_m_s2", 90.0}}}});
   content.warnings = {evil};
   content.examples = {evil_example(evil)};
-  content.summary = summary_of(evil, evil);
+  content.summary = page_summary(evil, evil);
   content.errors = {box_figure(content.summary, Kind::rate, "rate_error_clipped_median_rad_s", evil)};
   content.comparison = scenarios::compare(content.summary, {});
   const std::string page = page_html(content, "");
@@ -100,13 +100,13 @@ TEST(Page, EscapesEveryTextItIsGiven) {
 }
 
 TEST(BoxFigure, HasATracePerMethodWithEveryDraw) {
-  const Figure figure = box_figure(summary_of("hill"), Kind::rate, "rate_error_clipped_median_rad_s", "");
+  const Figure figure = box_figure(page_summary("hill"), Kind::rate, "rate_error_clipped_median_rad_s", "");
   ASSERT_EQ(nlohmann::json::parse(figure.traces).size(), 2u);
   EXPECT_EQ(nlohmann::json::parse(figure.traces)[0]["name"], "raw");
   EXPECT_EQ(nlohmann::json::parse(figure.traces)[1]["y"], nlohmann::json({0.1, 0.2}));
   EXPECT_EQ(nlohmann::json::parse(figure.traces)[1]["x"], nlohmann::json({"hill", "hill"}));
   EXPECT_EQ(nlohmann::json::parse(figure.layout)["yaxis"]["type"], "log") << "0.1 to 3 is more than a decade";
-  EXPECT_TRUE(box_figure(summary_of("hill"), Kind::slam, "map_overlap", "").empty());
+  EXPECT_TRUE(box_figure(page_summary("hill"), Kind::slam, "map_overlap", "").empty());
 }
 
 TEST(Page, ShowsExamplesWithTheirPicturesAndPlots) {
@@ -133,7 +133,7 @@ TEST(Page, LinksTheReplayOfAnExampleThatHasOne) {
 
 TEST(Page, SaysWhatItsRecordingsAre) {
   PageContent content;
-  content.summary = summary_of("hill");
+  content.summary = page_summary("hill");
   EXPECT_THAT(page_html(content, ""), HasSubstr("2 draws of hill, simulated, so that the truth is known"));
   content.recorded = true;
   EXPECT_THAT(page_html(content, ""), HasSubstr("the very same recordings (hill), and is judged by the truth"));
@@ -142,7 +142,7 @@ TEST(Page, SaysWhatItsRecordingsAre) {
 
 TEST(Page, SaysWhatItsTasksAndMethodsAre) {
   PageContent content;
-  content.summary = summary_of("hill");
+  content.summary = page_summary("hill");
   content.methods = {{"rate/raw (baseline)", "The gyro as it is."}};
   const std::string page = page_html(content, "");
   EXPECT_THAT(page, HasSubstr("one task on one scenario: rate, how fast it turns.</p>"));
@@ -151,7 +151,7 @@ TEST(Page, SaysWhatItsTasksAndMethodsAre) {
 
 TEST(Page, CountsMethodsThatNeedNoTruth) {
   PageContent content;
-  content.summary = summary_of("hill");
+  content.summary = page_summary("hill");
   EXPECT_THAT(page_html(content, ""), HasSubstr("Compared: 2 methods"));
   content.summary.sections[0].methods[1].needs_truth = true;
   EXPECT_THAT(page_html(content, ""), HasSubstr("Compared: 1 method that tells"));
@@ -187,7 +187,7 @@ TEST(Page, SetsNarrowPlotsTwoInARow) {
 
 TEST(Page, HasItsPartsInOrderAndInTheListOfContents) {
   PageContent content;
-  content.summary = summary_of("hill");
+  content.summary = page_summary("hill");
   content.comparison = scenarios::compare(content.summary, {});
   content.errors = {box_figure(content.summary, Kind::rate, "rate_error_clipped_median_rad_s", "")};
   content.cost = content.errors.front();
@@ -212,7 +212,7 @@ TEST(Page, HasItsPartsInOrderAndInTheListOfContents) {
 // of the first class the score is small and sure, of the last it has no upper end
 TEST(Page, DrawsAScoreOverTheRangeOfWhatBreaksIt) {
   PageContent content;
-  content.summary = summary_of("hill");
+  content.summary = page_summary("hill");
   scenarios::Influence slope{"world.<slope>", {}, {}, 0.001, 0.1, 2.0};
   const double infinity = std::numeric_limits<double>::infinity();
   slope.dependence = {
@@ -248,7 +248,7 @@ TEST(Page, MovesByItselfAndStandsStillForWhoeverAsks) {
 
 TEST(Page, LinksFailedDrawsThatHavePictures) {
   PageContent content;
-  content.summary = summary_of("hill");
+  content.summary = page_summary("hill");
   content.examples = {evil_example("hill")};
   content.examples[0].replay_address = "a.db.files/hill-7-replay.html";
   content.failed = {
@@ -267,7 +267,7 @@ TEST(Page, LinksFailedDrawsThatHavePictures) {
 
 TEST(Page, ShowsAFailedDrawWhereItsFailureIsTold) {
   PageContent content;
-  content.summary = summary_of("hill");
+  content.summary = page_summary("hill");
   content.examples = {evil_example("roll"), evil_example("hill")};
   content.examples[1].example.of_failure = true;
   content.examples[1].replay_address = "a.db.files/hill-7-replay.html";

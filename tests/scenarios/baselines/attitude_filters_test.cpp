@@ -18,11 +18,7 @@ namespace {
 
 using testing::kGravity_m_s2;
 using testing::kPeriod_ns;
-
-double tilt(const Eigen::Quaterniond& q_WI) {
-  const Eigen::Vector3d up = q_WI.conjugate() * Eigen::Vector3d::UnitZ();
-  return std::atan2(std::hypot(up.x(), up.y()), up.z());
-}
+using testing::tilt;
 
 template <typename Filter>
 class Baseline : public ::testing::Test {};

@@ -72,8 +72,7 @@ double tilt_after_rest(const Autogain::Params& params, const Eigen::Quaterniond&
   for (int k = 1; k <= 1250; ++k) {
     EXPECT_TRUE(filter.step({k * TimeNs{8'000'000}, {0, 0, 0}, {0, 0, kGravity_m_s2}, 0}, state).ok());
   }
-  const Eigen::Vector3d up = state.q_WI.conjugate() * Eigen::Vector3d::UnitZ();
-  return std::atan2(std::hypot(up.x(), up.y()), up.z());
+  return testing::tilt(state.q_WI);
 }
 
 TEST(Autogain, LevelsRollAndPitchUnlessTheRollErrorIsAskedFor) {

@@ -17,6 +17,7 @@ namespace {
 
 using testing::kGravity_m_s2;
 using testing::kPeriod_ns;
+using testing::tilt;
 
 /// The published step written a second way: q as (w, x, y, z), the rate as a 4x4 matrix, the objective through the
 /// rotation matrix R(q), and its gradient by central differences instead of a printed Jacobian.
@@ -71,11 +72,6 @@ TEST(Madgwick, OneStepByHand) {
   EXPECT_NEAR(state.q_WI.x(), 0.05 / length, 1e-15);
   EXPECT_EQ(state.q_WI.y(), 0.0);
   EXPECT_EQ(state.q_WI.z(), 0.0);
-}
-
-double tilt(const Eigen::Quaterniond& q_WI) {
-  const Eigen::Vector3d up = q_WI.conjugate() * Eigen::Vector3d::UnitZ();
-  return std::atan2(std::hypot(up.x(), up.y()), up.z());
 }
 
 TEST(Madgwick, CorrectsSmallTiltAtTwiceTheGainAndLargeTiltMoreSlowly) {

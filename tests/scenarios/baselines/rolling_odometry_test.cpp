@@ -14,7 +14,7 @@ namespace tumble::baselines {
 namespace {
 
 constexpr double kRadius_m = 0.145;
-constexpr TimeNs kPeriod_ns = 4'000'000;
+constexpr TimeNs kSample_ns = 4'000'000;
 const Eigen::Quaterniond kLevel = Eigen::Quaterniond::Identity();
 
 TEST(RollingOdometry, SignsOfTheRollingLaw) {
@@ -22,9 +22,9 @@ TEST(RollingOdometry, SignsOfTheRollingLaw) {
   RollingOdometry::State state;
   ASSERT_TRUE(odometry.step(0, {0, 1, 0}, kLevel, state).ok());
   EXPECT_NEAR((state.v_WG_m_s - Eigen::Vector3d(0.145, 0, 0)).norm(), 0.0, 1e-17);
-  ASSERT_TRUE(odometry.step(kPeriod_ns, {1, 0, 0}, kLevel, state).ok());
+  ASSERT_TRUE(odometry.step(kSample_ns, {1, 0, 0}, kLevel, state).ok());
   EXPECT_NEAR((state.v_WG_m_s - Eigen::Vector3d(0, -0.145, 0)).norm(), 0.0, 1e-17);
-  ASSERT_TRUE(odometry.step(2 * kPeriod_ns, {0, 0, 5}, kLevel, state).ok());
+  ASSERT_TRUE(odometry.step(2 * kSample_ns, {0, 0, 5}, kLevel, state).ok());
   EXPECT_EQ(state.v_WG_m_s.norm(), 0.0) << "spinning about the normal does not move the centre";
 }
 
@@ -35,8 +35,8 @@ TEST(RollingOdometry, StraightRollInTurningBodyAxes) {
   const RollingOdometry odometry({.radius_m = kRadius_m});
   RollingOdometry::State state;
   for (int k = 0; k <= 1000; ++k) {
-    const Eigen::Quaterniond q_WI = so3::exp(w_W * (k * seconds(kPeriod_ns))) * start;
-    ASSERT_TRUE(odometry.step(k * kPeriod_ns, q_WI.conjugate() * w_W, q_WI, state).ok());
+    const Eigen::Quaterniond q_WI = so3::exp(w_W * (k * seconds(kSample_ns))) * start;
+    ASSERT_TRUE(odometry.step(k * kSample_ns, q_WI.conjugate() * w_W, q_WI, state).ok());
   }
   const Eigen::Vector3d expected = kRadius_m * 4.0 * Eigen::Vector3d(2.0, -0.6, 0.0);
   EXPECT_NEAR((state.p_WG_m - expected).norm(), 0.0, 1e-13);  // measured 4e-15
@@ -78,7 +78,7 @@ TEST(RollingOdometry, SlopeMovesAlongThePlane) {
   const Eigen::Vector3d normal = Eigen::Vector3d(-std::sin(0.3), 0.0, std::cos(0.3));  // climbing towards +x by 0.3 rad
   const RollingOdometry odometry({.radius_m = kRadius_m, .normal_W = normal});
   RollingOdometry::State state;
-  for (int k = 0; k <= 250; ++k) ASSERT_TRUE(odometry.step(k * kPeriod_ns, {0, 2, 0}, kLevel, state).ok());
+  for (int k = 0; k <= 250; ++k) ASSERT_TRUE(odometry.step(k * kSample_ns, {0, 2, 0}, kLevel, state).ok());
   const double length = kRadius_m * 2.0;
   EXPECT_NEAR((state.p_WG_m - length * Eigen::Vector3d(std::cos(0.3), 0, std::sin(0.3))).norm(), 0.0, 1e-14);
 }
@@ -89,7 +89,7 @@ TEST(RollingOdometry, SplitRunsAndSignOfQ) {
     for (int k = from; k < to; ++k) {
       Eigen::Quaterniond q = so3::exp({0.01 * k, 0.003 * k, -0.002 * k});
       q.coeffs() *= sign;
-      EXPECT_TRUE(odometry.step(k * kPeriod_ns, {std::sin(0.1 * k), 1.0, 0.2}, q, state).ok());
+      EXPECT_TRUE(odometry.step(k * kSample_ns, {std::sin(0.1 * k), 1.0, 0.2}, q, state).ok());
     }
     return state;
   };
@@ -104,21 +104,21 @@ TEST(RollingOdometry, RefusesBadInputAndKeepsItsState) {
   const RollingOdometry odometry({});
   RollingOdometry::State state;
   ASSERT_TRUE(odometry.step(0, {0, 1, 0}, kLevel, state).ok());
-  ASSERT_TRUE(odometry.step(kPeriod_ns, {0, 1, 0}, kLevel, state).ok());
+  ASSERT_TRUE(odometry.step(kSample_ns, {0, 1, 0}, kLevel, state).ok());
   const RollingOdometry::State before = state;
   const auto refused = [&](TimeNs t, const Eigen::Vector3d& w, const Eigen::Quaterniond& q) {
     const Trouble trouble = odometry.step(t, w, q, state).trouble;
     EXPECT_TRUE(state == before) << to_string(trouble);
     return trouble;
   };
-  EXPECT_EQ(refused(2 * kPeriod_ns, {kNan, 0, 0}, kLevel), Trouble::non_finite);
-  EXPECT_EQ(refused(2 * kPeriod_ns, {1e300, 1e300, 0}, kLevel), Trouble::out_of_range);
-  EXPECT_EQ(refused(2 * kPeriod_ns, {0, 1, 0}, Eigen::Quaterniond(kNan, 0, 0, 0)), Trouble::non_finite);
-  EXPECT_EQ(refused(2 * kPeriod_ns, {0, 1, 0}, Eigen::Quaterniond(0, 0, 0, 0)), Trouble::out_of_range);
-  EXPECT_EQ(refused(kPeriod_ns, {0, 1, 0}, kLevel), Trouble::time_order);
+  EXPECT_EQ(refused(2 * kSample_ns, {kNan, 0, 0}, kLevel), Trouble::non_finite);
+  EXPECT_EQ(refused(2 * kSample_ns, {1e300, 1e300, 0}, kLevel), Trouble::out_of_range);
+  EXPECT_EQ(refused(2 * kSample_ns, {0, 1, 0}, Eigen::Quaterniond(kNan, 0, 0, 0)), Trouble::non_finite);
+  EXPECT_EQ(refused(2 * kSample_ns, {0, 1, 0}, Eigen::Quaterniond(0, 0, 0, 0)), Trouble::out_of_range);
+  EXPECT_EQ(refused(kSample_ns, {0, 1, 0}, kLevel), Trouble::time_order);
   EXPECT_EQ(refused(std::numeric_limits<TimeNs>::min(), {0, 1, 0}, kLevel), Trouble::time_order);
-  EXPECT_EQ(refused(kPeriod_ns + 1'000'000'001, {0, 1, 0}, kLevel), Trouble::gap);
-  EXPECT_EQ(odometry.step(2 * kPeriod_ns, {0, 1, 0}, kLevel, state).trouble, Trouble::none);
+  EXPECT_EQ(refused(kSample_ns + 1'000'000'001, {0, 1, 0}, kLevel), Trouble::gap);
+  EXPECT_EQ(odometry.step(2 * kSample_ns, {0, 1, 0}, kLevel, state).trouble, Trouble::none);
 }
 
 TEST(RollingOdometry, RefusesBadParams) {

@@ -8,6 +8,7 @@
 #include "estimator/rolling/rolling_truth.hpp"
 #include "scenarios/baselines/rolling/autogain_fusion.hpp"
 #include "scenarios/baselines/rolling/double_integration.hpp"
+#include "tests/scenarios/baselines/rolled.hpp"
 
 namespace tumble::baselines {
 namespace {
@@ -18,21 +19,6 @@ using testing::RollingMotion;
 using testing::RollingTruth;
 
 template <typename Method>
-typename Method::State run(const Method& method, const RollingTruth& truth, std::size_t from, std::size_t to,
-                           typename Method::State state = {}) {
-  for (std::size_t k = from; k < to; ++k) {
-    const Status status = method.step(truth.samples[k], truth.q_WI[k], state);
-    EXPECT_TRUE(status.ok()) << k << ": " << status.message();
-  }
-  return state;
-}
-
-template <typename Method>
-typename Method::State run(const Method& method, const RollingTruth& truth) {
-  return run(method, truth, 0, truth.samples.size());
-}
-
-template <typename Method>
 class Published : public ::testing::Test {};
 using Methods = ::testing::Types<DoubleIntegration, AutogainFusion>;
 TYPED_TEST_SUITE(Published, Methods);
@@ -41,17 +27,17 @@ TYPED_TEST(Published, SplitRunsAndSignOfQ) {
   const TypeParam method({});
   RollingTruth truth = testing::roll({.velocity_m_s = l_shape, .contact_velocity_m_s = no_slip, .duration_s = 5.0});
   const std::size_t count = truth.samples.size();
-  const auto whole = run(method, truth);
+  const auto whole = rolled(method, truth);
   for (const std::size_t cut : {std::size_t{1}, std::size_t{700}, count - 1}) {
-    const auto carried = run(method, truth, 0, cut);
+    const auto carried = rolled(method, truth, 0, cut);
     EXPECT_FALSE(carried == whole);
-    EXPECT_TRUE(whole == run(method, truth, cut, count, carried)) << cut;
+    EXPECT_TRUE(whole == rolled(method, truth, cut, count, carried)) << cut;
   }
   for (Eigen::Quaterniond& q : truth.q_WI) q.coeffs() = -q.coeffs();
   if constexpr (std::is_same_v<TypeParam, DoubleIntegration>) {
-    EXPECT_EQ(run(method, truth).p_WI_m, whole.p_WI_m);
+    EXPECT_EQ(rolled(method, truth).p_WI_m, whole.p_WI_m);
   } else {
-    EXPECT_EQ(run(method, truth).p_WG_m, whole.p_WG_m);
+    EXPECT_EQ(rolled(method, truth).p_WG_m, whole.p_WG_m);
   }
 }
 
@@ -59,7 +45,7 @@ TYPED_TEST(Published, RefusesBadInputAndKeepsItsState) {
   const TypeParam method({});
   const RollingTruth truth =
       testing::roll({.velocity_m_s = l_shape, .contact_velocity_m_s = no_slip, .duration_s = 3.0});
-  const auto before = run(method, truth, 0, 700);
+  const auto before = rolled(method, truth, 0, 700);
   const auto refused = [&](const ImuSample& sample, const Eigen::Quaterniond& q) {
     auto state = before;
     const Trouble trouble = method.step(sample, q, state).trouble;
@@ -86,7 +72,7 @@ TEST(DoubleIntegration, FollowsASphereThatRollsAndSlidesWhileNothingIsWrong) {
       testing::roll({.velocity_m_s = l_shape, .contact_velocity_m_s = [](double t) -> Eigen::Vector3d {
                        return {t > 3.0 && t < 4.0 ? -0.3 * std::sin(std::numbers::pi * (t - 3.0)) : 0.0, 0, 0};
                      }});
-  const DoubleIntegration::State end = run(DoubleIntegration({}), truth);
+  const DoubleIntegration::State end = rolled(DoubleIntegration({}), truth);
   // the mean force of a window is turned as if the body stood at its middle: (w dt)^2 / 24 of g at up to 5 rad/s is
   // 1.6e-4 m/s^2, for some seconds; measured 2.6 mm
   EXPECT_NEAR((end.p_WI_m - truth.p_WG_m.back()).norm(), 0.0, 5e-3);
@@ -96,13 +82,13 @@ TEST(DoubleIntegration, FollowsASphereThatRollsAndSlidesWhileNothingIsWrong) {
 TEST(DoubleIntegration, TiltErrorGrowsWithTheSquareOfTime) {
   RollingTruth truth = testing::roll({.velocity_m_s = no_slip, .contact_velocity_m_s = no_slip, .duration_s = 8.0});
   for (Eigen::Quaterniond& q : truth.q_WI) q = so3::exp({0.0, 0.001, 0.0}) * q;
-  const DoubleIntegration::State end = run(DoubleIntegration({}), truth);
+  const DoubleIntegration::State end = rolled(DoubleIntegration({}), truth);
   EXPECT_NEAR(end.p_WI_m.x(), 0.5 * 9.80665 * std::sin(0.001) * 64.0, 1e-9);
 }
 
 TEST(AutogainFusion, CleanRollEndsFarOffAsPublished) {
   const RollingTruth truth = testing::roll({.velocity_m_s = l_shape, .contact_velocity_m_s = no_slip});
-  const double error = (run(AutogainFusion({}), truth).p_WG_m - truth.p_WG_m.back()).norm();
+  const double error = (rolled(AutogainFusion({}), truth).p_WG_m - truth.p_WG_m.back()).norm();
   // 0.77 m on another L of the same size; a fusion that did well here would not be the published one
   EXPECT_GT(error, 0.4);
   EXPECT_LT(error, 1.2);
@@ -112,7 +98,7 @@ TEST(AutogainFusion, WithoutAccelerationItIsHalfOfRolling) {
   const RollingTruth truth = testing::roll({.velocity_m_s = l_shape, .contact_velocity_m_s = no_slip});
   const AutogainFusion half({.limiter = 0.0});
   // eq 12 takes the apparent climb from it as well: measured 0.076 m
-  EXPECT_NEAR((run(half, truth).p_WG_m.head<2>() - 0.5 * truth.p_WG_m.back().head<2>()).norm(), 0.0, 0.1);
+  EXPECT_NEAR((rolled(half, truth).p_WG_m.head<2>() - 0.5 * truth.p_WG_m.back().head<2>()).norm(), 0.0, 0.1);
 }
 
 /// With the integral at its limit the fused step is a fixed multiple of the rolling step: what the published figures
@@ -161,7 +147,7 @@ TEST(AutogainFusion, MountingDoesNotMatterWithTheNormBasedFactor) {
   AutogainFusion::Params smooth;
   smooth.autogain.profile = AutogainProfile::smooth;
   const auto difference = [&](const AutogainFusion::Params& params) {
-    return (run(AutogainFusion(params), truth).p_WG_m - run(AutogainFusion(params), turned).p_WG_m).norm();
+    return (rolled(AutogainFusion(params), truth).p_WG_m - rolled(AutogainFusion(params), turned).p_WG_m).norm();
   };
   EXPECT_NEAR(difference(smooth), 0.0, 1e-9);
   EXPECT_GT(difference({}), 1e-3) << "the paper's factor depends on the mounting";
@@ -174,12 +160,12 @@ TEST(AutogainFusion, EachSwitchChangesTheResult) {
                                             },
                                             .contact_velocity_m_s = no_slip,
                                             .q_start = so3::exp({0.3, 0.2, 0.1})});
-  const Eigen::Vector3d printed = run(AutogainFusion({}), truth).p_WG_m;
+  const Eigen::Vector3d printed = rolled(AutogainFusion({}), truth).p_WG_m;
   const AutogainFusion::Params switched[] = {{.integrate_in_body = false}, {.direction_only = true},
                                              {.recursive_coupling = true}, {.limit_per_axis = false},
                                              {.shrink_per_axis = false},   {.vertical_by_norm = true}};
   for (const AutogainFusion::Params& params : switched) {
-    EXPECT_GT((run(AutogainFusion(params), truth).p_WG_m - printed).norm(), 1e-6);
+    EXPECT_GT((rolled(AutogainFusion(params), truth).p_WG_m - printed).norm(), 1e-6);
   }
 }
 

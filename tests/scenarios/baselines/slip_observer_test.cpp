@@ -9,6 +9,7 @@
 
 #include "estimator/rolling/rolling_truth.hpp"
 #include "scenarios/baselines/rolling/rolling_odometry.hpp"
+#include "tests/scenarios/baselines/rolled.hpp"
 
 namespace tumble::baselines {
 namespace {
@@ -35,16 +36,8 @@ RollingTruth truth_with(const std::function<Eigen::Vector3d(double)>& contact) {
   return testing::roll({.velocity_m_s = l_shape, .contact_velocity_m_s = contact, .period_ns = k125Hz_ns});
 }
 
-SlipObserver::State run(const SlipObserver& observer, const RollingTruth& truth, std::size_t from, std::size_t to,
-                        SlipObserver::State state = {}) {
-  for (std::size_t k = from; k < to; ++k) {
-    EXPECT_TRUE(observer.step(truth.samples[k], truth.q_WI[k], state).ok()) << k;
-  }
-  return state;
-}
-
 double end_error(const RollingTruth& truth) {
-  const SlipObserver::State end = run(SlipObserver({}), truth, 0, truth.samples.size());
+  const SlipObserver::State end = rolled(SlipObserver({}), truth);
   return (end.p_WG_m - truth.p_WG_m.back().head<2>()).norm();
 }
 
@@ -99,18 +92,18 @@ TEST(SlipObserver, SplitRunsEqual) {
   const RollingTruth truth = truth_with(pulse(2.8, 0.8, -0.6));
   const SlipObserver observer({});
   const std::size_t count = truth.samples.size();
-  const SlipObserver::State whole = run(observer, truth, 0, count);
+  const SlipObserver::State whole = rolled(observer, truth, 0, count);
   for (const std::size_t cut : {std::size_t{1}, std::size_t{8}, std::size_t{370}, count - 1}) {
-    const SlipObserver::State carried = run(observer, truth, 0, cut);
+    const SlipObserver::State carried = rolled(observer, truth, 0, cut);
     EXPECT_FALSE(carried == whole);
-    EXPECT_TRUE(run(observer, truth, cut, count, carried) == whole) << cut;
+    EXPECT_TRUE(rolled(observer, truth, cut, count, carried) == whole) << cut;
   }
 }
 
 TEST(SlipObserver, RefusesBadInputAndParams) {
   const RollingTruth truth = truth_with(no_slip);
   const SlipObserver observer({});
-  const SlipObserver::State before = run(observer, truth, 0, 300);
+  const SlipObserver::State before = rolled(observer, truth, 0, 300);
   SlipObserver::State state = before;
   ImuSample bad = truth.samples[300];
   bad.specific_force_m_s2.x() = std::numeric_limits<double>::quiet_NaN();

@@ -10,7 +10,7 @@ namespace tumble::testing {
 
 namespace {
 
-constexpr double kGravity_m_s2 = 9.80665;
+constexpr double kOneG_m_s2 = 9.80665;
 
 std::vector<std::string> split(const std::string& line) {
   std::vector<std::string> cells;
@@ -56,7 +56,7 @@ SphereLog read_sphere_log(const std::string& path) {
     ImuSample sample;
     sample.time_ns = parse_stamp(cells[stamp]) - start_ns;
     sample.angular_velocity_rad_s = {number(w[0]), number(w[1]), number(w[2])};
-    sample.specific_force_m_s2 = kGravity_m_s2 * Eigen::Vector3d(number(f[0]), number(f[1]), number(f[2]));
+    sample.specific_force_m_s2 = kOneG_m_s2 * Eigen::Vector3d(number(f[0]), number(f[1]), number(f[2]));
     log.samples.push_back(sample);
     log.q_WI.push_back(Eigen::Quaterniond(number(q[0]), number(q[1]), number(q[2]), number(q[3])).normalized());
   }

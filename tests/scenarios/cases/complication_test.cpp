@@ -8,24 +8,20 @@
 #include <set>
 
 #include "scenarios/draw/fixed_scenario.hpp"
-#include "tests/tree.hpp"
+#include "tests/scenarios/tree_data.hpp"
 
 namespace tumble::scenarios {
 namespace {
 
-DataRoot data() {
-  return DataRoot{test::source_dir()};
-}
-
 Scenario fixed(const std::string& name) {
-  const Scenario scenario = load_scenario(data(), name);
-  return fixed_as(scenario, draw(data(), scenario, 1));
+  const Scenario scenario = load_scenario(tree_data(), name);
+  return fixed_as(scenario, draw(tree_data(), scenario, 1));
 }
 
 /// Of every scenario: each can be taken away by itself, what is left can be drawn, and nothing is left to take of it.
 TEST(Complications, EachGoesAndTheDrawStays) {
   const std::set<std::string> one_of_a_robot = {"hill_consumer", "slip", "swing"};  // all are many seconds
-  for (const std::string& name : scenario_names(data())) {
+  for (const std::string& name : scenario_names(tree_data())) {
     const Scenario scenario = fixed(name);
     const std::vector<Complication> all = complications(scenario);
     EXPECT_GT(all.size(), 5u) << name;
@@ -36,7 +32,7 @@ TEST(Complications, EachGoesAndTheDrawStays) {
       Scenario without = scenario;
       take_away(each, without);
       if (one_of_a_robot.contains(name)) {
-        EXPECT_NO_THROW(draw(data(), without, 1)) << name << ", " << each.name;
+        EXPECT_NO_THROW(draw(tree_data(), without, 1)) << name << ", " << each.name;
       }
       const std::vector<Complication> left = complications(without);
       EXPECT_EQ(left.size(), all.size() - 1) << name << ", " << each.name;
@@ -44,7 +40,7 @@ TEST(Complications, EachGoesAndTheDrawStays) {
       take_away(each, simple);
     }
     EXPECT_THAT(complications(simple), testing::IsEmpty()) << name;
-    EXPECT_NO_THROW(draw(data(), simple, 1)) << name;
+    EXPECT_NO_THROW(draw(tree_data(), simple, 1)) << name;
   }
 }
 

@@ -16,7 +16,7 @@ using ::testing::IsEmpty;
 
 constexpr const char* kMetric = "translation_error_end_m";
 
-Outcome outcome(OutcomeStatus status, double error_m, bool map_failed) {
+Outcome slam_outcome(OutcomeStatus status, double error_m, bool map_failed) {
   Outcome out;
   out.kind = Kind::slam;
   out.method = "tumble";
@@ -41,36 +41,36 @@ std::string fault(const Expectation& expected, const Outcome& of) {
 
 TEST(HoldCase, WhatHoldsHasToHold) {
   const Expectation holds = expects(false, 0.1);
-  EXPECT_THAT(fault(holds, outcome(OutcomeStatus::ok, 0.1, false)), IsEmpty());
-  EXPECT_THAT(fault(holds, outcome(OutcomeStatus::ok, 9.0, false)), IsEmpty()) << "no bound was asked for";
-  EXPECT_THAT(fault(holds, outcome(OutcomeStatus::ok, 0.1, true)), HasSubstr("fails: ok"));
-  EXPECT_THAT(fault(holds, outcome(OutcomeStatus::diverged, 0.1, false)), HasSubstr("fails: diverged"));
+  EXPECT_THAT(fault(holds, slam_outcome(OutcomeStatus::ok, 0.1, false)), IsEmpty());
+  EXPECT_THAT(fault(holds, slam_outcome(OutcomeStatus::ok, 9.0, false)), IsEmpty()) << "no bound was asked for";
+  EXPECT_THAT(fault(holds, slam_outcome(OutcomeStatus::ok, 0.1, true)), HasSubstr("fails: ok"));
+  EXPECT_THAT(fault(holds, slam_outcome(OutcomeStatus::diverged, 0.1, false)), HasSubstr("fails: diverged"));
   Expectation bounded = holds;
   bounded.worse_than = 1.0;
-  EXPECT_THAT(fault(bounded, outcome(OutcomeStatus::ok, 0.9, false)), IsEmpty());
-  EXPECT_THAT(fault(bounded, outcome(OutcomeStatus::ok, 1.1, false)), HasSubstr("1.1"));
+  EXPECT_THAT(fault(bounded, slam_outcome(OutcomeStatus::ok, 0.9, false)), IsEmpty());
+  EXPECT_THAT(fault(bounded, slam_outcome(OutcomeStatus::ok, 1.1, false)), HasSubstr("1.1"));
 }
 
 TEST(HoldCase, WhatFailsIsHeldOnBothSides) {
   const Expectation fails = expects(true, 2.0);
-  EXPECT_THAT(fault(fails, outcome(OutcomeStatus::ok, 2.0, true)), IsEmpty());
-  EXPECT_THAT(fault(fails, outcome(OutcomeStatus::ok, 3.9, true)), IsEmpty());
-  EXPECT_THAT(fault(fails, outcome(OutcomeStatus::ok, 1.1, true)), IsEmpty());
-  EXPECT_THAT(fault(fails, outcome(OutcomeStatus::ok, 4.1, true)), HasSubstr("is 4.1, was 2"));
-  EXPECT_THAT(fault(fails, outcome(OutcomeStatus::diverged, 2.0, true)), HasSubstr("fails by diverged, was ok"));
-  const CaseResult better = hold_case("name", fails, outcome(OutcomeStatus::ok, 0.9, true));
+  EXPECT_THAT(fault(fails, slam_outcome(OutcomeStatus::ok, 2.0, true)), IsEmpty());
+  EXPECT_THAT(fault(fails, slam_outcome(OutcomeStatus::ok, 3.9, true)), IsEmpty());
+  EXPECT_THAT(fault(fails, slam_outcome(OutcomeStatus::ok, 1.1, true)), IsEmpty());
+  EXPECT_THAT(fault(fails, slam_outcome(OutcomeStatus::ok, 4.1, true)), HasSubstr("is 4.1, was 2"));
+  EXPECT_THAT(fault(fails, slam_outcome(OutcomeStatus::diverged, 2.0, true)), HasSubstr("fails by diverged, was ok"));
+  const CaseResult better = hold_case("name", fails, slam_outcome(OutcomeStatus::ok, 0.9, true));
   EXPECT_TRUE(better.better);
   EXPECT_THAT(better.fault, HasSubstr("better"));
-  const CaseResult cured = hold_case("name", fails, outcome(OutcomeStatus::ok, 1.9, false));
+  const CaseResult cured = hold_case("name", fails, slam_outcome(OutcomeStatus::ok, 1.9, false));
   EXPECT_TRUE(cured.better);
   EXPECT_THAT(cured.fault, HasSubstr("cured"));
   const double infinite = std::numeric_limits<double>::infinity();
-  EXPECT_THAT(fault(fails, outcome(OutcomeStatus::ok, infinite, true)), HasSubstr("has no value now"));
+  EXPECT_THAT(fault(fails, slam_outcome(OutcomeStatus::ok, infinite, true)), HasSubstr("has no value now"));
 }
 
 TEST(HoldCase, WhatIsAcceptedIsHeldAsItWas) {
   for (const bool map_failed : {false, true}) {
-    const Outcome now = outcome(OutcomeStatus::ok, 0.3, map_failed);
+    const Outcome now = slam_outcome(OutcomeStatus::ok, 0.3, map_failed);
     for (const bool before : {false, true}) {
       const Expectation taken = accepted(expects(before, 7.0), now);
       EXPECT_EQ(taken.fails, map_failed);
@@ -84,9 +84,9 @@ TEST(HoldCase, AShrunkDrawBecomesACaseThatStillFails) {
   Shrunk shrunk;
   shrunk.scenario.name = "cliff";
   shrunk.failure = "map_failed";
-  shrunk.drawn = outcome(OutcomeStatus::ok, 2.5, true);
+  shrunk.drawn = slam_outcome(OutcomeStatus::ok, 2.5, true);
   shrunk.drawn.seed = 77;
-  shrunk.left = outcome(OutcomeStatus::ok, 1.5, true);
+  shrunk.left = slam_outcome(OutcomeStatus::ok, 1.5, true);
   shrunk.lines = {{"duration_s", Fate::smaller, 9.0, 4.0},
                   {"world: rocks", Fate::removed, 30.0, {}},
                   {"world: bumps", Fate::needed, {}, {}},
@@ -102,7 +102,7 @@ TEST(HoldCase, AShrunkDrawBecomesACaseThatStillFails) {
   EXPECT_EQ(expected.drawn, 2.5);
   EXPECT_EQ(expected.value, 1.5);
   EXPECT_THAT(fault(expected, shrunk.left), IsEmpty());
-  EXPECT_THAT(fault(expected, outcome(OutcomeStatus::ok, 1.5, false)), HasSubstr("cured"));
+  EXPECT_THAT(fault(expected, slam_outcome(OutcomeStatus::ok, 1.5, false)), HasSubstr("cured"));
 }
 
 TEST(HoldCase, UnknownMethodsMetricsAndStatusesAreRefused) {

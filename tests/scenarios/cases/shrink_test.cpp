@@ -7,7 +7,7 @@
 #include "scenarios/draw/fixed_number.hpp"
 #include "scenarios/draw/fixed_scenario.hpp"
 #include "scenarios/errors.hpp"
-#include "tests/tree.hpp"
+#include "tests/scenarios/tree_data.hpp"
 
 namespace tumble::scenarios {
 namespace {
@@ -18,13 +18,9 @@ using ::testing::HasSubstr;
 constexpr std::uint64_t kSeed = 5;
 constexpr double kDrawn_s = 6.0, kShortest_s = 3.1;
 
-DataRoot data() {
-  return DataRoot{test::source_dir()};
-}
-
 /// The beginning of a pendulum's swing, whose IMU loses samples: the cheapest of all draws.
 Scenario losing_samples() {
-  Scenario scenario = load_scenario(data(), "swing");
+  Scenario scenario = load_scenario(tree_data(), "swing");
   fix_number(scenario, "duration_s", kDrawn_s);
   fix_number(scenario, "sensors.imu.dropout_share", 0.2);
   return scenario;
@@ -63,7 +59,7 @@ std::vector<std::string> names_with(const Shrunk& shrunk, Fate fate) {
 
 TEST(Shrink, FindsTheKnownCauseOfAToyExactly) {
   const Method toy = breaks_on(true, true);
-  const Shrunk shrunk = shrink(data(), losing_samples(), kSeed, toy, {});
+  const Shrunk shrunk = shrink(tree_data(), losing_samples(), kSeed, toy, {});
   EXPECT_TRUE(shrunk.complete);
   EXPECT_EQ(shrunk.failure, "failed");
   EXPECT_THAT(names_with(shrunk, Fate::needed), ElementsAre("sensors.imu: rail of the gyro"));
@@ -87,7 +83,7 @@ TEST(Shrink, FindsTheKnownCauseOfAToyExactly) {
   // what is left fails by itself
   ShrinkOptions once;
   once.budget = 1;
-  EXPECT_EQ(shrink(data(), shrunk.scenario, kSeed, toy, once).drawn.status, OutcomeStatus::failed);
+  EXPECT_EQ(shrink(tree_data(), shrunk.scenario, kSeed, toy, once).drawn.status, OutcomeStatus::failed);
 }
 
 TEST(Shrink, TwiceIsTheSame) {
@@ -95,9 +91,9 @@ TEST(Shrink, TwiceIsTheSame) {
   std::vector<std::string> first, second;
   ShrinkOptions options;
   options.on_trial = [&](const ShrinkTrial& trial) { first.push_back(trial.what + (trial.kept ? "+" : "-")); };
-  const Shrunk once = shrink(data(), losing_samples(), kSeed, toy, options);
+  const Shrunk once = shrink(tree_data(), losing_samples(), kSeed, toy, options);
   options.on_trial = [&](const ShrinkTrial& trial) { second.push_back(trial.what + (trial.kept ? "+" : "-")); };
-  const Shrunk again = shrink(data(), losing_samples(), kSeed, toy, options);
+  const Shrunk again = shrink(tree_data(), losing_samples(), kSeed, toy, options);
   EXPECT_EQ(first, second);
   EXPECT_EQ(static_cast<int>(first.size()), once.runs);
   EXPECT_EQ(to_yaml(once.scenario), to_yaml(again.scenario));
@@ -111,7 +107,7 @@ TEST(Shrink, ADrawThatDoesNotFailIsRefused) {
   int runs = 0;
   ShrinkOptions options;
   options.on_trial = [&](const ShrinkTrial&) { ++runs; };
-  EXPECT_THROW(shrink(data(), scenario, kSeed, breaks_on(true, false), options), BadInput);
+  EXPECT_THROW(shrink(tree_data(), scenario, kSeed, breaks_on(true, false), options), BadInput);
   EXPECT_EQ(runs, 0);
 }
 
@@ -120,7 +116,7 @@ TEST(Shrink, WhatTheControlCannotDoEitherIsNotKept) {
   const Method toy = breaks_on(false, false);
   ShrinkOptions options;
   options.budget = 40;
-  const Shrunk alone = shrink(data(), losing_samples(), kSeed, toy, options);
+  const Shrunk alone = shrink(tree_data(), losing_samples(), kSeed, toy, options);
   EXPECT_THAT(names_with(alone, Fate::needed), ElementsAre());
   EXPECT_FALSE(alone.controlled);
 
@@ -131,7 +127,7 @@ TEST(Shrink, WhatTheControlCannotDoEitherIsNotKept) {
     return run(sensors, values, oracle);
   };
   options.control = unowned(control);
-  const Shrunk held = shrink(data(), losing_samples(), kSeed, toy, options);
+  const Shrunk held = shrink(tree_data(), losing_samples(), kSeed, toy, options);
   EXPECT_TRUE(held.controlled);
   EXPECT_THAT(names_with(held, Fate::needed), ElementsAre("sensors.imu: rail of the gyro"));
 }
@@ -139,17 +135,17 @@ TEST(Shrink, WhatTheControlCannotDoEitherIsNotKept) {
 TEST(Shrink, ASpentBudgetSaysWhatWasNotTried) {
   ShrinkOptions options;
   options.budget = 8;
-  const Shrunk shrunk = shrink(data(), losing_samples(), kSeed, breaks_on(true, true), options);
+  const Shrunk shrunk = shrink(tree_data(), losing_samples(), kSeed, breaks_on(true, true), options);
   EXPECT_EQ(shrunk.runs, 8);
   EXPECT_FALSE(shrunk.complete);
   EXPECT_FALSE(names_with(shrunk, Fate::not_tried).empty());
 }
 
 TEST(Shrink, MethodsThatDoNotApplyAreRefused) {
-  EXPECT_THROW(shrink(data(), losing_samples(), kSeed, *find_methods("position/rolling").front(), {}), BadInput);
+  EXPECT_THROW(shrink(tree_data(), losing_samples(), kSeed, *find_methods("position/rolling").front(), {}), BadInput);
   ShrinkOptions options;
   options.control = find_methods("slam/oracle").front();
-  EXPECT_THROW(shrink(data(), losing_samples(), kSeed, breaks_on(true, true), options), BadInput);
+  EXPECT_THROW(shrink(tree_data(), losing_samples(), kSeed, breaks_on(true, true), options), BadInput);
 }
 
 }  // namespace

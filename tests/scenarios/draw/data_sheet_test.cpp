@@ -16,14 +16,11 @@ namespace {
 
 using fixture::kSheet;
 using fixture::with;
+using fixture::Wrong;
 using testing::ElementsAre;
 using testing::HasSubstr;
 using testing::IsSupersetOf;
 using testing::StartsWith;
-
-std::string complaint_of(const std::string& text) {
-  return fixture::complaint([&] { parse_data_sheet(text, "mti30.yaml", fixture::registry()); });
-}
 
 TEST(DataSheet, ReadsValuesWithUnitAndSource) {
   const DataSheet sheet = parse_data_sheet(kSheet, "mti30.yaml", fixture::registry());
@@ -38,18 +35,12 @@ TEST(DataSheet, ReadsValuesWithUnitAndSource) {
   EXPECT_EQ(sheet.values().at("output_rate_hz"), 400.0);
 }
 
-struct Wrong {
-  const char* from;
-  const char* to;
-  const char* where;
-  const char* what;
-};
-
 class WrongSheet : public testing::TestWithParam<Wrong> {};
 
 TEST_P(WrongSheet, IsRefusedWithFileLineAndReason) {
   const Wrong& wrong = GetParam();
-  const std::string message = complaint_of(with(kSheet, wrong.from, wrong.to));
+  const std::string message = fixture::complaint(
+      [&] { parse_data_sheet(with(kSheet, wrong.from, wrong.to), "mti30.yaml", fixture::registry()); });
   EXPECT_THAT(message, StartsWith(wrong.where));
   EXPECT_THAT(message, HasSubstr(wrong.what));
 }

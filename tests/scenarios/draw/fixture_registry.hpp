@@ -55,6 +55,14 @@ inline std::string with(std::string text, const std::string& from, const std::st
   return text.replace(at, from.size(), to);
 }
 
+/// A text with a mistake, and what is said of it.
+struct Wrong {
+  const char* from;
+  const char* to;
+  const char* where;  ///< how the message begins
+  const char* what;   ///< what it holds
+};
+
 /// Message of the BadInput that `call` throws; empty when it throws none.
 template <class Call>
 std::string complaint(Call&& call) {

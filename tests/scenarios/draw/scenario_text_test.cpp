@@ -11,6 +11,7 @@ namespace {
 
 using fixture::kScenario;
 using fixture::with;
+using fixture::Wrong;
 using Shape = Distribution::Shape;
 using testing::HasSubstr;
 using testing::StartsWith;
@@ -36,13 +37,6 @@ TEST(ScenarioText, ReadsEveryPart) {
   EXPECT_EQ(scenario.sensors[1].site, "vn100");
   EXPECT_EQ(scenario.sensors[1].line, 11);
 }
-
-struct Wrong {
-  const char* from;
-  const char* to;
-  const char* where;  ///< how the message begins
-  const char* what;   ///< what it holds
-};
 
 class WrongScenario : public testing::TestWithParam<Wrong> {};
 

@@ -14,7 +14,7 @@
 namespace tumble::scenarios {
 namespace {
 
-Estimate run(const std::string& method, const sim::Recording& recording) {
+Estimate estimated_rates(const std::string& method, const sim::Recording& recording) {
   Estimate estimate = find_methods("rate/" + method).front()->run(recording.sensors, {}, {&recording.truth});
   EXPECT_TRUE(estimate.status.ok()) << estimate.status.message();
   EXPECT_EQ(estimate.rates.size(), recording.sensors.imus.front().time_ns.size());
@@ -23,7 +23,7 @@ Estimate run(const std::string& method, const sim::Recording& recording) {
 
 double clipped_median(const std::string& method, const sim::Recording& recording) {
   const ScoringInput input{&recording.sensors, &recording.truth, nullptr};
-  for (const Score& score : score(Kind::rate, run(method, recording), input)) {
+  for (const Score& score : score(Kind::rate, estimated_rates(method, recording), input)) {
     if (score.metric == "rate_error_clipped_median_rad_s") return score.value;
   }
   ADD_FAILURE() << "no score";
@@ -31,7 +31,7 @@ double clipped_median(const std::string& method, const sim::Recording& recording
 }
 
 // a second IMU of the same kind elsewhere on the body, turned, half a period late
-void add_imu(const std::string& name, const Eigen::Vector3d& p_B_m, bool with_gyro, sim::Recording& recording) {
+void add_second_imu(const std::string& name, const Eigen::Vector3d& p_B_m, bool with_gyro, sim::Recording& recording) {
   const testing::SyntheticMotion motion;
   sim::ImuRecord record = recording.sensors.imus.front();
   sim::ImuTruth truth = recording.truth.imus.front();
@@ -57,18 +57,18 @@ void add_imu(const std::string& name, const Eigen::Vector3d& p_B_m, bool with_gy
 TEST(RateRecording, FurtherImusAreUsedAndTheReferenceIsNot) {
   const sim::Recording alone = testing::synthetic_rig();
   sim::Recording reference = alone, gyro = alone, accelerometers = alone;
-  add_imu("imu_reference", {0.2, 0.1, -0.1}, true, reference);
-  add_imu("imu_2", {0.2, 0.1, -0.1}, true, gyro);
-  add_imu("imu_2", {0.2, 0.1, -0.1}, false, accelerometers);
-  add_imu("imu_3", {-0.1, 0.2, 0.15}, false, accelerometers);
+  add_second_imu("imu_reference", {0.2, 0.1, -0.1}, true, reference);
+  add_second_imu("imu_2", {0.2, 0.1, -0.1}, true, gyro);
+  add_second_imu("imu_2", {0.2, 0.1, -0.1}, false, accelerometers);
+  add_second_imu("imu_3", {-0.1, 0.2, 0.15}, false, accelerometers);
   for (const std::string method : {"tumble", "tumble_lag"}) {
     const double one = clipped_median(method, alone);
     EXPECT_EQ(clipped_median(method, reference), one) << method;
     EXPECT_LT(clipped_median(method, gyro), 0.1 * one) << method;
     EXPECT_LT(clipped_median(method, accelerometers), 0.25 * one) << method;
   }
-  EXPECT_EQ(run("tumble", reference).health.at("imus"), 1.0);
-  EXPECT_EQ(run("tumble", accelerometers).health.at("imus"), 3.0);
+  EXPECT_EQ(estimated_rates("tumble", reference).health.at("imus"), 1.0);
+  EXPECT_EQ(estimated_rates("tumble", accelerometers).health.at("imus"), 3.0);
 }
 
 // a rail that shivers: no plateau and no stated range, the flags alone tell
@@ -90,7 +90,7 @@ TEST(RateRecording, FlagsOfTheDeviceAreBelieved) {
   sim::Recording unflagged = recording;
   for (std::uint8_t& flags : unflagged.sensors.imus.front().clip_flags) flags = 0;
   for (const std::string method : {"tumble", "tumble_lag"}) {
-    const Estimate with = run(method, recording), without = run(method, unflagged);
+    const Estimate with = estimated_rates(method, recording), without = estimated_rates(method, unflagged);
     std::size_t told = 0, guessed = 0;
     for (std::size_t k = 0; k < with.rates.size(); ++k) {
       if (imu.clip_flags[k] == 0) continue;
@@ -104,11 +104,11 @@ TEST(RateRecording, FlagsOfTheDeviceAreBelieved) {
 
 TEST(RateRecording, AStatedRangeThatTheDataContradictIsTold) {
   sim::Recording recording = testing::synthetic_rig();
-  EXPECT_EQ(run("tumble", recording).health.at("rails_disagreeing"), 0.0);
+  EXPECT_EQ(estimated_rates("tumble", recording).health.at("rails_disagreeing"), 0.0);
   const double right = clipped_median("tumble", recording);
   for (const double stated : {7.854, 14.0}) {
     recording.sensors.imus.front().stated_gyro_range_rad_s = stated;
-    const Estimate estimate = run("tumble", recording);
+    const Estimate estimate = estimated_rates("tumble", recording);
     EXPECT_GE(estimate.health.at("rails_disagreeing"), 1.0) << stated;
     EXPECT_EQ(estimate.health.at("learnt_gyro_rail_y_rad_s"), 10.5) << stated;
     EXPECT_EQ(clipped_median("tumble", recording), right) << stated;  // the plateau counts
@@ -117,7 +117,7 @@ TEST(RateRecording, AStatedRangeThatTheDataContradictIsTold) {
 
 TEST(RateRecording, UnitsThatLookWrongAreTold) {
   sim::Recording recording = testing::synthetic_rig();
-  const Estimate right = run("tumble", recording);
+  const Estimate right = estimated_rates("tumble", recording);
   EXPECT_EQ(right.health.at("rate_unit_suspect"), 0.0);
   EXPECT_EQ(right.health.at("force_unit_suspect"), 0.0);
   sim::Recording degrees = recording, in_g = recording;
@@ -126,8 +126,8 @@ TEST(RateRecording, UnitsThatLookWrongAreTold) {
   const Status refused = find_methods("rate/tumble").front()->run(degrees.sensors, {}, {&degrees.truth}).status;
   EXPECT_FALSE(refused.ok()) << "beyond twice the range that is stated";
   degrees.sensors.imus.front().stated_gyro_range_rad_s = 0.0;
-  EXPECT_EQ(run("tumble", degrees).health.at("rate_unit_suspect"), 1.0);
-  EXPECT_EQ(run("tumble", in_g).health.at("force_unit_suspect"), 1.0);
+  EXPECT_EQ(estimated_rates("tumble", degrees).health.at("rate_unit_suspect"), 1.0);
+  EXPECT_EQ(estimated_rates("tumble", in_g).health.at("force_unit_suspect"), 1.0);
 }
 
 // a fall about the centre of mass of which an accelerometer axis clips: stated, it is a bound; taken for a reading it

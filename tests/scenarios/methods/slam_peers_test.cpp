@@ -24,14 +24,14 @@ testing::SyntheticMotion gentle() {
   return motion;
 }
 
-struct Outcome {
+struct PeerOutcome {
   Estimate estimate;
   double end_error_m = 0.0, end_error_rad = 0.0;
 };
 
-Outcome outcome_of(const std::string& name, const sim::Recording& recording) {
+PeerOutcome outcome_of(const std::string& name, const sim::Recording& recording) {
   const Method& method = *find_methods(name).at(0);
-  Outcome out;
+  PeerOutcome out;
   out.estimate = method.run(recording.sensors, {}, {&recording.truth});
   EXPECT_TRUE(out.estimate.status.ok()) << name << ": " << out.estimate.status.message();
   const ScoringInput input{&recording.sensors, &recording.truth, nullptr};
@@ -128,7 +128,7 @@ TEST(ImuCheck, EveryAttitudeMethodSaysThatItsImuFroze) {
 class SlamPeer : public ::testing::TestWithParam<const char*> {};
 
 TEST_P(SlamPeer, EndsWhereAGentleMotionEnds) {
-  const Outcome outcome = outcome_of(GetParam(), testing::synthetic_rig(gentle()));
+  const PeerOutcome outcome = outcome_of(GetParam(), testing::synthetic_rig(gentle()));
   EXPECT_LT(outcome.end_error_m, 0.05);
   EXPECT_LT(outcome.end_error_rad, 0.02);
 }
@@ -140,7 +140,7 @@ class SlamPeerWithGyro : public SlamPeer {};
 TEST_P(SlamPeerWithGyro, EndsElsewhereWhereItClips) {
   testing::SyntheticMotion wild;
   wild.angle_rad = 40.0;  // 25 rad/s
-  const Outcome outcome = outcome_of(GetParam(), testing::synthetic_rig(wild));
+  const PeerOutcome outcome = outcome_of(GetParam(), testing::synthetic_rig(wild));
   EXPECT_GT(std::max(outcome.end_error_m, outcome.end_error_rad), 0.1);
 }
 
@@ -167,7 +167,7 @@ TEST(HealthSwitch, AGyroBeyondItsStatedRangeIsNotSick) {
   swift.rail_rad_s = 100.0;
   sim::Recording recording = testing::synthetic_rig(swift);
   recording.sensors.imus.front().stated_gyro_range_rad_s = 5.0;
-  const Outcome outcome = outcome_of("slam/health_switch", recording);
+  const PeerOutcome outcome = outcome_of("slam/health_switch", recording);
   EXPECT_EQ(outcome.estimate.health.at("sweeps_gyro_sick"), 0.0);
   EXPECT_LT(outcome.end_error_m, 0.1);
   // negative control: where it clips it is
@@ -176,9 +176,9 @@ TEST(HealthSwitch, AGyroBeyondItsStatedRangeIsNotSick) {
 
 TEST(ConstantVelocity, NeedsNoImu) {
   sim::Recording recording = testing::synthetic_rig(gentle());
-  const Outcome with = outcome_of("slam/constant_velocity", recording);
+  const PeerOutcome with = outcome_of("slam/constant_velocity", recording);
   recording.sensors.imus.clear();
-  const Outcome without = outcome_of("slam/constant_velocity", recording);
+  const PeerOutcome without = outcome_of("slam/constant_velocity", recording);
   EXPECT_EQ(without.estimate.sweeps.size(), 60u);
   EXPECT_GT(without.estimate.poses.size(), 500u);
   EXPECT_LT(without.end_error_m, 0.05);
@@ -200,7 +200,7 @@ TEST(ConstantVelocity, NeedsNoTimesOfThePointsWhereTheRecordingSaysSo) {
   EXPECT_FALSE(refused.status.ok());
   for (const sim::PointTimes times : {sim::PointTimes::not_skewed, sim::PointTimes::unknown}) {
     lidar.point_times = times;
-    const Outcome outcome = outcome_of("slam/constant_velocity", recording);
+    const PeerOutcome outcome = outcome_of("slam/constant_velocity", recording);
     EXPECT_EQ(outcome.estimate.sweeps.size(), 60u);
     // without a prior a sweep creeps where its rings lie on those of the map; measured 0.04
     EXPECT_LT(outcome.end_error_m, 0.06);

@@ -24,7 +24,7 @@ struct Said {
   double localised = std::nan(""), ate_m = std::nan(""), nees = std::nan("");
 };
 
-Said run(const Method& method, const SimulatedDraw& draw, const std::string& wrong) {
+Said said_of(const Method& method, const SimulatedDraw& draw, const std::string& wrong) {
   SimulatedDraw given = draw;
   testing::wrong_inputs().at(wrong)(given.recording.sensors);
   Outcome outcome;
@@ -46,13 +46,13 @@ TEST(Verdicts, SlamFindsAWrongCalibrationAndSaysWhenSensorsContradictEachOther) 
   const Method& method = *find_methods("slam/tumble").at(0);
   // clocks 20 ms apart, a mounting off by 3 deg and 3 cm: twice what the priors believe
   for (const char* wrong : {"none", "lidar_20_ms", "mounting_2_deg"}) {
-    const Said good = run(method, draw, wrong);
+    const Said good = said_of(method, draw, wrong);
     EXPECT_EQ(good.localised, 1.0) << wrong;
     EXPECT_LT(good.ate_m, 0.06) << wrong;
     EXPECT_LT(good.nees, 3.0) << wrong;
   }
   for (const char* wrong : {"accel_flipped", "gyro_x_y_swapped", "lidar_ranges_long"}) {
-    const Said bad = run(method, draw, wrong);
+    const Said bad = said_of(method, draw, wrong);
     EXPECT_TRUE(bad.status != OutcomeStatus::ok || bad.localised == 0.0) << wrong;
     EXPECT_FALSE(bad.ate_m < 0.2) << wrong;  // or nothing was wrong
   }
@@ -63,8 +63,8 @@ TEST(Verdicts, SlamThatLagsFindsALidarOfAnotherScale) {
   const DataRoot data{test::source_dir()};
   const SimulatedDraw draw = simulate_draw(data, load_scenario(data, "hill"), 62022, 1);
   const Method& method = *find_methods("slam/tumble_lag").at(0);
-  EXPECT_EQ(run(method, draw, "none").localised, 1.0);
-  EXPECT_EQ(run(method, draw, "lidar_ranges_long").localised, 0.0);
+  EXPECT_EQ(said_of(method, draw, "none").localised, 1.0);
+  EXPECT_EQ(said_of(method, draw, "lidar_ranges_long").localised, 0.0);
 }
 
 // A mounting that is 10 deg off is learnt in part: 0.7 m off at the end, and told by how far it was moved.
@@ -72,8 +72,8 @@ TEST(Verdicts, SlamLiveTellsAMountingThatMovedBeyondWhatWasGiven) {
   const DataRoot data{test::source_dir()};
   const SimulatedDraw draw = simulate_draw(data, load_scenario(data, "throw"), 87201, 1);
   const Method& method = *find_methods("slam/tumble_live").at(0);
-  EXPECT_EQ(run(method, draw, "none").localised, 1.0);
-  const Said moved = run(method, draw, "mounting_10_deg");
+  EXPECT_EQ(said_of(method, draw, "none").localised, 1.0);
+  const Said moved = said_of(method, draw, "mounting_10_deg");
   EXPECT_EQ(moved.localised, 0.0);
   EXPECT_GT(moved.ate_m, 0.3) << "nothing was wrong";
 }

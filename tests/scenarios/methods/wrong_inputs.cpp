@@ -10,7 +10,7 @@ namespace tumble::scenarios::testing {
 
 namespace {
 
-constexpr double kDegree = 57.29577951308232, kGravity = 9.80665;
+constexpr double kDegree = 57.29577951308232, kOneG_m_s2 = 9.80665;
 
 void each_reading(sim::Sensors& sensors, const std::function<void(Eigen::Vector3d&, Eigen::Vector3d&)>& change) {
   for (sim::ImuRecord& imu : sensors.imus) {
@@ -109,7 +109,7 @@ const std::map<std::string, std::function<void(sim::Sensors&)>>& wrong_inputs() 
   using Vector = Eigen::Vector3d;
   static const std::map<std::string, std::function<void(sim::Sensors&)>> all = {
       {"none", [](sim::Sensors&) {}},
-      {"accel_in_g", [](sim::Sensors& s) { each_reading(s, [](Vector&, Vector& f) { f /= kGravity; }); }},
+      {"accel_in_g", [](sim::Sensors& s) { each_reading(s, [](Vector&, Vector& f) { f /= kOneG_m_s2; }); }},
       {"accel_flipped", [](sim::Sensors& s) { each_reading(s, [](Vector&, Vector& f) { f = -f; }); }},
       {"accel_x_y_swapped",
        [](sim::Sensors& s) { each_reading(s, [](Vector&, Vector& f) { std::swap(f.x(), f.y()); }); }},

@@ -85,12 +85,7 @@ TEST_F(Airbrakes, ReadsTheStandIn) {
 /// The published flights, where they are at hand; the suite is there with them alone.
 class AirbrakesPublished : public ::testing::TestWithParam<std::filesystem::path> {};
 
-std::vector<std::filesystem::path> published() {
-  const std::vector<test::DataFolder> folders = test::data_folders("airbrakes");
-  return folders.back().real ? std::vector{folders.back().path} : std::vector<std::filesystem::path>();
-}
-
-INSTANTIATE_TEST_SUITE_P(Flights, AirbrakesPublished, ::testing::ValuesIn(published()));
+INSTANTIATE_TEST_SUITE_P(Flights, AirbrakesPublished, ::testing::ValuesIn(test::published_folders("airbrakes")));
 GTEST_ALLOW_UNINSTANTIATED_PARAMETERIZED_TEST(AirbrakesPublished);
 
 TEST_P(AirbrakesPublished, AreRead) {

@@ -2,6 +2,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "scenarios/recordings/bag_kinds.hpp"
 #include "scenarios/recordings/bags/bag.hpp"
 #include "scenarios/recordings/bags/bag_messages.hpp"
 #include "scenarios/recordings/bags/bag_storage.hpp"
@@ -18,14 +19,8 @@ using testing::Not;
 
 constexpr std::int64_t kOrigin_ns = 1'700'000'000'000'000'000, kMs_ns = 1'000'000;
 
-struct Kind {
-  const char* name;
-  std::unique_ptr<BagWriter> (*writer)(const std::filesystem::path&);
-  Imported (*read)(const std::filesystem::path&, const BagReading&);
-};
-
 /// A bag of an IMU and a lidar whose headers state what each test has them state.
-class Stamps : public fixture::Folder, public testing::WithParamInterface<Kind> {
+class Stamps : public fixture::Folder, public testing::WithParamInterface<fixture::BagKind> {
  protected:
   using HeaderOf = std::int64_t (*)(std::int64_t record_ns);
 
@@ -133,11 +128,8 @@ TEST_P(Stamps, RecordsAreTakenInstead) {
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(Kinds, Stamps,
-                         testing::Values(Kind{"Ros1", make_ros1_writer, import_ros1_bag},
-                                         Kind{"Ros2", make_ros2_writer, import_ros2_bag},
-                                         Kind{"Mcap", make_mcap_writer, import_mcap}),
-                         [](const auto& kind) { return std::string(kind.param.name); });
+INSTANTIATE_TEST_SUITE_P(Kinds, Stamps, testing::Values(fixture::kRos1, fixture::kRos2, fixture::kMcap),
+                         fixture::name_of);
 
 }  // namespace
 }  // namespace tumble::scenarios

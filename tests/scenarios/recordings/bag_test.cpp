@@ -6,6 +6,7 @@
 
 #include <cmath>
 
+#include "scenarios/recordings/bag_kinds.hpp"
 #include "scenarios/recordings/bags/bag_storage.hpp"
 #include "scenarios/recordings/export.hpp"
 #include "scenarios/recordings/fixture_recording.hpp"
@@ -16,14 +17,7 @@ namespace {
 
 using testing::HasSubstr;
 
-/// The two kinds of bags, tested alike.
-struct Kind {
-  const char* name;
-  void (*write)(const sim::Sensors&, const BagWriting&, const std::filesystem::path&);
-  Imported (*read)(const std::filesystem::path&, const BagReading&);
-};
-
-class Bag : public fixture::Folder, public testing::WithParamInterface<Kind> {
+class Bag : public fixture::Folder, public testing::WithParamInterface<fixture::BagKind> {
  protected:
   Bag() {
     for (sim::ImuRecord& imu : recording_.sensors.imus) {
@@ -146,11 +140,9 @@ TEST_P(Bag, ThePrimaryImuIsTheFirstTopicOfItsType) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Kinds, Bag,
-                         testing::Values(Kind{"Ros1", export_ros1_bag, import_ros1_bag},
-                                         Kind{"Ros2", export_ros2_bag, import_ros2_bag},
-                                         Kind{"Mcap", export_mcap, import_mcap},
-                                         Kind{"Ros2Mcap", export_ros2_mcap, import_ros2_bag}),
-                         [](const auto& kind) { return std::string(kind.param.name); });
+                         testing::Values(fixture::kRos1, fixture::kRos2, fixture::kMcap,
+                                         fixture::BagKind{"Ros2Mcap", export_ros2_mcap, import_ros2_bag}),
+                         fixture::name_of);
 
 // messages say rad/s; a driver that writes degrees is noticed where gravity turns slowly
 TEST_P(Bag, RatesInDegreesAreNoticedByGravity) {

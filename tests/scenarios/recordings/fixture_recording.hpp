@@ -169,6 +169,17 @@ std::string complaint(Call&& call) {
   return "";
 }
 
+/// Of a recording that is short: three samples of one IMU.
+inline sim::Sensors small_sensors() {
+  sim::Sensors sensors = recording().sensors;
+  for (std::uint32_t& offset : sensors.lidars[0].offset_ns) offset *= 600;
+  sensors.imus.resize(1);
+  sim::ImuRecord& imu = sensors.imus[0];
+  imu.time_ns.resize(3);
+  for (auto* rows : {&imu.gyro_rad_s, &imu.accel_m_s2}) rows->assign(3, Eigen::Vector3d(0, 0, 9.8));
+  return sensors;
+}
+
 /// The truth of `recording` as it comes back from a file, set aside in `folder`.
 inline StoredTruth stored_truth(const sim::Recording& recording, const std::filesystem::path& folder) {
   const std::filesystem::path file = folder / "with_truth.h5";

@@ -5,6 +5,7 @@
 
 #include <limits>
 
+#include "scenarios/recordings/bag_kinds.hpp"
 #include "scenarios/recordings/bags/bag.hpp"
 #include "scenarios/recordings/bags/bag_messages.hpp"
 #include "scenarios/recordings/bags/bag_storage.hpp"
@@ -17,19 +18,7 @@ namespace {
 using testing::Contains;
 using testing::HasSubstr;
 
-std::unique_ptr<BagReader> open_mcap_file(const std::filesystem::path& file) {
-  return open_mcap({file});
-}
-
-struct Kind {
-  const char* name;
-  void (*write)(const sim::Sensors&, const BagWriting&, const std::filesystem::path&);
-  std::unique_ptr<BagReader> (*open)(const std::filesystem::path&);
-  Imported (*read)(const std::filesystem::path&, const BagReading&);
-  std::unique_ptr<BagWriter> (*make)(const std::filesystem::path&);
-};
-
-class Frames : public fixture::Folder, public testing::WithParamInterface<Kind> {
+class Frames : public fixture::Folder, public testing::WithParamInterface<fixture::BagKind> {
  protected:
   Frames() {
     for (sim::ImuRecord& imu : recording_.sensors.imus) {
@@ -55,12 +44,8 @@ class Frames : public fixture::Folder, public testing::WithParamInterface<Kind> 
   std::filesystem::path path_ = folder_ / "bag";
 };
 
-INSTANTIATE_TEST_SUITE_P(
-    Kinds, Frames,
-    testing::Values(Kind{"Ros1", export_ros1_bag, open_ros1_bag, import_ros1_bag, make_ros1_writer},
-                    Kind{"Ros2", export_ros2_bag, open_ros2_bag, import_ros2_bag, make_ros2_writer},
-                    Kind{"Mcap", export_mcap, open_mcap_file, import_mcap, make_mcap_writer}),
-    [](const auto& kind) { return std::string(kind.param.name); });
+INSTANTIATE_TEST_SUITE_P(Kinds, Frames, testing::Values(fixture::kRos1, fixture::kRos2, fixture::kMcap),
+                         fixture::name_of);
 
 TEST_P(Frames, SensorsHangOnTheBody) {
   GetParam().write(recording_.sensors, {}, path_);
@@ -188,7 +173,8 @@ void write_frames(BagWriter& bag, const std::vector<ros::TransformStamped>& fram
 TEST_P(Frames, AreFollowedThroughOthers) {
   const Eigen::Quaterniond turn(Eigen::AngleAxisd(M_PI / 2, Eigen::Vector3d::UnitZ()));
   // a robot's way: both hang on a mast that hangs on the base
-  write_frames(*GetParam().make(path_), {hung("mast", "base_link", {0, 0, 1}, turn), hung("imu", "mast", {0.5, 0, 0})});
+  write_frames(*GetParam().writer(path_),
+               {hung("mast", "base_link", {0, 0, 1}, turn), hung("imu", "mast", {0.5, 0, 0})});
   const Imported found = GetParam().read(path_, {});
   const Eigen::Isometry3d T_BI = found.sensors.imus.at(0).T_BI;
   EXPECT_TRUE(T_BI.translation().isApprox(Eigen::Vector3d(0, 0.5, 1))) << T_BI.translation();
@@ -197,7 +183,7 @@ TEST_P(Frames, AreFollowedThroughOthers) {
 }
 
 TEST_P(Frames, ThatNobodyTiesToTheBodyPlaceNothing) {
-  write_frames(*GetParam().make(path_), {hung("imu", "mast", {0.5, 0, 0})});
+  write_frames(*GetParam().writer(path_), {hung("imu", "mast", {0.5, 0, 0})});
   const Imported found = GetParam().read(path_, {});
   EXPECT_TRUE(found.sensors.imus.at(0).T_BI.isApprox(Eigen::Isometry3d::Identity()));
 }
@@ -214,7 +200,7 @@ TEST_P(Frames, ThatMakeNoSenseAreRefused) {
       {{hung("imu", "body", {0, 0, 0}, Eigen::Quaterniond(kNan, 0, 0, 0))}, "its quaternion has norm nan"}};
   for (const auto& [frames, complaint] : cases) {
     std::filesystem::remove_all(path_);
-    write_frames(*GetParam().make(path_), frames);
+    write_frames(*GetParam().writer(path_), frames);
     EXPECT_THAT(fixture::complaint([&] { GetParam().read(path_, {}); }),
                 testing::AllOf(HasSubstr("/tf_static: "), HasSubstr(complaint)));
   }

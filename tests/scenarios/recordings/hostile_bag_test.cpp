@@ -22,17 +22,6 @@ using testing::HasSubstr;
 
 using HostileBag = fixture::Folder;
 
-sim::Sensors small_sensors() {
-  sim::Recording recording = fixture::recording();
-  for (std::uint32_t& offset : recording.sensors.lidars[0].offset_ns) offset *= 600;
-  recording.sensors.imus.resize(1);
-  recording.sensors.imus[0].time_ns.resize(3);
-  for (auto* rows : {&recording.sensors.imus[0].gyro_rad_s, &recording.sensors.imus[0].accel_m_s2}) {
-    rows->assign(3, Eigen::Vector3d(0, 0, 9.8));
-  }
-  return recording.sensors;
-}
-
 /// A chunk as others pack it: blocks that lean on the ones before, checksums, the size of the content.
 void pack_lz4(Ros1Chunk& chunk) {
   LZ4F_preferences_t how{};
@@ -65,7 +54,7 @@ class Lz4Bag : public fixture::Folder {
     fixture::put(folder_ / "b.bag", bytes);
     return fixture::complaint([&] { import_ros1_bag(folder_ / "b.bag", {}); });
   }
-  sim::Sensors sensors_ = small_sensors();
+  sim::Sensors sensors_ = fixture::small_sensors();
 };
 
 TEST_F(Lz4Bag, IsReadLikeAPlainOne) {
@@ -110,7 +99,7 @@ TEST_F(Lz4Bag, DamageIsOneLine) {
 
 // a bag is refused, or read: it never ends the program, whatever byte of it is gone or changed
 TEST_F(HostileBag, EveryCutOfARos1BagIsOneLine) {
-  export_ros1_bag(small_sensors(), {}, folder_ / "a.bag");
+  export_ros1_bag(fixture::small_sensors(), {}, folder_ / "a.bag");
   const std::string whole = fixture::bytes_of(folder_ / "a.bag");
   ASSERT_GT(whole.size(), 5000u);
   for (std::size_t size = 0; size < whole.size(); size += size < 100 ? 7 : 499) {
@@ -121,7 +110,7 @@ TEST_F(HostileBag, EveryCutOfARos1BagIsOneLine) {
 }
 
 TEST_F(HostileBag, ChangedBytesOfARos1BagNeverCrash) {
-  export_ros1_bag(small_sensors(), {}, folder_ / "a.bag");
+  export_ros1_bag(fixture::small_sensors(), {}, folder_ / "a.bag");
   const std::string whole = fixture::bytes_of(folder_ / "a.bag");
   int refused = 0, read = 0;
   for (std::size_t at = 0; at < whole.size(); at += 61) {
@@ -138,7 +127,7 @@ TEST_F(HostileBag, ChangedBytesOfARos1BagNeverCrash) {
 
 TEST_F(HostileBag, DamagedRos2BagsAreOneLine) {
   const std::filesystem::path bag = folder_ / "bag";
-  export_ros2_bag(small_sensors(), {}, bag);
+  export_ros2_bag(fixture::small_sensors(), {}, bag);
   const auto complaint = [&] { return fixture::complaint([&] { import_ros2_bag(bag, {}); }); };
   ASSERT_EQ(complaint(), "");
   const std::string database = fixture::bytes_of(bag / "bag_0.db3"),
@@ -163,7 +152,7 @@ TEST_F(HostileBag, DamagedRos2BagsAreOneLine) {
 
 // without them a reader that knows no ROS cannot tell what a message holds
 TEST_F(HostileBag, ARos2BagBringsTheDefinitionsOfItsMessages) {
-  export_ros2_bag(small_sensors(), {}, folder_ / "bag");
+  export_ros2_bag(fixture::small_sensors(), {}, folder_ / "bag");
   SQLite::Database database((folder_ / "bag/bag_0.db3").string(), SQLite::OPEN_READONLY);
   EXPECT_EQ(database.execAndGet("SELECT schema_version FROM schema").getInt(), 4);
   SQLite::Statement query(database,
@@ -182,7 +171,7 @@ TEST_F(HostileBag, TopicsWithoutMessagesAreLeftOutUnlessNamed) {
   const std::filesystem::path bag = folder_ / "bag";
   for (const char* topic : {"/imu", "/lidar/points"}) {
     std::filesystem::remove_all(bag);
-    export_ros2_bag(small_sensors(), {}, bag);
+    export_ros2_bag(fixture::small_sensors(), {}, bag);
     SQLite::Database database((bag / "bag_0.db3").string(), SQLite::OPEN_READWRITE);
     database.exec(std::string("DELETE FROM messages WHERE topic_id = (SELECT id FROM topics WHERE name = '") + topic +
                   "')");
@@ -199,7 +188,7 @@ TEST_F(HostileBag, AMessageThatPromisesTooMuchAllocatesNothing) {
   const std::filesystem::path bag = folder_ / "bag";
   for (const bool field_count : {false, true}) {
     std::filesystem::remove_all(bag);
-    export_ros2_bag(small_sensors(), {}, bag);
+    export_ros2_bag(fixture::small_sensors(), {}, bag);
     SQLite::Database database((bag / "bag_0.db3").string(), SQLite::OPEN_READWRITE);
     SQLite::Statement query(database,
                             "SELECT id, data FROM messages WHERE topic_id = (SELECT id FROM topics WHERE name = "
@@ -226,7 +215,7 @@ TEST_F(HostileBag, WhatIsNoBagIsSaid) {
   fixture::put(folder_ / "a.bag", "hello");
   EXPECT_THAT(fixture::complaint([&] { import_ros1_bag(folder_ / "a.bag", {}); }), HasSubstr("no ROS 1 bag"));
   EXPECT_THAT(fixture::complaint([&] { import_ros1_bag(folder_ / "none.bag", {}); }), HasSubstr("no such file"));
-  EXPECT_THAT(fixture::complaint([&] { export_ros1_bag(small_sensors(), {}, folder_ / "none" / "a.bag"); }),
+  EXPECT_THAT(fixture::complaint([&] { export_ros1_bag(fixture::small_sensors(), {}, folder_ / "none" / "a.bag"); }),
               HasSubstr("cannot be written"));
   EXPECT_EQ(files(), 1u) << "nothing is left of it";
 }

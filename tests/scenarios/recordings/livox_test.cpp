@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "scenarios/recordings/bag_kinds.hpp"
 #include "scenarios/recordings/bags/bag.hpp"
 #include "scenarios/recordings/bags/bag_clouds.hpp"
 #include "scenarios/recordings/bags/bag_storage.hpp"
@@ -16,15 +17,7 @@ namespace {
 
 using testing::HasSubstr;
 
-struct Kind {
-  const char* name;
-  void (*write)(const sim::Sensors&, const BagWriting&, const std::filesystem::path&);
-  Imported (*read)(const std::filesystem::path&, const BagReading&);
-  std::unique_ptr<BagWriter> (*writer)(const std::filesystem::path&);
-  const char* type;  ///< by ROS 1's name
-};
-
-class Livox : public fixture::Folder, public testing::WithParamInterface<Kind> {
+class Livox : public fixture::Folder, public testing::WithParamInterface<fixture::BagKind> {
  protected:
   Livox() {
     recording_.sensors.imus.clear();
@@ -82,7 +75,7 @@ TEST_P(Livox, IsKnownByItsType) {
   for (const BagTopic& topic : reader->topics()) {
     if (topic.name == "/lidar/points") type = topic.type;
   }
-  EXPECT_EQ(type, GetParam().type);
+  EXPECT_EQ(type, GetParam().livox_type);
 }
 
 TEST_P(Livox, ReadsWhatADriverWrites) {
@@ -113,12 +106,8 @@ TEST_P(Livox, ACountThatIsNoneIsRefused) {
               HasSubstr("message 1 of /livox/lidar: states 4000000000 points and holds 10"));
 }
 
-INSTANTIATE_TEST_SUITE_P(
-    Kinds, Livox,
-    testing::Values(Kind{"Ros1", export_ros1_bag, import_ros1_bag, make_ros1_writer, "livox_ros_driver/CustomMsg"},
-                    Kind{"Ros2", export_ros2_bag, import_ros2_bag, make_ros2_writer, "livox_ros_driver2/CustomMsg"},
-                    Kind{"Mcap", export_mcap, import_mcap, make_mcap_writer, "livox_ros_driver2/CustomMsg"}),
-    [](const auto& kind) { return std::string(kind.param.name); });
+INSTANTIATE_TEST_SUITE_P(Kinds, Livox, testing::Values(fixture::kRos1, fixture::kRos2, fixture::kMcap),
+                         fixture::name_of);
 
 TEST(LivoxMessage, ALengthThatItDoesNotHaveAllocatesNothing) {
   ros::LivoxCustomMsg message;

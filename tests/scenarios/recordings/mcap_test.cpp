@@ -255,19 +255,9 @@ TEST_F(Mcap, LiesAreFoundWithoutASummaryToo) {
   EXPECT_NE(complaint_of(loose), "");
 }
 
-sim::Sensors small_sensors() {
-  sim::Recording recording = fixture::recording();
-  for (std::uint32_t& offset : recording.sensors.lidars[0].offset_ns) offset *= 600;
-  recording.sensors.imus.resize(1);
-  sim::ImuRecord& imu = recording.sensors.imus[0];
-  imu.time_ns.resize(3);
-  for (auto* rows : {&imu.gyro_rad_s, &imu.accel_m_s2}) rows->assign(3, Eigen::Vector3d(0, 0, 9.8));
-  return recording.sensors;
-}
-
 // every byte of what we write is under some checksum
 TEST_F(Mcap, AnyChangedByteOfOursIsRefused) {
-  export_mcap(small_sensors(), {}, file());
+  export_mcap(fixture::small_sensors(), {}, file());
   const std::string whole = fixture::bytes_of(file());
   ASSERT_EQ(complaint_of(whole), "");
   ASSERT_GT(whole.size(), 5000u);
@@ -282,7 +272,7 @@ TEST_F(Mcap, AnyChangedByteOfOursIsRefused) {
 }
 
 TEST_F(Mcap, AnyCutOfOursIsRefused) {
-  export_mcap(small_sensors(), {}, file());
+  export_mcap(fixture::small_sensors(), {}, file());
   const std::string whole = fixture::bytes_of(file());
   for (std::size_t size = 0; size < whole.size(); size += size < 100 || size + 100 > whole.size() ? 1 : 97)
     ASSERT_THAT(complaint_of(whole.substr(0, size)), HasSubstr("a.mcap: at byte ")) << size;
@@ -292,10 +282,10 @@ TEST_F(Mcap, AnyCutOfOursIsRefused) {
 }
 
 TEST_F(Mcap, TheSameRecordingGivesTheSameBytes) {
-  export_mcap(small_sensors(), {}, file());
-  export_mcap(small_sensors(), {}, folder_ / "b.mcap");
+  export_mcap(fixture::small_sensors(), {}, file());
+  export_mcap(fixture::small_sensors(), {}, folder_ / "b.mcap");
   EXPECT_TRUE(fixture::bytes_of(file()) == fixture::bytes_of(folder_ / "b.mcap"));
-  EXPECT_THAT(fixture::complaint([&] { export_mcap(small_sensors(), {}, folder_ / "none" / "a.mcap"); }),
+  EXPECT_THAT(fixture::complaint([&] { export_mcap(fixture::small_sensors(), {}, folder_ / "none" / "a.mcap"); }),
               HasSubstr("cannot be written"));
   EXPECT_EQ(files(), 2u) << "nothing is left of it";
 }

@@ -284,12 +284,7 @@ TEST_F(Repoimu, ReadsTheStandIn) {
 /// alone.
 class RepoimuPublished : public ::testing::TestWithParam<std::filesystem::path> {};
 
-std::vector<std::filesystem::path> published() {
-  const std::vector<test::DataFolder> folders = test::data_folders("repoimu");
-  return folders.back().real ? std::vector{folders.back().path} : std::vector<std::filesystem::path>();
-}
-
-INSTANTIATE_TEST_SUITE_P(Files, RepoimuPublished, ::testing::ValuesIn(published()));
+INSTANTIATE_TEST_SUITE_P(Files, RepoimuPublished, ::testing::ValuesIn(test::published_folders("repoimu")));
 GTEST_ALLOW_UNINSTANTIATED_PARAMETERIZED_TEST(RepoimuPublished);
 
 TEST_P(RepoimuPublished, AreRead) {

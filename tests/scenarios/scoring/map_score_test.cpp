@@ -4,6 +4,7 @@
 
 #include "scenarios/scoring/perfect_estimate.hpp"
 #include "sim/lidar/surface.hpp"
+#include "tests/scenarios/scoring/rig.hpp"
 #include "tests/tree.hpp"
 
 // maps against the true surface of an empty square room: floor at z = 0
@@ -30,11 +31,6 @@ sim::ResolvedSituation empty_room() {
 const sim::Surface& surface() {
   static const sim::Surface room(sim::BuiltSituation(empty_room(), test::source_dir() / "models"));
   return room;
-}
-
-const sim::Recording& rig() {
-  static const sim::Recording recording = testing::synthetic_rig();
-  return recording;
 }
 
 std::vector<MapPoint> floor_points(float height_m) {

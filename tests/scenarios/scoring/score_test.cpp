@@ -12,6 +12,7 @@
 #include "scenarios/scoring/binned_metric.hpp"
 #include "scenarios/scoring/clipping.hpp"
 #include "scenarios/scoring/perfect_estimate.hpp"
+#include "tests/scenarios/scoring/rig.hpp"
 #include "tumble/common/so3.hpp"
 
 namespace tumble::scenarios {
@@ -21,11 +22,6 @@ using testing::move_world;
 using testing::perfect_estimate;
 using testing::scores;
 using testing::verdict_of;
-
-const sim::Recording& rig() {
-  static const sim::Recording recording = testing::synthetic_rig();
-  return recording;
-}
 
 Eigen::Isometry3d turned_world() {
   return Eigen::Translation3d(3.0, -7.0, 2.0) * Eigen::AngleAxisd(2.5, Eigen::Vector3d::UnitZ());

@@ -6,14 +6,10 @@
 #include "scenarios/errors.hpp"
 #include "scenarios/scoring/beside_truth.hpp"
 #include "scenarios/scoring/perfect_estimate.hpp"
+#include "tests/scenarios/scoring/rig.hpp"
 
 namespace tumble::scenarios {
 namespace {
-
-const sim::Recording& rig() {
-  static const sim::Recording recording = testing::synthetic_rig();
-  return recording;
-}
 
 ScoringInput input() {
   return {&rig().sensors, &rig().truth, nullptr};

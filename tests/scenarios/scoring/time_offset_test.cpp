@@ -23,14 +23,14 @@ const testing::SyntheticMotion& motion() {
   return motion;
 }
 
-const sim::Recording& rig() {
+const sim::Recording& moving_rig() {
   static const sim::Recording recording = testing::synthetic_rig(motion());
   return recording;
 }
 
 /// Attitudes and poses of the body as they truly were `late_s` before their stamps.
 Estimate late_estimate(double late_s) {
-  Estimate estimate = perfect_estimate(rig(), Frame::body);
+  Estimate estimate = perfect_estimate(moving_rig(), Frame::body);
   for (AttitudeState& attitude : estimate.attitudes)
     attitude.q_WA = motion().attitude(1e-9 * static_cast<double>(attitude.time_ns) - late_s);
   for (PoseState& pose : estimate.poses) {
@@ -52,7 +52,7 @@ const std::map<Kind, std::string>& of_attitudes() {
 TEST(TimeOffset, OfAttitudesAndPosesIsWhatTheyAreLateBy) {
   for (const auto& [kind, name] : of_attitudes()) {
     for (const double late_s : {kLate_s, -kLate_s, 1e-3, 0.0})
-      EXPECT_NEAR(scores(kind, late_estimate(late_s), rig()).at(name), late_s, 1e-9) << to_string(kind);
+      EXPECT_NEAR(scores(kind, late_estimate(late_s), moving_rig()).at(name), late_s, 1e-9) << to_string(kind);
   }
 }
 
@@ -61,12 +61,12 @@ TEST(TimeOffset, OfAttitudesIsTheSameInAWorldOfItsOwn) {
   testing::move_world(Eigen::Translation3d(3.0, -7.0, 2.0) * Eigen::AngleAxisd(2.5, Eigen::Vector3d::UnitZ()),
                       estimate);
   for (const auto& [kind, name] : of_attitudes())
-    EXPECT_NEAR(scores(kind, estimate, rig()).at(name), kLate_s, 1e-9) << to_string(kind);
+    EXPECT_NEAR(scores(kind, estimate, moving_rig()).at(name), kLate_s, 1e-9) << to_string(kind);
 }
 
 /// The recording with a turning rate that rises steadily, nothing clipped: differences of it are exact.
 sim::Recording steadily_faster(const Eigen::Vector3d& acceleration_rad_s2) {
-  sim::Recording recording = rig();
+  sim::Recording recording = moving_rig();
   sim::ImuTruth& truth = recording.truth.imus.front();
   for (std::size_t k = 0; k < truth.rate_rad_s.size(); ++k) {
     const double time_s = 1e-9 * static_cast<double>(recording.sensors.imus.front().time_ns[k]);
@@ -88,12 +88,12 @@ TEST(TimeOffset, OfRatesIsWhatTheyAreLateBy) {
 
 // in the motion there and back the rail hides samples: they have no part, whatever is claimed of them
 TEST(TimeOffset, OfRatesIsToldByWhatIsNotClipped) {
-  Estimate estimate = perfect_estimate(rig());
-  const ClippingTruth truth(rig().sensors, rig().truth);
+  Estimate estimate = perfect_estimate(moving_rig());
+  const ClippingTruth truth(moving_rig().sensors, moving_rig().truth);
   std::size_t clipped = 0;
   for (std::size_t k = 0; k < estimate.rates.size(); ++k) {
     const double middle_s = 1e-9 * static_cast<double>(estimate.rates[k].time_ns) - 2.5e-3;
-    const Eigen::Matrix3d R_IB = rig().truth.imus.front().T_BI.linear().transpose();
+    const Eigen::Matrix3d R_IB = moving_rig().truth.imus.front().T_BI.linear().transpose();
     estimate.rates[k].w_WI_I_rad_s = R_IB * motion().rate_B_rad_s(middle_s - kLate_s);
     if (truth.clipped_axes(k) == 0) continue;
     ++clipped;
@@ -101,7 +101,7 @@ TEST(TimeOffset, OfRatesIsToldByWhatIsNotClipped) {
   }
   ASSERT_GT(clipped, 50u);
   // the acceleration is a difference over 10 ms: 1e-4 of an offset
-  EXPECT_NEAR(scores(Kind::rate, estimate, rig()).at("rate_time_offset_s"), kLate_s, 1e-3 * kLate_s);
+  EXPECT_NEAR(scores(Kind::rate, estimate, moving_rig()).at("rate_time_offset_s"), kLate_s, 1e-3 * kLate_s);
 }
 
 // what is wrong, but not late: across the turn, along it now forth and now back, or the same whichever way it turns;
@@ -116,11 +116,11 @@ TEST(TimeOffset, OfAnErrorThatIsNoneOfTimeIsZero) {
     pose.p_WA_m.x() += 0.5;
   }
   for (RateState& rate : estimate.rates) rate.w_WI_I_rad_s += Eigen::Vector3d(0.3, -0.2, 0.1);
-  EXPECT_NEAR(scores(Kind::attitude, estimate, rig()).at("attitude_rmse_rad"), 0.02, 1e-6);
-  EXPECT_NEAR(scores(Kind::slam, estimate, rig()).at("ate_rad"), 0.02 / std::sqrt(2.0), 1e-4);
-  EXPECT_NEAR(scores(Kind::attitude, estimate, rig()).at("attitude_time_offset_s"), 0.0, 1e-9);
-  EXPECT_NEAR(scores(Kind::slam, estimate, rig()).at("pose_time_offset_s"), 0.0, 1e-6);
-  EXPECT_NEAR(scores(Kind::rate, estimate, rig()).at("rate_time_offset_s"), 0.0, 1e-6);
+  EXPECT_NEAR(scores(Kind::attitude, estimate, moving_rig()).at("attitude_rmse_rad"), 0.02, 1e-6);
+  EXPECT_NEAR(scores(Kind::slam, estimate, moving_rig()).at("ate_rad"), 0.02 / std::sqrt(2.0), 1e-4);
+  EXPECT_NEAR(scores(Kind::attitude, estimate, moving_rig()).at("attitude_time_offset_s"), 0.0, 1e-9);
+  EXPECT_NEAR(scores(Kind::slam, estimate, moving_rig()).at("pose_time_offset_s"), 0.0, 1e-6);
+  EXPECT_NEAR(scores(Kind::rate, estimate, moving_rig()).at("rate_time_offset_s"), 0.0, 1e-6);
 }
 
 TEST(TimeOffset, OfABodyThatNeverTurnsIsNone) {

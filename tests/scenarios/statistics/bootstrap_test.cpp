@@ -5,17 +5,15 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <numeric>
 #include <vector>
 
 #include "scenarios/errors.hpp"
 #include "sim/random/stream.hpp"
+#include "tests/scenarios/statistics/samples.hpp"
 
 namespace tumble::scenarios {
 namespace {
-
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 double median(std::vector<double> values) {
   return quantile(values, 0.5);

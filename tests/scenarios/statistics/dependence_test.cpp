@@ -5,25 +5,17 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <limits>
 #include <numbers>
 #include <vector>
 
 #include "scenarios/errors.hpp"
 #include "sim/random/stream.hpp"
+#include "tests/scenarios/statistics/samples.hpp"
 
 namespace tumble::scenarios {
 namespace {
 
 using ::testing::ElementsAre;
-
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
-
-std::vector<double> uniform(sim::Stream& stream, std::size_t n, double low = 0.0, double high = 1.0) {
-  std::vector<double> values;
-  for (std::size_t i = 0; i < n; ++i) values.push_back(stream.uniform(low, high));
-  return values;
-}
 
 TEST(MeanRanks, ShareTheirMeanInTies) {
   EXPECT_THAT(mean_ranks(std::vector<double>{3.0, 1.0, kInfinity, 1.0, -kInfinity, kInfinity}),

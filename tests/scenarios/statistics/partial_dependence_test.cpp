@@ -9,17 +9,12 @@
 #include "scenarios/errors.hpp"
 #include "scenarios/statistics/dependence.hpp"
 #include "sim/random/stream.hpp"
+#include "tests/scenarios/statistics/samples.hpp"
 
 namespace tumble::scenarios {
 namespace {
 
 constexpr double kPi = std::numbers::pi;
-
-std::vector<double> uniform(sim::Stream& stream, std::size_t n, double low, double high) {
-  std::vector<double> values;
-  for (std::size_t i = 0; i < n; ++i) values.push_back(stream.uniform(low, high));
-  return values;
-}
 
 // Ishigami and Homma's function, a = 7, b = 0.1: E[y | x1] = (1 + b pi^4/5) sin x1 + a/2, E[y | x2] = a sin^2 x2,
 // E[y | x3] = a/2, each averaged over its class in closed form

@@ -4,17 +4,15 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <limits>
 #include <vector>
 
 #include "scenarios/errors.hpp"
 #include "scenarios/statistics/paired.hpp"
 #include "sim/random/stream.hpp"
+#include "tests/scenarios/statistics/samples.hpp"
 
 namespace tumble::scenarios {
 namespace {
-
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 std::vector<double> shifted(sim::Stream& stream, std::size_t n, double shift) {
   std::vector<double> values;

@@ -12,6 +12,7 @@
 #include "scenarios/errors.hpp"
 #include "scenarios/statistics/paired.hpp"
 #include "sim/random/stream.hpp"
+#include "tests/scenarios/summary/rate_error.hpp"
 
 namespace tumble::scenarios {
 namespace {
@@ -19,9 +20,8 @@ namespace {
 using ::testing::HasSubstr;
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
-const std::string kError = "rate_error_clipped_median_rad_s";  // lower is better
-const std::string kOverlap = "map_overlap";                    // higher is better
-const std::string kCoverage = "rate_coverage_3sigma";          // has a target
+const std::string kOverlap = "map_overlap";            // higher is better
+const std::string kCoverage = "rate_coverage_3sigma";  // has a target
 
 /// Values of a method on the seeds 1, 2, ...; none: that run failed.
 using Values = std::vector<std::optional<double>>;

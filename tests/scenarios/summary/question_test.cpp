@@ -10,6 +10,7 @@
 #include <optional>
 
 #include "scenarios/errors.hpp"
+#include "tests/scenarios/summary/rate_error.hpp"
 #include "tests/temporary_folder.hpp"
 
 namespace tumble::scenarios {
@@ -17,8 +18,6 @@ namespace {
 
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
-
-const std::string kError = "rate_error_clipped_median_rad_s";
 
 Question question_of(std::uint64_t seeds) {
   Question question;

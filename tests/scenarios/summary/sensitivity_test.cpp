@@ -9,12 +9,11 @@
 #include "scenarios/draw/drawn_numbers.hpp"
 #include "scenarios/errors.hpp"
 #include "sim/random/stream.hpp"
+#include "tests/scenarios/summary/rate_error.hpp"
 #include "tests/tree.hpp"
 
 namespace tumble::scenarios {
 namespace {
-
-const std::string kError = "rate_error_clipped_median_rad_s";
 
 /// 120 draws whose error follows the slope, and which fail where the rocks are large.
 struct Fixture {

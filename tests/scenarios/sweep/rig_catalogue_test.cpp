@@ -13,26 +13,25 @@
 #include "scenarios/scoring/motion_summary.hpp"
 #include "scenarios/sweep/sweep.hpp"
 #include "sim/simulate.hpp"
-#include "tests/tree.hpp"
+#include "tests/scenarios/tree_data.hpp"
 
 namespace tumble::scenarios {
 namespace {
 
-const DataRoot kData{test::source_dir()};
 // a seed of the range that development looks at, at which the gyro clips in every scenario: mild draws spin below the
 // rail
-constexpr std::uint64_t kSeed = 1003;
+constexpr std::uint64_t kClippedSeed = 1003;
 
 // those whose sensors are the question are a suite of their own; `stroll` is of peers/gentle.yaml, where no gyro clips
 TEST(HillSuite, HoldsWithThatOfRailsEveryScenarioButTheSpheres) {
   std::multiset<std::string> listed;
   for (const char* name : {"hill", "rails"}) {
-    const Suite suite = load_suite(kData, name);
+    const Suite suite = load_suite(tree_data(), name);
     listed.insert(suite.scenarios.begin(), suite.scenarios.end());
   }
   std::size_t rigs = 0;
-  for (const std::string& name : scenario_names(kData)) {
-    const std::string robot = load_scenario(kData, name).robot.type;
+  for (const std::string& name : scenario_names(tree_data())) {
+    const std::string robot = load_scenario(tree_data(), name).robot.type;
     EXPECT_EQ(listed.count(name), robot != "sphere" && name != "stroll" ? 1u : 0u) << name;
     rigs += robot == "rig" ? 1 : 0;
   }
@@ -40,21 +39,22 @@ TEST(HillSuite, HoldsWithThatOfRailsEveryScenarioButTheSpheres) {
 }
 
 TEST(HillSuite, DrawsOnThirtySeeds) {
-  for (const std::string& name : load_suite(kData, "hill").scenarios) {
-    const Scenario scenario = load_scenario(kData, name);
-    for (std::uint64_t seed = kSeed; seed < kSeed + 30; ++seed) EXPECT_NO_THROW(draw(kData, scenario, seed)) << name;
+  for (const std::string& name : load_suite(tree_data(), "hill").scenarios) {
+    const Scenario scenario = load_scenario(tree_data(), name);
+    for (std::uint64_t seed = kClippedSeed; seed < kClippedSeed + 30; ++seed)
+      EXPECT_NO_THROW(draw(tree_data(), scenario, seed)) << name;
   }
 }
 
 /// What a scenario is about.
-struct Expected {
+struct RigExpected {
   const char* scenario;
   const char* touched;  ///< beginning of the name of a surface that the rig meets, the ground apart; "" for none
   double fall_least_m;  ///< from the highest point to the end
   double flight_least_s;
 };
 
-void PrintTo(const Expected& expected, std::ostream* out) {
+void PrintTo(const RigExpected& expected, std::ostream* out) {
   *out << expected.scenario;
 }
 
@@ -73,13 +73,14 @@ double longest_flight_s(const sim::Truth& truth) {
   return 1e-9 * static_cast<double>(truth.period_ns) * static_cast<double>(longest);
 }
 
-class RigScenario : public testing::TestWithParam<Expected> {};
+class RigScenario : public ::testing::TestWithParam<RigExpected> {};
 
 // a simulation that meets a warning of the engine throws
 TEST_P(RigScenario, ShowsWhatItIsAboutClipsTheGyroAndEndsAtRest) {
-  const Expected& expected = GetParam();
-  const sim::ResolvedSituation situation = without_lidars(draw(kData, load_scenario(kData, expected.scenario), kSeed));
-  const sim::Recording recording = sim::simulate(sim::BuiltSituation(situation, kData.models()));
+  const RigExpected& expected = GetParam();
+  const sim::ResolvedSituation situation =
+      without_lidars(draw(tree_data(), load_scenario(tree_data(), expected.scenario), kClippedSeed));
+  const sim::Recording recording = sim::simulate(sim::BuiltSituation(situation, tree_data().models()));
   const sim::Truth& truth = recording.truth;
   for (const std::size_t k : {std::size_t{0}, truth.q_WB.size() - 1}) {
     EXPECT_LT(truth.v_WB_m_s[k].norm(), 0.02);
@@ -106,12 +107,13 @@ TEST_P(RigScenario, ShowsWhatItIsAboutClipsTheGyroAndEndsAtRest) {
 }
 
 // falls and flights: about half of what the gentlest draw of the scenario gives
-INSTANTIATE_TEST_SUITE_P(Catalogue, RigScenario,
-                         testing::Values(Expected{"hill", "terrain", 0.7, 0.2}, Expected{"bare", "", 0.7, 0.2},
-                                         Expected{"scree", "rock_", 0.7, 0.2}, Expected{"forest", "trunk_", 0.7, 0.2},
-                                         Expected{"stairs", "step_", 0.7, 0.2}, Expected{"cliff", "terrain", 0.7, 0.3},
-                                         Expected{"throw", "terrain", 1.0, 0.9}, Expected{"drop", "terrain", 1.5, 0.3}),
-                         [](const auto& test) { return std::string(test.param.scenario); });
+INSTANTIATE_TEST_SUITE_P(
+    Catalogue, RigScenario,
+    ::testing::Values(RigExpected{"hill", "terrain", 0.7, 0.2}, RigExpected{"bare", "", 0.7, 0.2},
+                      RigExpected{"scree", "rock_", 0.7, 0.2}, RigExpected{"forest", "trunk_", 0.7, 0.2},
+                      RigExpected{"stairs", "step_", 0.7, 0.2}, RigExpected{"cliff", "terrain", 0.7, 0.3},
+                      RigExpected{"throw", "terrain", 1.0, 0.9}, RigExpected{"drop", "terrain", 1.5, 0.3}),
+    [](const auto& test) { return std::string(test.param.scenario); });
 
 /// Share of samples whose reading repeats the one before.
 double repeated_share(const std::vector<Eigen::Vector3d>& readings) {
@@ -123,9 +125,9 @@ double repeated_share(const std::vector<Eigen::Vector3d>& readings) {
 // to the measure of RepoIMU's pendulum, segment 3: models/README.md
 TEST(SwingScenario, ClipsAsTheRealPendulumDoesAndRepeatsItsReadings) {
   std::size_t railed_force = 0;  // of all draws: a whip may fall between two of the accelerometer's readings
-  for (std::uint64_t seed = kSeed; seed < kSeed + 3; ++seed) {
-    const sim::Recording recording =
-        sim::simulate(sim::BuiltSituation(draw(kData, load_scenario(kData, "swing"), seed), kData.models()));
+  for (std::uint64_t seed = kClippedSeed; seed < kClippedSeed + 3; ++seed) {
+    const sim::Recording recording = sim::simulate(
+        sim::BuiltSituation(draw(tree_data(), load_scenario(tree_data(), "swing"), seed), tree_data().models()));
     const sim::ImuRecord& imu = recording.sensors.imus.at(0);
     const std::vector<Eigen::Vector3d>& rate = recording.truth.imus.at(0).rate_rad_s;
     std::size_t beyond = 0;
@@ -151,9 +153,10 @@ TEST(SwingScenario, ClipsAsTheRealPendulumDoesAndRepeatsItsReadings) {
 // what a peer must follow before its failure on a tumble is the tumble's: far from the rail, no contact, not back at
 // the start, where one that stands still would be right
 TEST(StrollScenario, IsGentleGoesAwayAndEndsAtRest) {
-  for (std::uint64_t seed = kSeed; seed < kSeed + 3; ++seed) {
-    const sim::ResolvedSituation situation = without_lidars(draw(kData, load_scenario(kData, "stroll"), seed));
-    const sim::Recording recording = sim::simulate(sim::BuiltSituation(situation, kData.models()));
+  for (std::uint64_t seed = kClippedSeed; seed < kClippedSeed + 3; ++seed) {
+    const sim::ResolvedSituation situation =
+        without_lidars(draw(tree_data(), load_scenario(tree_data(), "stroll"), seed));
+    const sim::Recording recording = sim::simulate(sim::BuiltSituation(situation, tree_data().models()));
     const sim::Truth& truth = recording.truth;
     const MotionSummary motion = summarise_motion(recording.sensors, truth);
     EXPECT_EQ(motion.clipped_samples, 0u) << seed;

@@ -13,18 +13,14 @@
 #include "scenarios/sweep/run_situation.hpp"
 #include "scenarios/sweep/sweep.hpp"
 #include "scenarios/sweep/variation.hpp"
+#include "tests/scenarios/tree_data.hpp"
 #include "tests/temporary_folder.hpp"
-#include "tests/tree.hpp"
 
 namespace tumble::scenarios {
 namespace {
 
 using ::testing::HasSubstr;
 using Notes = std::map<std::string, std::string>;
-
-DataRoot data() {
-  return DataRoot{test::source_dir()};
-}
 
 TEST(CommandAgain, IsOfEachSortOfRow) {
   const RunKey plain{"hill", 7, "slam", "tumble"};
@@ -58,10 +54,10 @@ using CommandAgainOfASweep = testing::TemporaryFolder;
 
 /// Each point of a sweep's curves, run as its command runs it, has the same bits.
 TEST_F(CommandAgainOfASweep, RunsWhatItRan) {
-  Scenario scenario = load_scenario(data(), "bare");
+  Scenario scenario = load_scenario(tree_data(), "bare");
   fix_number(scenario, "duration_s", 2.5);
   std::erase_if(scenario.sensors, [](const Scenario::Sensor& sensor) { return sensor.name == "lidar"; });
-  write("short.yaml", to_yaml(fixed_as(scenario, draw(data(), scenario, 1))));
+  write("short.yaml", to_yaml(fixed_as(scenario, draw(tree_data(), scenario, 1))));
   Suite suite;
   suite.name = "small";
   suite.scenarios = {(folder_ / "short.yaml").string()};
@@ -69,8 +65,8 @@ TEST_F(CommandAgainOfASweep, RunsWhatItRan) {
   suite.curves = {{{"world.rock_count", "world.trunk_count"}, {3.0}},
                   {{"given.time_offset_s"}, {0.015}},
                   {{"rate/saave.jerk_psd_rad2_s5"}, {100.0}}};
-  for (const Variation& curve : suite.curves) check(curve, data(), suite.scenarios, 1);
-  sweep(data(), suite, folder_ / "a.db", {});
+  for (const Variation& curve : suite.curves) check(curve, tree_data(), suite.scenarios, 1);
+  sweep(tree_data(), suite, folder_ / "a.db", {});
 
   const Results results(folder_ / "a.db", Results::Mode::read_only);
   const std::vector<Outcome> outcomes = results.outcomes(Rows::all);
@@ -81,7 +77,7 @@ TEST_F(CommandAgainOfASweep, RunsWhatItRan) {
     const std::string command = command_again(key, results.notes());
     const std::size_t vary = command.find(" --vary ");
     const Setting setting = vary == std::string::npos ? Setting{} : setting_from(command.substr(vary + 8));
-    const RunResult run = run_situation(data(), load_scenario(data(), suite.scenarios.front()), key.seed,
+    const RunResult run = run_situation(tree_data(), load_scenario(tree_data(), suite.scenarios.front()), key.seed,
                                         find_methods(key.kind + "/" + key.method), 1, Lidars::left_out, setting);
     ASSERT_EQ(run.outcomes.size(), 1u);
     EXPECT_EQ(run.outcomes[0].estimate_digest, outcome.estimate_digest) << command;

@@ -15,27 +15,23 @@
 #include "scenarios/draw/fixed_number.hpp"
 #include "scenarios/draw/fixed_scenario.hpp"
 #include "scenarios/errors.hpp"
+#include "tests/scenarios/tree_data.hpp"
 #include "tests/temporary_folder.hpp"
-#include "tests/tree.hpp"
 
 namespace tumble::scenarios {
 namespace {
 
 constexpr const char* kMetric = "rate_error_clipped_median_rad_s";
 
-DataRoot data() {
-  return DataRoot{test::source_dir()};
-}
-
 using SuiteTriage = testing::TemporaryFolder;
 
 /// One tumble that clips, as a file, without the lidar; seeds change the noise of its sensors.
 std::string clipping_tumble(const std::filesystem::path& folder) {
-  Scenario scenario = load_scenario(data(), "hill");
+  Scenario scenario = load_scenario(tree_data(), "hill");
   fix_number(scenario, "duration_s", 4.0);
   std::erase_if(scenario.sensors, [](const Scenario::Sensor& sensor) { return sensor.name == "lidar"; });
   const std::filesystem::path file = folder / "clipping.yaml";
-  std::ofstream(file) << to_yaml(fixed_as(scenario, draw(data(), scenario, 1)));
+  std::ofstream(file) << to_yaml(fixed_as(scenario, draw(tree_data(), scenario, 1)));
   return file.string();
 }
 
@@ -57,15 +53,15 @@ TEST_F(SuiteTriage, IsTheTriageOfEachDrawForAnyNumberOfJobs) {
   options.triage.failure = {kMetric, 0.1};
   std::size_t told = 0;
   options.on_draw = [&](const DrawTriage&) { ++told; };
-  const std::vector<DrawTriage> one = triage_draws(data(), draws, raw, options);
+  const std::vector<DrawTriage> one = triage_draws(tree_data(), draws, raw, options);
   options.jobs = 2;
-  const std::vector<DrawTriage> two = triage_draws(data(), draws, raw, options);
+  const std::vector<DrawTriage> two = triage_draws(tree_data(), draws, raw, options);
   EXPECT_EQ(told, 4u);
   EXPECT_EQ(said(one), said(two));
 
   TriageOptions alone;
   alone.failure = options.triage.failure;
-  const DrawTriage same{{scenario, 2}, triage(data(), load_scenario(data(), scenario), 2, raw, alone), ""};
+  const DrawTriage same{{scenario, 2}, triage(tree_data(), load_scenario(tree_data(), scenario), 2, raw, alone), ""};
   ASSERT_EQ(one.size(), 2u);
   EXPECT_EQ(said({one[1]}), said({same}));
   for (const DrawTriage& draw : one) {
@@ -77,11 +73,11 @@ TEST_F(SuiteTriage, IsTheTriageOfEachDrawForAnyNumberOfJobs) {
 
 TEST_F(SuiteTriage, ADrawThatCannotBeSimulatedSaysWhy) {
   const std::vector<DrawName> draws = {{clipping_tumble(folder_), 1}};
-  const std::vector<DrawTriage> all = triage_draws(data(), draws, *find_methods("position/rolling").front(), {});
+  const std::vector<DrawTriage> all = triage_draws(tree_data(), draws, *find_methods("position/rolling").front(), {});
   ASSERT_EQ(all.size(), 1u);
   EXPECT_TRUE(all[0].rows.empty());
   EXPECT_THAT(all[0].trouble, ::testing::HasSubstr("does not apply to the robot"));
-  EXPECT_THROW(triage_draws(data(), std::vector<DrawName>{{"hil", 1}}, *find_methods("rate/raw").front(), {}),
+  EXPECT_THROW(triage_draws(tree_data(), std::vector<DrawName>{{"hil", 1}}, *find_methods("rate/raw").front(), {}),
                BadInput);
 }
 
@@ -102,7 +98,7 @@ TEST_F(SuiteTriage, AProcessThatDiesCostsTheRestOfItsDrawAlone) {
   const std::string scenario = clipping_tumble(folder_);
   const std::vector<DrawName> draws = {{scenario, 1}, {scenario, 2}};
   const Method dies = disturbed(folder_, 3, [] { kill(getppid(), SIGKILL); });
-  const std::vector<DrawTriage> all = triage_draws(data(), draws, dies, {});
+  const std::vector<DrawTriage> all = triage_draws(tree_data(), draws, dies, {});
   ASSERT_EQ(all.size(), 2u);
   EXPECT_THAT(all[0].trouble, ::testing::HasSubstr("ended by signal 9"));
   EXPECT_EQ(all[0].rows.size(), 2u) << "what it had told stands";
@@ -115,7 +111,7 @@ TEST_F(SuiteTriage, AProcessThatHangsIsLate) {
   options.triage.timeout_s = 0.2;
   const Method hangs = disturbed(folder_, 1, [] { kill(getppid(), SIGSTOP); });
   const std::vector<DrawTriage> all =
-      triage_draws(data(), std::vector<DrawName>{{clipping_tumble(folder_), 1}}, hangs, options);
+      triage_draws(tree_data(), std::vector<DrawName>{{clipping_tumble(folder_), 1}}, hangs, options);
   ASSERT_EQ(all.size(), 1u);
   EXPECT_EQ(all[0].trouble, "the draw did not end in time");
 }
@@ -132,12 +128,12 @@ TEST_F(SuiteTriage, MemoryIsLimited) {
   };
   SuiteTriageOptions options;
   options.memory_mib = 1024.0;
-  EXPECT_THAT(statuses_of(triage_draws(data(), draws, takes(16), options)), ::testing::Each(OutcomeStatus::ok));
+  EXPECT_THAT(statuses_of(triage_draws(tree_data(), draws, takes(16), options)), ::testing::Each(OutcomeStatus::ok));
   std::filesystem::remove(folder_ / "count");
-  EXPECT_EQ(statuses_of(triage_draws(data(), draws, takes(2048), options)).at(0), OutcomeStatus::killed);
+  EXPECT_EQ(statuses_of(triage_draws(tree_data(), draws, takes(2048), options)).at(0), OutcomeStatus::killed);
   for (const double none : {0.0, 63.0, 1e9, std::nan("")}) {
     options.memory_mib = none;
-    EXPECT_THROW(triage_draws(data(), draws, takes(1), options), BadInput) << none;
+    EXPECT_THROW(triage_draws(tree_data(), draws, takes(1), options), BadInput) << none;
   }
 }
 
@@ -147,17 +143,17 @@ TEST_F(SuiteTriage, OfASuiteTheDrawsOfTheMethodsRobotSeedsOutermost) {
   suite.first_seed = 3;
   suite.last_seed = 4;
   EXPECT_THAT(
-      draws_of(data(), suite, *find_methods("slam/tumble").front()),
+      draws_of(tree_data(), suite, *find_methods("slam/tumble").front()),
       ::testing::ElementsAre(DrawName{"hill", 3}, DrawName{"cliff", 3}, DrawName{"hill", 4}, DrawName{"cliff", 4}));
   suite.classes = {{"mild", {{"hill", 4}}}, {"wild", {{"cliff", 3}, {"roll", 3}}}};
-  EXPECT_THAT(draws_of(data(), suite, *find_methods("slam/tumble").front()),
+  EXPECT_THAT(draws_of(tree_data(), suite, *find_methods("slam/tumble").front()),
               ::testing::ElementsAre(DrawName{"cliff", 3}, DrawName{"hill", 4}));
   suite.classes.clear();
   suite.last_seed = 20'000'000;
-  EXPECT_THROW(draws_of(data(), suite, *find_methods("slam/tumble").front()), BadInput);
+  EXPECT_THROW(draws_of(tree_data(), suite, *find_methods("slam/tumble").front()), BadInput);
   suite.last_seed = 4;
   suite.scenarios = {"roll"};
-  EXPECT_THAT(draws_of(data(), suite, *find_methods("slam/tumble").front()), ::testing::IsEmpty());
+  EXPECT_THAT(draws_of(tree_data(), suite, *find_methods("slam/tumble").front()), ::testing::IsEmpty());
 }
 
 TEST_F(SuiteTriage, FailedAreThoseOfTheMethodThatFailedThere) {

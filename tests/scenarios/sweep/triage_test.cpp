@@ -8,22 +8,18 @@
 
 #include "scenarios/errors.hpp"
 #include "scenarios/scoring/truth_track.hpp"
-#include "tests/tree.hpp"
+#include "tests/scenarios/tree_data.hpp"
 
 namespace tumble::scenarios {
 namespace {
 
-DataRoot data() {
-  return DataRoot{test::source_dir()};
-}
-
 /// A tumble with all sensors, once for all tests.
 const SimulatedDraw& tumble() {
   static const SimulatedDraw kDraw = [] {
-    Scenario scenario = load_scenario(data(), "hill");
+    Scenario scenario = load_scenario(tree_data(), "hill");
     scenario.duration_s.shape = Distribution::Shape::constant;
     scenario.duration_s.numbers = {5.0};
-    return simulate_draw(data(), scenario, 1, 1);
+    return simulate_draw(tree_data(), scenario, 1, 1);
   }();
   return kDraw;
 }
@@ -122,13 +118,13 @@ TEST(Failure, IsAStatusAMapOrAMetricBeyondItsLimit) {
 
 /// The rate that raw gives fails where the gyro clips: the unclipped gyro cures it, the accelerometer does not.
 TEST(Triage, TheClippedGyroIsTheCauseOfRawsError) {
-  Scenario scenario = load_scenario(data(), "hill");
+  Scenario scenario = load_scenario(tree_data(), "hill");
   scenario.duration_s.shape = Distribution::Shape::constant;
   scenario.duration_s.numbers = {5.0};
   std::erase_if(scenario.sensors, [](const Scenario::Sensor& sensor) { return sensor.name == "lidar"; });
   TriageOptions options;
   options.failure = {"rate_error_clipped_median_rad_s", 0.1};
-  const std::vector<TriageRow> rows = triage(data(), scenario, 1, *find_methods("rate/raw").front(), options);
+  const std::vector<TriageRow> rows = triage(tree_data(), scenario, 1, *find_methods("rate/raw").front(), options);
   ASSERT_GT(rows.size(), 4u);
   EXPECT_EQ(rows[0].input, "none");
   EXPECT_TRUE(rows[0].fails) << "seed 1 clips";
@@ -140,8 +136,9 @@ TEST(Triage, TheClippedGyroIsTheCauseOfRawsError) {
 }
 
 TEST(Triage, AMethodOfAnotherRobotIsRefused) {
-  EXPECT_THROW(triage(data(), load_scenario(data(), "hill"), 1, *find_methods("position/rolling").front(), {}),
-               BadInput);
+  EXPECT_THROW(
+      triage(tree_data(), load_scenario(tree_data(), "hill"), 1, *find_methods("position/rolling").front(), {}),
+      BadInput);
 }
 
 }  // namespace

@@ -1,0 +1,38 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <memory>
+#include <string>
+
+#include "scenarios/recordings/bags/bag.hpp"
+#include "scenarios/recordings/bags/bag_storage.hpp"
+#include "scenarios/recordings/export.hpp"
+#include "scenarios/recordings/import.hpp"
+
+namespace tumble::scenarios::fixture {
+
+/// The kinds of bags, tested alike.
+struct BagKind {
+  const char* name;
+  void (*write)(const sim::Sensors&, const BagWriting&, const std::filesystem::path&);
+  Imported (*read)(const std::filesystem::path&, const BagReading&);
+  std::unique_ptr<BagReader> (*open)(const std::filesystem::path&) = nullptr;
+  std::unique_ptr<BagWriter> (*writer)(const std::filesystem::path&) = nullptr;
+  const char* livox_type = "livox_ros_driver2/CustomMsg";  ///< by ROS 1's name
+};
+
+inline constexpr BagKind kRos1 = {"Ros1",        export_ros1_bag,  import_ros1_bag,
+                                  open_ros1_bag, make_ros1_writer, "livox_ros_driver/CustomMsg"};
+inline constexpr BagKind kRos2 = {"Ros2", export_ros2_bag, import_ros2_bag, open_ros2_bag, make_ros2_writer};
+inline constexpr BagKind kMcap = {"Mcap", export_mcap, import_mcap,
+                                  [](const std::filesystem::path& file) { return open_mcap({file}); },
+                                  make_mcap_writer};
+
+inline std::string name_of(const ::testing::TestParamInfo<BagKind>& kind) {
+  return kind.param.name;
+}
+
+}  // namespace tumble::scenarios::fixture
