@@ -25,7 +25,7 @@ constexpr std::array kMountError = {
     Parameter{"yaw_rad", 0.0, -0.5, 0.5, "rad", "the same about z"},
 };
 
-constexpr double kLongest_s = 3600.0;
+constexpr double kDurationMax_s = 3600.0;
 
 template <typename Type>
 Component resolve_component(const std::string& what, const Component& component,
@@ -79,9 +79,9 @@ ResolvedSituation ResolvedSituation::without_sensors(const std::function<bool(co
 }
 
 ResolvedSituation resolve(const Situation& situation) {
-  if (!(situation.duration_s > 0.0 && situation.duration_s <= kLongest_s)) {
+  if (!(situation.duration_s > 0.0 && situation.duration_s <= kDurationMax_s)) {
     std::ostringstream text;
-    text << "duration_s is " << situation.duration_s << " s, must be within (0, " << kLongest_s << "]";
+    text << "duration_s is " << situation.duration_s << " s, must be within (0, " << kDurationMax_s << "]";
     throw InvalidSituation(text.str());
   }
   Situation out = situation;

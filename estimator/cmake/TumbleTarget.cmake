@@ -38,6 +38,8 @@ function(tumble_target target)
   set_target_properties(${target} PROPERTIES CXX_EXTENSIONS OFF POSITION_INDEPENDENT_CODE ON)
   if(TUMBLE_UNITY)  # what sources instantiate alike is instantiated once: no two of a target give one name to two things
     set_target_properties(${target} PROPERTIES UNITY_BUILD ON UNITY_BUILD_BATCH_SIZE 8)
+    # what is private to a source looks to GCC as if it stood in a header
+    target_compile_options(${target} PRIVATE $<$<CXX_COMPILER_ID:GNU>:-Wno-subobject-linkage>)
   endif()
   # -Wrestrict of GCC 12 cries wolf at every concatenation of strings (GCC bug 105329)
   # no contraction into fused multiply-add: the same source gives the same bits on every x86-64

@@ -80,7 +80,7 @@ std::vector<RateState> rates_for(const std::vector<ImuSample>& samples, nb::hand
     for (std::size_t k = 0; k < samples.size(); ++k) {
       out[k].time_ns = samples[k].time_ns;
       out[k].w_WI_I_rad_s = samples[k].angular_velocity_rad_s;
-      out[k].clipped_axes = samples[k].device_clip_flags & (kClipGyroX | kClipGyroY | kClipGyroZ);
+      out[k].clipped_axes = samples[k].device_clip_flags & kClipGyro;
     }
     return out;
   }

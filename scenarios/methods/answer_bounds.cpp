@@ -21,7 +21,7 @@ constexpr std::uintmax_t kBytesPerPoint = 32;  // x y z nx ny nz sigma, and a he
 constexpr std::int64_t kMargin_ns = 10'000'000'000;
 constexpr double kPositionMax_m = 1e7;
 constexpr double kRateMax_rad_s = 1e6;
-constexpr double kNormTolerance = 1e-2;
+constexpr double kAnswerNormTolerance = 1e-2;
 constexpr double kCorrelationTolerance = 1e-3;  // covariances that were written with few digits
 
 template <typename Vector>
@@ -37,8 +37,8 @@ void require_position(const Eigen::Vector3d& p_m, const std::string& where) {
 
 void require_attitude(const Eigen::Quaterniond& q, const std::string& where) {
   const double norm = q.coeffs().stableNorm();
-  if (std::abs(norm - 1.0) <= kNormTolerance) return;
-  throw BadInput(fmt::format("{}: quaternion of norm {:g}, must be 1 within {:g}", where, norm, kNormTolerance));
+  if (std::abs(norm - 1.0) <= kAnswerNormTolerance) return;
+  throw BadInput(fmt::format("{}: quaternion of norm {:g}, must be 1 within {:g}", where, norm, kAnswerNormTolerance));
 }
 
 /// Finite, no variance below 0, and no correlation beyond 1.

@@ -8,13 +8,13 @@ namespace tumble::scenarios {
 
 namespace {
 
-const Settings<baselines::Autogain::Params>& settings() {
+const Settings<baselines::Autogain::Params>& attitude_autogain_settings() {
   static const Settings<baselines::Autogain::Params> all(baselines::Autogain::Params{});
   return all;
 }
 
-Estimate run(const sim::Sensors& sensors, const sim::Values& parameters, const OracleInput&) {
-  return run_attitude_filter<baselines::Autogain>(sensors, settings().read(parameters));
+Estimate run_attitude_autogain(const sim::Sensors& sensors, const sim::Values& parameters, const OracleInput&) {
+  return run_attitude_filter<baselines::Autogain>(sensors, attitude_autogain_settings().read(parameters));
 }
 
 }  // namespace
@@ -25,8 +25,8 @@ Method attitude_autogain() {
   info.kind = Kind::attitude;
   info.doc = "Madgwick step and complementary step, the rate deciding between them; made for rolling spheres.";
   info.source = "Zevering et al., IMU-based pose-estimation for spherical robots, IEEE MFI 2021, eqs 2-5";
-  info.settings = {&settings()};
-  return make_method(std::move(info), run);
+  info.settings = {&attitude_autogain_settings()};
+  return make_method(std::move(info), run_attitude_autogain);
 }
 
 }  // namespace tumble::scenarios

@@ -8,13 +8,13 @@ namespace tumble::scenarios {
 
 namespace {
 
-const Settings<baselines::Complementary::Params>& settings() {
+const Settings<baselines::Complementary::Params>& attitude_complementary_settings() {
   static const Settings<baselines::Complementary::Params> all(baselines::Complementary::Params{});
   return all;
 }
 
-Estimate run(const sim::Sensors& sensors, const sim::Values& parameters, const OracleInput&) {
-  return run_attitude_filter<baselines::Complementary>(sensors, settings().read(parameters));
+Estimate run_attitude_complementary(const sim::Sensors& sensors, const sim::Values& parameters, const OracleInput&) {
+  return run_attitude_filter<baselines::Complementary>(sensors, attitude_complementary_settings().read(parameters));
 }
 
 }  // namespace
@@ -26,8 +26,8 @@ Method attitude_complementary() {
   info.doc =
       "The gyro integrated, levelled towards the specific force by the smallest rotation with one time constant.";
   info.source = "textbook complementary filter";
-  info.settings = {&settings()};
-  return make_method(std::move(info), run);
+  info.settings = {&attitude_complementary_settings()};
+  return make_method(std::move(info), run_attitude_complementary);
 }
 
 }  // namespace tumble::scenarios

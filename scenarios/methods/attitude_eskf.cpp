@@ -8,15 +8,15 @@ namespace tumble::scenarios {
 
 namespace {
 
-const Settings<baselines::Eskf::Params>& settings() {
+const Settings<baselines::Eskf::Params>& attitude_eskf_settings() {
   static const Settings<baselines::Eskf::Params> all(baselines::Eskf::Params{}, {.stated = {"gravity_m_s2"}});
   return all;
 }
 
-Estimate run(const sim::Sensors& sensors, const sim::Values& parameters, const OracleInput&) {
+Estimate run_attitude_eskf(const sim::Sensors& sensors, const sim::Values& parameters, const OracleInput&) {
   baselines::Eskf::Params params;
   params.gravity_m_s2 = sensors.gravity_m_s2;
-  settings().apply(parameters, params);
+  attitude_eskf_settings().apply(parameters, params);
   // the filter's error is that of AttitudeState: world axes, q_true = Exp(phi) q
   return run_attitude_filter<baselines::Eskf>(
       sensors, params,
@@ -31,8 +31,8 @@ Method attitude_eskf() {
   info.kind = Kind::attitude;
   info.doc = "Error-state Kalman filter of attitude and gyro bias with the specific force as a measurement of up.";
   info.source = "textbook, J. Sola, Quaternion kinematics for the error-state Kalman filter, arXiv 1711.02508";
-  info.settings = {&settings()};
-  return make_method(std::move(info), run);
+  info.settings = {&attitude_eskf_settings()};
+  return make_method(std::move(info), run_attitude_eskf);
 }
 
 }  // namespace tumble::scenarios

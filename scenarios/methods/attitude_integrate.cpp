@@ -8,13 +8,13 @@ namespace tumble::scenarios {
 
 namespace {
 
-const Settings<Strapdown::Params>& settings() {
+const Settings<Strapdown::Params>& attitude_integrate_settings() {
   static const Settings<Strapdown::Params> all(Strapdown::Params{});
   return all;
 }
 
-Estimate run(const sim::Sensors& sensors, const sim::Values& parameters, const OracleInput&) {
-  return run_attitude_filter<Strapdown>(sensors, settings().read(parameters));
+Estimate run_attitude_integrate(const sim::Sensors& sensors, const sim::Values& parameters, const OracleInput&) {
+  return run_attitude_filter<Strapdown>(sensors, attitude_integrate_settings().read(parameters));
 }
 
 }  // namespace
@@ -25,8 +25,8 @@ Method attitude_integrate() {
   info.kind = Kind::attitude;
   info.doc = "Integration of the primary IMU's gyro alone, levelled by its first sample.";
   info.source = "textbook strapdown";
-  info.settings = {&settings()};
-  return make_method(std::move(info), run);
+  info.settings = {&attitude_integrate_settings()};
+  return make_method(std::move(info), run_attitude_integrate);
 }
 
 }  // namespace tumble::scenarios

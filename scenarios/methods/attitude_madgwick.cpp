@@ -8,13 +8,13 @@ namespace tumble::scenarios {
 
 namespace {
 
-const Settings<baselines::Madgwick::Params>& settings() {
+const Settings<baselines::Madgwick::Params>& attitude_madgwick_settings() {
   static const Settings<baselines::Madgwick::Params> all(baselines::Madgwick::Params{});
   return all;
 }
 
-Estimate run(const sim::Sensors& sensors, const sim::Values& parameters, const OracleInput&) {
-  return run_attitude_filter<baselines::Madgwick>(sensors, settings().read(parameters));
+Estimate run_attitude_madgwick(const sim::Sensors& sensors, const sim::Values& parameters, const OracleInput&) {
+  return run_attitude_filter<baselines::Madgwick>(sensors, attitude_madgwick_settings().read(parameters));
 }
 
 }  // namespace
@@ -25,8 +25,8 @@ Method attitude_madgwick() {
   info.kind = Kind::attitude;
   info.doc = "Madgwick's gradient filter on the primary IMU's gyro and accelerometer.";
   info.source = "S. Madgwick, An efficient orientation filter for inertial and inertial/magnetic sensor arrays, 2010";
-  info.settings = {&settings()};
-  return make_method(std::move(info), run);
+  info.settings = {&attitude_madgwick_settings()};
+  return make_method(std::move(info), run_attitude_madgwick);
 }
 
 }  // namespace tumble::scenarios

@@ -8,13 +8,13 @@ namespace tumble::scenarios {
 
 namespace {
 
-const Settings<baselines::Mahony::Params>& settings() {
+const Settings<baselines::Mahony::Params>& attitude_mahony_settings() {
   static const Settings<baselines::Mahony::Params> all(baselines::Mahony::Params{});
   return all;
 }
 
-Estimate run(const sim::Sensors& sensors, const sim::Values& parameters, const OracleInput&) {
-  return run_attitude_filter<baselines::Mahony>(sensors, settings().read(parameters));
+Estimate run_attitude_mahony(const sim::Sensors& sensors, const sim::Values& parameters, const OracleInput&) {
+  return run_attitude_filter<baselines::Mahony>(sensors, attitude_mahony_settings().read(parameters));
 }
 
 }  // namespace
@@ -25,8 +25,8 @@ Method attitude_mahony() {
   info.kind = Kind::attitude;
   info.doc = "The explicit complementary filter on SO(3) with a gyro bias, gyro and accelerometer of the primary IMU.";
   info.source = "R. Mahony, T. Hamel, J.-M. Pflimlin, Nonlinear complementary filters, IEEE TAC 53(5), 2008";
-  info.settings = {&settings()};
-  return make_method(std::move(info), run);
+  info.settings = {&attitude_mahony_settings()};
+  return make_method(std::move(info), run_attitude_mahony);
 }
 
 }  // namespace tumble::scenarios

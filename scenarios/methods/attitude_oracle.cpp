@@ -13,8 +13,6 @@ namespace tumble::scenarios {
 
 namespace {
 
-constexpr std::uint8_t kGyroFlags = kClipGyroX | kClipGyroY | kClipGyroZ;
-
 /// The IMUs without the rails of their gyros; that of an accelerometer stays.
 sim::Sensors unclipped_gyros(const sim::Sensors& sensors, const sim::Truth& truth) {
   if (truth.imus.size() < sensors.imus.size()) throw BadInput("the truth does not hold every IMU");
@@ -30,12 +28,12 @@ sim::Sensors unclipped_gyros(const sim::Sensors& sensors, const sim::Truth& trut
     }
     imu.gyro_rad_s = truth.imus[i].gyro_unclipped_rad_s;
     imu.stated_gyro_range_rad_s = 0.0;
-    for (std::uint8_t& flags : imu.clip_flags) flags = static_cast<std::uint8_t>(flags & ~kGyroFlags);
+    for (std::uint8_t& flags : imu.clip_flags) flags = static_cast<std::uint8_t>(flags & ~kClipGyro);
   }
   return out;
 }
 
-Estimate run(const sim::Sensors& sensors, const sim::Values& parameters, const OracleInput& oracle) {
+Estimate run_attitude_oracle(const sim::Sensors& sensors, const sim::Values& parameters, const OracleInput& oracle) {
   // the readings themselves are checked too: an oracle shall not run where no method could
   Estimate estimate;
   std::vector<ImuSample> samples;
@@ -54,7 +52,7 @@ Method attitude_oracle() {
   info.ours = true;
   info.settings = {&attitude_tumble_settings()};
   info.needs_truth = true;
-  return make_method(std::move(info), run);
+  return make_method(std::move(info), run_attitude_oracle);
 }
 
 }  // namespace tumble::scenarios

@@ -92,7 +92,7 @@ Estimate run_attitude_tumble(const sim::Sensors& sensors, const sim::Values& par
 
 namespace {
 
-Estimate run(const sim::Sensors& sensors, const sim::Values& parameters, const OracleInput&) {
+Estimate run_attitude_tumble(const sim::Sensors& sensors, const sim::Values& parameters, const OracleInput&) {
   return run_attitude_tumble(sensors, parameters);
 }
 
@@ -107,7 +107,7 @@ Method attitude_tumble() {
       "rail hid are those of rate/tumble.";
   info.ours = true;
   info.settings = {&attitude_tumble_settings()};
-  return make_method(std::move(info), run);
+  return make_method(std::move(info), run_attitude_tumble);
 }
 
 }  // namespace tumble::scenarios

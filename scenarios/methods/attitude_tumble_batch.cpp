@@ -49,7 +49,7 @@ void check_readings(const sim::Sensors& sensors, const std::vector<ImuSample>& s
   (void)check_turning_between_rests(sensors, samples, read, estimate);
 }
 
-Estimate run(const sim::Sensors& sensors, const sim::Values& parameters, const OracleInput&) {
+Estimate run_attitude_tumble_batch(const sim::Sensors& sensors, const sim::Values& parameters, const OracleInput&) {
   Estimate estimate;
   std::vector<ImuSample> samples;
   estimate.status = bridge::primary_imu_samples(sensors, samples);
@@ -83,7 +83,7 @@ Method attitude_tumble_batch() {
       "clipped gyro axes as bounds, or with the rates of rate/tumble where nobody held the body meanwhile.";
   info.ours = true;
   info.settings = {&carried_settings()};
-  return make_method(std::move(info), run);
+  return make_method(std::move(info), run_attitude_tumble_batch);
 }
 
 }  // namespace tumble::scenarios

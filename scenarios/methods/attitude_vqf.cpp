@@ -9,13 +9,13 @@ namespace tumble::scenarios {
 namespace {
 
 // the library's defaults are the authors'
-const Settings<Vqf::Params>& settings() {
+const Settings<Vqf::Params>& attitude_vqf_settings() {
   static const Settings<Vqf::Params> all{Vqf::Params{}};
   return all;
 }
 
-Estimate run(const sim::Sensors& sensors, const sim::Values& parameters, const OracleInput&) {
-  return run_attitude_filter<Vqf>(sensors, settings().read(parameters));
+Estimate run_attitude_vqf(const sim::Sensors& sensors, const sim::Values& parameters, const OracleInput&) {
+  return run_attitude_filter<Vqf>(sensors, attitude_vqf_settings().read(parameters));
 }
 
 }  // namespace
@@ -26,8 +26,8 @@ Method attitude_vqf() {
   info.kind = Kind::attitude;
   info.doc = "Specific force low-passed in a nearly inertial frame, gyro bias at rest and in motion; no magnetometer.";
   info.source = "D. Laidig, T. Seel, VQF, Information Fusion 91, 2023";
-  info.settings = {&settings()};
-  return make_method(std::move(info), run);
+  info.settings = {&attitude_vqf_settings()};
+  return make_method(std::move(info), run_attitude_vqf);
 }
 
 }  // namespace tumble::scenarios

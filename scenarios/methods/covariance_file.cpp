@@ -14,7 +14,7 @@ namespace tumble::scenarios {
 namespace {
 
 const std::string kHeader = "time_ns,cxx,cxy,cxz,cyy,cyz,czz";
-constexpr std::size_t kColumns = 7;
+constexpr std::size_t kCovarianceColumns = 7;
 
 }  // namespace
 
@@ -52,7 +52,7 @@ void write_covariances(const std::filesystem::path& path, const std::vector<std:
 
 std::vector<Eigen::Matrix3d> read_covariances(const std::filesystem::path& path,
                                               const std::vector<std::int64_t>& stamps_ns) {
-  const Table table = Table::read(path, ',', kHeader, kColumns);
+  const Table table = Table::read(path, ',', kHeader, kCovarianceColumns);
   require_stamps(table, stamps_ns);
   std::vector<Eigen::Matrix3d> covariances(stamps_ns.size());
   for (std::size_t k = 0; k < stamps_ns.size(); ++k) {

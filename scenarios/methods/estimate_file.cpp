@@ -23,14 +23,14 @@ using nlohmann::json;
 
 constexpr int kFormatVersion = 1;
 const std::string kRatesHeader = "time_ns,wx_rad_s,wy_rad_s,wz_rad_s,cxx,cxy,cxz,cyy,cyz,czz,clipped_axes,source";
-const std::string kPose = "px_m,py_m,pz_m,qx,qy,qz,qw,vx_m_s,vy_m_s,vz_m_s";
+const std::string kPoseColumns = "px_m,py_m,pz_m,qx,qy,qz,qw,vx_m_s,vy_m_s,vz_m_s";
 const std::string kContactsHeader = "time_ns,label";
 const std::string kFlaggedContactsHeader = kContactsHeader + ",uncertain";
 constexpr std::size_t kCovarianceColumn = 16;  // of a sweep's pose: upper triangle by rows, position before attitude
 const std::string kSweepsHeader =
-    "end_ns,verdict,iterations,inlier_share,conditioning,pose_time_ns," + kPose +
+    "end_ns,verdict,iterations,inlier_share,conditioning,pose_time_ns," + kPoseColumns +
     ",c00,c01,c02,c03,c04,c05,c11,c12,c13,c14,c15,c22,c23,c24,c25,c33,c34,c35,c44,c45,c55";
-const std::string kSweepPosesHeader = "sweep,time_ns," + kPose;
+const std::string kSweepPosesHeader = "sweep,time_ns," + kPoseColumns;
 
 void write_quaternion(TableWriter& table, const Eigen::Quaterniond& q) {
   for (int j = 0; j < 4; ++j) table.number(q.coeffs()[j]);

@@ -21,7 +21,7 @@ constexpr std::int64_t kStampTolerance_ns = 1000;  // stamps that went through s
 constexpr const char* kRateColumns = "time_ns,wx_rad_s,wy_rad_s,wz_rad_s";
 constexpr const char* kWithCovariance = "time_ns,wx_rad_s,wy_rad_s,wz_rad_s,cxx,cxy,cxz,cyy,cyz,czz";
 
-std::string first_line(const std::filesystem::path& file) {
+std::string header_line(const std::filesystem::path& file) {
   std::ifstream stream(file);
   if (!stream) throw BadInput(file.filename().string() + ": the command did not leave it");
   std::string line;
@@ -42,7 +42,7 @@ Eigen::Matrix3d covariance(const Table& table, const Table::Row& row) {
 std::vector<RateState> read_rates(const std::filesystem::path& file, const sim::Sensors& sensors) {
   if (sensors.imus.empty()) throw BadInput("the recording has no IMU, whose samples rates belong to");
   const std::vector<std::int64_t>& stamps = sensors.imus.front().time_ns;
-  const std::string header = first_line(file);
+  const std::string header = header_line(file);
   const bool with_covariance = header == kWithCovariance;
   if (!with_covariance && header != kRateColumns)
     throw BadInput(file.filename().string() + ":1: header '" + header.substr(0, 120) + "', must be '" + kRateColumns +

@@ -33,7 +33,7 @@ baselines::AutogainFusion::Params fusion_params(const sim::Sensors& sensors, con
 }
 
 // as published, the attitude is the autogain filter's, of the readings as they are
-Estimate run(const sim::Sensors& sensors, const sim::Values& parameters, const OracleInput&) {
+Estimate run_position_autogain_fusion(const sim::Sensors& sensors, const sim::Values& parameters, const OracleInput&) {
   Estimate estimate;
   estimate.frame = Frame::centre;
   std::vector<ImuSample> samples;
@@ -66,7 +66,7 @@ Method position_autogain_fusion() {
   info.source = "Zevering et al., IMU-based pose-estimation for spherical robots, IEEE MFI 2021, eqs 2-13";
   info.settings = {&attitude_settings(), &fusion_settings()};
   info.robots = {"sphere"};
-  return make_method(std::move(info), run);
+  return make_method(std::move(info), run_position_autogain_fusion);
 }
 
 }  // namespace tumble::scenarios

@@ -9,13 +9,14 @@ namespace tumble::scenarios {
 
 namespace {
 
-const Settings<baselines::DoubleIntegration::Params>& settings() {
+const Settings<baselines::DoubleIntegration::Params>& position_double_integration_settings() {
   static const Settings<baselines::DoubleIntegration::Params> all(baselines::DoubleIntegration::Params{},
                                                                   {.stated = {"gravity_m_s2"}});
   return all;
 }
 
-Estimate run(const sim::Sensors& sensors, const sim::Values& parameters, const OracleInput&) {
+Estimate run_position_double_integration(const sim::Sensors& sensors, const sim::Values& parameters,
+                                         const OracleInput&) {
   Estimate estimate;
   estimate.frame = Frame::centre;
   SphereAttitude attitude;
@@ -25,7 +26,7 @@ Estimate run(const sim::Sensors& sensors, const sim::Values& parameters, const O
 
   baselines::DoubleIntegration::Params params;
   params.gravity_m_s2 = sensors.gravity_m_s2;
-  settings().apply(parameters, params);
+  position_double_integration_settings().apply(parameters, params);
   const baselines::DoubleIntegration integration(params);
   baselines::DoubleIntegration::State state;
   const Eigen::Vector3d arm_I_m = bridge::lever_arm_I_m(sensors.imus.front());
@@ -52,9 +53,9 @@ Method position_double_integration() {
   info.kind = Kind::position;
   info.doc = "The accelerometer integrated twice with the integrated attitude: nothing bounds its drift.";
   info.source = "textbook strapdown inertial navigation";
-  info.settings = {&rest_settings(), &settings()};
+  info.settings = {&rest_settings(), &position_double_integration_settings()};
   info.robots = {"sphere"};
-  return make_method(std::move(info), run);
+  return make_method(std::move(info), run_position_double_integration);
 }
 
 }  // namespace tumble::scenarios

@@ -10,7 +10,7 @@ namespace tumble::scenarios {
 namespace {
 
 // thresholds of the library, whose own defaults they are
-const Settings<baselines::SlipObserver::Params>& settings() {
+const Settings<baselines::SlipObserver::Params>& position_observer_settings() {
   static const Settings<baselines::SlipObserver::Params> all(
       baselines::SlipObserver::Params{},
       {.stated = {"radius_m", "gravity_m_s2", "lever_arm_x_m", "lever_arm_y_m", "lever_arm_z_m"}});
@@ -23,11 +23,11 @@ baselines::SlipObserver::Params observer_params(const sim::Sensors& sensors, con
   params.gravity_m_s2 = sensors.gravity_m_s2;
   // from the centre of mass, which the calibration refers to; the geometric centre is some mm away
   params.lever_arm_m = bridge::lever_arm_I_m(sensors.imus.front());
-  settings().apply(parameters, params);
+  position_observer_settings().apply(parameters, params);
   return params;
 }
 
-Estimate run(const sim::Sensors& sensors, const sim::Values& parameters, const OracleInput&) {
+Estimate run_position_observer(const sim::Sensors& sensors, const sim::Values& parameters, const OracleInput&) {
   Estimate estimate;
   estimate.frame = Frame::centre;
   SphereAttitude attitude;
@@ -62,9 +62,9 @@ Method position_observer() {
   info.doc =
       "Rolling plus a contact velocity, integrated from what acceleration and rolling disagree in during events.";
   info.source = "ours, kept to compare with: superseded by position/tumble";
-  info.settings = {&rest_settings(), &settings()};
+  info.settings = {&rest_settings(), &position_observer_settings()};
   info.robots = {"sphere"};
-  return make_method(std::move(info), run);
+  return make_method(std::move(info), run_position_observer);
 }
 
 }  // namespace tumble::scenarios

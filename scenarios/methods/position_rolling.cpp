@@ -8,13 +8,13 @@ namespace tumble::scenarios {
 
 namespace {
 
-const Settings<baselines::RollingOdometry::Params>& settings() {
+const Settings<baselines::RollingOdometry::Params>& position_rolling_settings() {
   static const Settings<baselines::RollingOdometry::Params> all(baselines::RollingOdometry::Params{},
                                                                 {.stated = {"radius_m"}});
   return all;
 }
 
-Estimate run(const sim::Sensors& sensors, const sim::Values& parameters, const OracleInput&) {
+Estimate run_position_rolling(const sim::Sensors& sensors, const sim::Values& parameters, const OracleInput&) {
   Estimate estimate;
   estimate.frame = Frame::centre;
   SphereAttitude attitude;
@@ -23,7 +23,7 @@ Estimate run(const sim::Sensors& sensors, const sim::Values& parameters, const O
 
   baselines::RollingOdometry::Params params;
   params.radius_m = sensors.sphere_radius_m;
-  settings().apply(parameters, params);
+  position_rolling_settings().apply(parameters, params);
   const baselines::RollingOdometry odometry(params);
   baselines::RollingOdometry::State state;
   estimate.poses.reserve(attitude.samples.size());
@@ -45,9 +45,9 @@ Method position_rolling() {
   info.doc =
       "Rolling without slip on a level plane: attitude by integration after the gyro's bias at rest, v = r w x n.";
   info.source = "textbook rolling constraint";
-  info.settings = {&rest_settings(), &settings()};
+  info.settings = {&rest_settings(), &position_rolling_settings()};
   info.robots = {"sphere"};
-  return make_method(std::move(info), run);
+  return make_method(std::move(info), run_position_rolling);
 }
 
 }  // namespace tumble::scenarios

@@ -22,7 +22,7 @@ using nlohmann::json;
 static_assert(std::endian::native == std::endian::little);
 
 constexpr std::size_t kAlignment = 64;
-constexpr double kNormTolerance = 1e-2;
+constexpr double kQuaternionTolerance = 1e-2;
 
 std::size_t aligned(std::size_t size) {
   return (size + kAlignment - 1) / kAlignment * kAlignment;
@@ -209,7 +209,7 @@ std::vector<PoseState> read_poses(const Answer& answer) {
     poses[k].time_ns = times_ns[k];
     poses[k].p_WA_m = row_of(positions, k);
     const Eigen::Quaterniond q{Eigen::Map<const Eigen::Vector4d>(&quaternions[4 * k])};
-    if (!(std::abs(q.coeffs().stableNorm() - 1.0) <= kNormTolerance) || (k > 0 && times_ns[k] <= times_ns[k - 1]))
+    if (!(std::abs(q.coeffs().stableNorm() - 1.0) <= kQuaternionTolerance) || (k > 0 && times_ns[k] <= times_ns[k - 1]))
       throw BadInput("pose " + std::to_string(k) + " of the answer has no attitude, or a time that does not rise");
     poses[k].q_WA = q.normalized();
   }

@@ -13,7 +13,7 @@ namespace tumble::scenarios {
 
 namespace {
 
-const Settings<baselines::AccelerometerRate::Params>& settings() {
+const Settings<baselines::AccelerometerRate::Params>& rate_accelerometers_settings() {
   static const Settings<baselines::AccelerometerRate::Params> all(
       baselines::AccelerometerRate::Params{}, {.stated = {"gyro_noise_density", "accel_noise_density"}});
   return all;
@@ -41,7 +41,7 @@ Status auxiliary_imu(const sim::ImuRecord& primary, const sim::ImuRecord& other,
   return {};
 }
 
-Estimate run(const sim::Sensors& sensors, const sim::Values& parameters, const OracleInput&) {
+Estimate run_rate_accelerometers(const sim::Sensors& sensors, const sim::Values& parameters, const OracleInput&) {
   Estimate estimate;
   std::vector<ImuSample> samples;
   estimate.status = bridge::primary_imu_samples(sensors, samples);
@@ -59,7 +59,7 @@ Estimate run(const sim::Sensors& sensors, const sim::Values& parameters, const O
     params.accel_noise_density = baselines::AccelerometerRate::Params{}.accel_noise_density;
   params.rails = stated_rails(record);
   if (record.gyro_noise_rad_s_sqrt_hz > 0.0) params.gyro_noise_density = record.gyro_noise_rad_s_sqrt_hz;
-  settings().apply(parameters, params);
+  rate_accelerometers_settings().apply(parameters, params);
   estimate.status = baselines::AccelerometerRate(params).estimate(samples, auxiliary_imus, estimate.rates);
   estimate.health["accelerometers"] = static_cast<double>(sensors.imus.size());
   count_sources(estimate.rates, estimate.health);
@@ -76,8 +76,8 @@ Method rate_accelerometers() {
       "Gyro-free: an extended Kalman filter on the differences of all accelerometers, the reference's too (never its "
       "gyro), and on the gyro's free axes. Made for long fast rotation with a wide spread of accelerometers.";
   info.source = "the family of Pachter's and Lee's gyro-free inertial systems";
-  info.settings = {&settings()};
-  return make_method(std::move(info), run);
+  info.settings = {&rate_accelerometers_settings()};
+  return make_method(std::move(info), run_rate_accelerometers);
 }
 
 }  // namespace tumble::scenarios

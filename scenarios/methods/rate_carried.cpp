@@ -7,7 +7,7 @@ namespace tumble::scenarios {
 
 namespace {
 
-Estimate run(const sim::Sensors& sensors, const sim::Values& parameters, const OracleInput&) {
+Estimate run_rate_carried(const sim::Sensors& sensors, const sim::Values& parameters, const OracleInput&) {
   Estimate estimate;
   std::vector<AttitudeState> attitudes;
   estimate.status = run_carried(sensors, parameters, estimate.rates, attitudes, estimate.health);
@@ -26,7 +26,7 @@ Method rate_carried() {
       "rate that a clipped gyro lost.";
   info.ours = true;
   info.settings = {&carried_settings()};
-  return make_method(std::move(info), run);
+  return make_method(std::move(info), run_rate_carried);
 }
 
 }  // namespace tumble::scenarios

@@ -7,15 +7,15 @@ namespace tumble::scenarios {
 namespace {
 
 // of the other kinds are fixed
-const Settings<baselines::ClippedBaseline::Params>& settings() {
+const Settings<baselines::ClippedBaseline::Params>& rate_constant_jerk_settings() {
   static const Settings<baselines::ClippedBaseline::Params> all(
       {.kind = baselines::ClippedBaseline::Kind::constant_jerk},
       {.stated = {"gyro_noise_density"}, .fixed = {"acceleration_psd_rad2_s3"}});
   return all;
 }
 
-Estimate run(const sim::Sensors& sensors, const sim::Values& parameters, const OracleInput&) {
-  return run_clipped_baseline(settings(), sensors, parameters);
+Estimate run_rate_constant_jerk(const sim::Sensors& sensors, const sim::Values& parameters, const OracleInput&) {
+  return run_clipped_baseline(rate_constant_jerk_settings(), sensors, parameters);
 }
 
 }  // namespace
@@ -28,8 +28,8 @@ Method rate_constant_jerk() {
       "A smoother per axis whose angular jerk is a random walk and whose rate stays bounded, clipped readings as "
       "bounds. Made for swings that pass the rail once, without impacts while they are clipped.";
   info.source = "textbook: Rauch, Tung and Striebel 1965 with a constant-jerk model (Matern 5/2)";
-  info.settings = {&settings()};
-  return make_method(std::move(info), run);
+  info.settings = {&rate_constant_jerk_settings()};
+  return make_method(std::move(info), run_rate_constant_jerk);
 }
 
 }  // namespace tumble::scenarios

@@ -7,7 +7,7 @@ namespace tumble::scenarios {
 namespace {
 
 // of the other kinds are fixed
-const Settings<baselines::ClippedBaseline::Params>& settings() {
+const Settings<baselines::ClippedBaseline::Params>& rate_interpolate_settings() {
   static const Settings<baselines::ClippedBaseline::Params> all(
       {.kind = baselines::ClippedBaseline::Kind::interpolate},
       {.stated = {"gyro_noise_density"},
@@ -15,8 +15,8 @@ const Settings<baselines::ClippedBaseline::Params>& settings() {
   return all;
 }
 
-Estimate run(const sim::Sensors& sensors, const sim::Values& parameters, const OracleInput&) {
-  return run_clipped_baseline(settings(), sensors, parameters);
+Estimate run_rate_interpolate(const sim::Sensors& sensors, const sim::Values& parameters, const OracleInput&) {
+  return run_clipped_baseline(rate_interpolate_settings(), sensors, parameters);
 }
 
 }  // namespace
@@ -29,8 +29,8 @@ Method rate_interpolate() {
       "A cubic over each clipped gap, value and slope continued from both sides and held beyond the rail. Made for "
       "gaps that are short beside the motion, without impacts in them.";
   info.source = "textbook: cubic interpolation";
-  info.settings = {&settings()};
-  return make_method(std::move(info), run);
+  info.settings = {&rate_interpolate_settings()};
+  return make_method(std::move(info), run_rate_interpolate);
 }
 
 }  // namespace tumble::scenarios

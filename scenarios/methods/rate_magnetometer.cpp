@@ -9,13 +9,13 @@ namespace tumble::scenarios {
 
 namespace {
 
-const Settings<baselines::MagnetometerRate::Params>& settings() {
+const Settings<baselines::MagnetometerRate::Params>& rate_magnetometer_settings() {
   static const Settings<baselines::MagnetometerRate::Params> all(baselines::MagnetometerRate::Params{},
                                                                  {.stated = {"gyro_noise_density", "earth_field_t"}});
   return all;
 }
 
-Estimate run(const sim::Sensors& sensors, const sim::Values& parameters, const OracleInput&) {
+Estimate run_rate_magnetometer(const sim::Sensors& sensors, const sim::Values& parameters, const OracleInput&) {
   Estimate estimate;
   std::vector<ImuSample> samples;
   estimate.status = bridge::primary_imu_samples(sensors, samples);
@@ -25,7 +25,7 @@ Estimate run(const sim::Sensors& sensors, const sim::Values& parameters, const O
   params.rails = stated_rails(record);
   if (record.gyro_noise_rad_s_sqrt_hz > 0.0) params.gyro_noise_density = record.gyro_noise_rad_s_sqrt_hz;
   params.earth_field_t = record.earth_field_W_t.norm();
-  settings().apply(parameters, params);
+  rate_magnetometer_settings().apply(parameters, params);
   estimate.status = baselines::MagnetometerRate(params).estimate(samples, record.magnetic_field_t, estimate.rates);
   estimate.health["magnetometers"] = record.magnetic_field_t.empty() ? 0.0 : 1.0;
   count_sources(estimate.rates, estimate.health);
@@ -42,8 +42,8 @@ Method rate_magnetometer() {
       "An extended Kalman filter that follows the turning of the magnetic field beside the gyro's free axes. Made for "
       "fast spin across the field in the open; without a magnetometer in the recording smoothness alone is left.";
   info.source = "the family of Tan's filters for spinning bodies";
-  info.settings = {&settings()};
-  return make_method(std::move(info), run);
+  info.settings = {&rate_magnetometer_settings()};
+  return make_method(std::move(info), run_rate_magnetometer);
 }
 
 }  // namespace tumble::scenarios

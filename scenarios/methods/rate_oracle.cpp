@@ -7,7 +7,7 @@ namespace tumble::scenarios {
 
 namespace {
 
-Estimate run(const sim::Sensors& sensors, const sim::Values&, const OracleInput& oracle) {
+Estimate run_rate_oracle(const sim::Sensors& sensors, const sim::Values&, const OracleInput& oracle) {
   Estimate estimate;
   estimate.status = unclipped_rates(sensors, *oracle.truth, estimate.rates);
   count_sources(estimate.rates, estimate.health);
@@ -35,7 +35,7 @@ Method rate_oracle() {
   info.doc = "The same gyro without its rail: noise, bias and bandwidth as read, nothing clipped. The bound.";
   info.ours = true;
   info.needs_truth = true;
-  return make_method(std::move(info), run);
+  return make_method(std::move(info), run_rate_oracle);
 }
 
 }  // namespace tumble::scenarios

@@ -6,9 +6,7 @@ namespace tumble::scenarios {
 
 namespace {
 
-constexpr std::uint8_t kGyroFlags = kClipGyroX | kClipGyroY | kClipGyroZ;
-
-Estimate run(const sim::Sensors& sensors, const sim::Values&, const OracleInput&) {
+Estimate run_rate_raw(const sim::Sensors& sensors, const sim::Values&, const OracleInput&) {
   Estimate estimate;
   std::vector<ImuSample> samples;
   estimate.status = bridge::primary_imu_samples(sensors, samples);
@@ -26,7 +24,7 @@ Status raw_rates(const sim::Sensors& sensors, std::span<const ImuSample> samples
     out[k].time_ns = samples[k].time_ns;
     out[k].w_WI_I_rad_s = samples[k].angular_velocity_rad_s;
     out[k].covariance_rad2_s2 = variance * Eigen::Matrix3d::Identity();
-    out[k].clipped_axes = samples[k].device_clip_flags & kGyroFlags;
+    out[k].clipped_axes = samples[k].device_clip_flags & kClipGyro;
     out[k].source = out[k].clipped_axes ? RateSource::bounded_only : RateSource::measured;
   }
   return {};
@@ -39,7 +37,7 @@ Method rate_raw() {
   info.doc = "The primary IMU's gyro as it is, clipped where it clips; its variance is the data sheet's noise.";
   info.source = "no method: the baseline";
   info.baseline = true;
-  return make_method(std::move(info), run);
+  return make_method(std::move(info), run_rate_raw);
 }
 
 }  // namespace tumble::scenarios

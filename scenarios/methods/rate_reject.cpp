@@ -7,15 +7,15 @@ namespace tumble::scenarios {
 namespace {
 
 // of the other kinds are fixed
-const Settings<baselines::ClippedBaseline::Params>& settings() {
+const Settings<baselines::ClippedBaseline::Params>& rate_reject_settings() {
   static const Settings<baselines::ClippedBaseline::Params> all(
       {.kind = baselines::ClippedBaseline::Kind::reject},
       {.stated = {"gyro_noise_density"}, .fixed = {"snap_psd_rad2_s7", "rate_sigma_rad_s"}});
   return all;
 }
 
-Estimate run(const sim::Sensors& sensors, const sim::Values& parameters, const OracleInput&) {
-  return run_clipped_baseline(settings(), sensors, parameters);
+Estimate run_rate_reject(const sim::Sensors& sensors, const sim::Values& parameters, const OracleInput&) {
+  return run_clipped_baseline(rate_reject_settings(), sensors, parameters);
 }
 
 }  // namespace
@@ -28,8 +28,8 @@ Method rate_reject() {
       "Clipped rows are dropped and the rate is a random walk pinned by its process noise alone, forward in time. Made "
       "for gaps shorter than the time between two corrections by a lidar, which this stage does not have.";
   info.source = "He et al., Point-LIO, Advanced Intelligent Systems 2023: its treatment of saturated readings";
-  info.settings = {&settings()};
-  return make_method(std::move(info), run);
+  info.settings = {&rate_reject_settings()};
+  return make_method(std::move(info), run_rate_reject);
 }
 
 }  // namespace tumble::scenarios

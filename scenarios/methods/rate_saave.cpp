@@ -13,7 +13,7 @@ std::vector<std::string> stated_lever_arm() {
   return {"lever_arm_x_m", "lever_arm_y_m", "lever_arm_z_m"};
 }
 
-Estimate run(const sim::Sensors& sensors, const sim::Values& parameters, const OracleInput&) {
+Estimate run_rate_saave(const sim::Sensors& sensors, const sim::Values& parameters, const OracleInput&) {
   Estimate estimate;
   std::vector<ImuSample> samples;
   estimate.status = bridge::primary_imu_samples(sensors, samples);
@@ -62,7 +62,7 @@ Method rate_saave() {
   info.source = "Deschenes et al., Saturation-Aware Angular Velocity Estimation, ICRA 2024";
   info.settings = {&saave_settings()};
   info.robots = {"rig", "pendulum"};
-  return make_method(std::move(info), run);
+  return make_method(std::move(info), run_rate_saave);
 }
 
 }  // namespace tumble::scenarios

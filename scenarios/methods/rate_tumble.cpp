@@ -104,7 +104,7 @@ constexpr double kTrust = 4.0;
 // What the slopes of a gyro's elements change from run to run: a wand's rail was seen at 0.017 to 0.021 in six of them.
 constexpr double kElementDrift = 2e-3;
 
-Estimate run(const sim::Sensors& sensors, const sim::Values& parameters, const OracleInput&) {
+Estimate run_rate_tumble(const sim::Sensors& sensors, const sim::Values& parameters, const OracleInput&) {
   return run_rate_tumble(sensors, parameters, nullptr, nullptr);
 }
 
@@ -221,7 +221,7 @@ Method rate_tumble() {
   info.settings = {&rate_tumble_settings()};
   info.robots = {"rig", "pendulum"};
   info.learns_rig = true;
-  return make_method(std::move(info), run);
+  return make_method(std::move(info), run_rate_tumble);
 }
 
 }  // namespace tumble::scenarios

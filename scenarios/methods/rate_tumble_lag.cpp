@@ -16,7 +16,7 @@ namespace tumble::scenarios {
 
 namespace {
 
-const Settings<RegimeStream::Params>& settings() {
+const Settings<RegimeStream::Params>& rate_tumble_lag_settings() {
   static const Settings<RegimeStream::Params> all = [] {
     std::vector<std::string> stated = stated_densities();
     stated.insert(stated.end(), {"period_s", "evidence_gravity_m_s2", "carried_gravity_m_s2", "carried_min"});
@@ -30,7 +30,7 @@ const Settings<RegimeStream::Params>& settings() {
 
 RegimeStream::Params stream_params(const sim::Sensors& sensors, const sim::Values& parameters, const LearntRig* given) {
   const sim::ImuRecord& record = sensors.imus.front();
-  RegimeStream::Params params = settings().defaults();
+  RegimeStream::Params params = rate_tumble_lag_settings().defaults();
   RateStream::Params& rate = params.rate;
   RateSmoother::Params batch;
   batch.model = rate.model;
@@ -39,7 +39,7 @@ RegimeStream::Params stream_params(const sim::Sensors& sensors, const sim::Value
   rate.rails = batch.rails;
   if (record.period_ns > 0) rate.period_s = seconds(record.period_ns);
   params.evidence.gravity_m_s2 = params.carried.body.gravity_m_s2 = sensors.gravity_m_s2;
-  settings().apply(parameters, params);
+  rate_tumble_lag_settings().apply(parameters, params);
   rate.lag_s = std::max(rate.lag_s, 2.0 * rate.period_s);
   params.carried.body.expert.gap_max_s = rate.gap_max_s;
   if (given == nullptr) return params;
@@ -72,7 +72,7 @@ LearntRig learnt_by(const RateStream& stream, const RateStream::Params& params, 
   return rig;
 }
 
-Estimate run(const sim::Sensors& sensors, const sim::Values& parameters, const OracleInput&) {
+Estimate run_rate_tumble_lag(const sim::Sensors& sensors, const sim::Values& parameters, const OracleInput&) {
   return run_rate_tumble_lag(sensors, parameters, nullptr, nullptr);
 }
 
@@ -139,10 +139,10 @@ Method rate_tumble_lag() {
   info.doc =
       "The smoother `tumble` as a stream: the same factors in a sliding window, estimates given out at a fixed age.";
   info.ours = true;
-  info.settings = {&settings()};
+  info.settings = {&rate_tumble_lag_settings()};
   info.robots = {"rig", "pendulum"};
   info.learns_rig = true;
-  return make_method(std::move(info), run);
+  return make_method(std::move(info), run_rate_tumble_lag);
 }
 
 }  // namespace tumble::scenarios

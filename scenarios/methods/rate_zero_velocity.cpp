@@ -9,14 +9,14 @@ namespace tumble::scenarios {
 
 namespace {
 
-const Settings<baselines::StandstillSmoother::Params>& settings() {
+const Settings<baselines::StandstillSmoother::Params>& rate_zero_velocity_settings() {
   static const Settings<baselines::StandstillSmoother::Params> all(
       baselines::StandstillSmoother::Params{},
       {.stated = {"gravity_m_s2", "gyro_noise_density", "accel_noise_density"}});
   return all;
 }
 
-Estimate run(const sim::Sensors& sensors, const sim::Values& parameters, const OracleInput&) {
+Estimate run_rate_zero_velocity(const sim::Sensors& sensors, const sim::Values& parameters, const OracleInput&) {
   Estimate estimate;
   std::vector<ImuSample> samples;
   estimate.status = bridge::primary_imu_samples(sensors, samples);
@@ -27,7 +27,7 @@ Estimate run(const sim::Sensors& sensors, const sim::Values& parameters, const O
   params.gravity_m_s2 = sensors.gravity_m_s2;
   if (record.gyro_noise_rad_s_sqrt_hz > 0.0) params.gyro_noise_density = record.gyro_noise_rad_s_sqrt_hz;
   if (record.accel_noise_m_s2_sqrt_hz > 0.0) params.accel_noise_density = record.accel_noise_m_s2_sqrt_hz;
-  settings().apply(parameters, params);
+  rate_zero_velocity_settings().apply(parameters, params);
   estimate.status = baselines::StandstillSmoother(params).estimate(samples, estimate.rates);
   count_sources(estimate.rates, estimate.health);
   return estimate;
@@ -44,8 +44,8 @@ Method rate_zero_velocity() {
       "motions of a second or two from rest to rest that clip a few samples (steps, hand motion); after the turns of a "
       "tumble tilt and velocity no longer tell what was lost, and bounds and smoothness are left.";
   info.source = "the family of Dang and Suh's smoothers for inertial sensors between zero-velocity intervals";
-  info.settings = {&settings()};
-  return make_method(std::move(info), run);
+  info.settings = {&rate_zero_velocity_settings()};
+  return make_method(std::move(info), run_rate_zero_velocity);
 }
 
 }  // namespace tumble::scenarios

@@ -56,9 +56,9 @@ json rails(const LearntRig& rig, std::size_t first) {
 }
 
 // Reads arrays and says what is wrong where.
-class Reader {
+class CalibrationReader {
  public:
-  Reader(const std::filesystem::path& path, const json& object) : path_(path), object_(object) {}
+  CalibrationReader(const std::filesystem::path& path, const json& object) : path_(path), object_(object) {}
 
   [[noreturn]] void complain(const std::string& key, const std::string& what) const {
     throw BadInput(path_.string() + ": " + key + ": " + what);
@@ -235,7 +235,7 @@ void write_learnt_rig(const std::filesystem::path& path, const LearntRig& rig) {
 
 namespace {
 
-void read_device_errors(const Reader& reader, const json& object, LearntRig& rig) {
+void read_device_errors(const CalibrationReader& reader, const json& object, LearntRig& rig) {
   if (object.contains(kErrorsKey) != object.contains(kErrorsCovarianceKey)) {
     reader.complain(object.contains(kErrorsKey) ? kErrorsCovarianceKey : kErrorsKey, "missing");
   }
@@ -263,7 +263,7 @@ LearntRig read_learnt_rig(const std::filesystem::path& path) {
   if (!file) throw BadInput(path.string() + ": cannot be read");
   const json object = json::parse(file, nullptr, false);
   if (!object.is_object()) throw BadInput(path.string() + ": not a JSON object");
-  const Reader reader(path, object);
+  const CalibrationReader reader(path, object);
   for (const char* key : kKeys) {
     if (!object.contains(key)) reader.complain(key, "missing");
   }

@@ -18,9 +18,9 @@ constexpr double kGainGyroBias = 1.0;
 constexpr double kGainAccelBias = 2.25;
 constexpr double kBiasMax = 0.5;   // both biases are bounded, as in the authors' code
 constexpr double kSpanMaxS = 0.2;  // of a correction: the gains are for sweeps, not for gaps
-constexpr int kParts = 4;          // of a sample, between which rate and force run linearly
-constexpr double kPriorM = 0.5;
-constexpr double kPriorRad = 0.2;
+constexpr int kPartsOfSample = 4;  // of a sample, between which rate and force run linearly
+constexpr double kJerkPriorM = 0.5;
+constexpr double kJerkPriorRad = 0.2;
 
 /// Strapdown with rate and specific force linear in time (constant jerk and angular acceleration) from the last
 /// registered pose, with velocity and biases of a geometric observer: what the registration finds feeds back into the
@@ -38,10 +38,10 @@ class ConstantJerk : public TrajectoryModel {
     motion.start = registered_;
     motion.start.v_WI_m_s = observer_.v_WI_m_s;
     motion.start.time_ns = from_ns;
-    motion.samples = imu_motion(samples_, rates_, gyro_bias_, from_ns, to_ns, kParts);
+    motion.samples = imu_motion(samples_, rates_, gyro_bias_, from_ns, to_ns, kPartsOfSample);
     for (MotionSample& sample : motion.samples) sample.f_I_m_s2 -= accel_bias_;
     motion.gravity_m_s2 = gravity_m_s2_;
-    motion.end_covariance = loose_covariance(kPriorM, kPriorRad);
+    motion.end_covariance = loose_covariance(kJerkPriorM, kJerkPriorRad);
     from_ns_ = from_ns;
     observer_.time_ns = from_ns;
     SweepTrajectory trajectory;
@@ -75,7 +75,7 @@ class ConstantJerk : public TrajectoryModel {
   TimeNs from_ns_ = 0;
 };
 
-Estimate run(const sim::Sensors& sensors, const sim::Values& parameters, const OracleInput&) {
+Estimate run_slam_constant_jerk(const sim::Sensors& sensors, const sim::Values& parameters, const OracleInput&) {
   Estimate estimate;
   std::vector<ImuSample> samples;
   StartAtRest start;
@@ -97,7 +97,7 @@ Method slam_constant_jerk() {
            "original.",
        .source = "the family of DLIO, Chen et al., ICRA 2023",
        .settings = {&rigid_settings()}},
-      run);
+      run_slam_constant_jerk);
 }
 
 }  // namespace tumble::scenarios

@@ -12,8 +12,8 @@ namespace {
 constexpr int kPosesPerSweep = 10;  // told where no IMU says when
 
 // No prior worth the name: the registration alone decides, as in the family.
-constexpr double kPriorM = 1.0;
-constexpr double kPriorRad = 0.5;
+constexpr double kVelocityPriorM = 1.0;
+constexpr double kVelocityPriorRad = 0.5;
 
 /// The last change of pose goes on, in translation and in rotation. Nothing of the IMU is used but the times of its
 /// samples, at which poses are told, and the vertical at the start, which the scores need and a lidar does not know.
@@ -29,7 +29,7 @@ class ConstantVelocity : public TrajectoryModel {
     motion.start = last_;
     motion.start.time_ns = from_ns;
     motion.samples = steady_motion(samples_, rate_rad_s_, Eigen::Vector3d::Zero(), from_ns, to_ns);
-    motion.end_covariance = loose_covariance(kPriorM, kPriorRad);
+    motion.end_covariance = loose_covariance(kVelocityPriorM, kVelocityPriorRad);
     from_ns_ = from_ns;
     return motion;
   }
@@ -66,7 +66,7 @@ std::vector<ImuSample> instants(const sim::LidarRecord& lidar) {
   return out;
 }
 
-Estimate run(const sim::Sensors& sensors, const sim::Values& parameters, const OracleInput&) {
+Estimate run_slam_constant_velocity(const sim::Sensors& sensors, const sim::Values& parameters, const OracleInput&) {
   Estimate estimate;
   estimate.frame = Frame::lidar;
   baselines::RigidOdometry::Params params = rigid_params(sensors, parameters);
@@ -100,7 +100,7 @@ Method slam_constant_velocity() {
            "threshold and the point-to-point distance of the original.",
        .source = "the family of KISS-ICP, Vizzo et al., RA-L 2023",
        .settings = {&rigid_settings()}},
-      run);
+      run_slam_constant_velocity);
 }
 
 }  // namespace tumble::scenarios

@@ -11,8 +11,8 @@ namespace tumble::scenarios {
 
 namespace {
 
-constexpr double kPriorM = 0.05;
-constexpr double kPriorRad = 0.02;
+constexpr double kFloorPriorM = 0.05;
+constexpr double kFloorPriorRad = 0.02;
 
 /// The true motion of the IMU, relative to the sweep's start: every physics step of it, in the body's axes.
 class TrueMotion : public TrajectoryModel {
@@ -38,7 +38,7 @@ class TrueMotion : public TrajectoryModel {
       sample.w_WI_I_rad_s = turned / step_s;
       sample.f_I_m_s2 = (attitude(k) * so3::exp(0.5 * turned)).conjugate() * ((velocity(k + 1) - velocity(k)) / step_s);
     }
-    motion.end_covariance = loose_covariance(kPriorM, kPriorRad);
+    motion.end_covariance = loose_covariance(kFloorPriorM, kFloorPriorRad);
     return motion;
   }
 
@@ -57,7 +57,7 @@ class TrueMotion : public TrajectoryModel {
   MotionState last_;
 };
 
-Estimate run(const sim::Sensors& sensors, const sim::Values& parameters, const OracleInput& oracle) {
+Estimate run_slam_floor(const sim::Sensors& sensors, const sim::Values& parameters, const OracleInput& oracle) {
   Estimate estimate;
   std::vector<ImuSample> samples;
   StartAtRest start;
@@ -84,7 +84,7 @@ Method slam_floor() {
        .ours = true,
        .settings = {&rigid_settings()},
        .needs_truth = true},
-      run);
+      run_slam_floor);
 }
 
 }  // namespace tumble::scenarios

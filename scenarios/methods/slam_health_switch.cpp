@@ -11,8 +11,8 @@ namespace tumble::scenarios {
 namespace {
 
 constexpr TimeNs kSilentNs = 50'000'000;  // a sensor that says nothing for so long is sick
-constexpr double kPriorM = 0.5;
-constexpr double kPriorRad = 0.3;
+constexpr double kSwitchPriorM = 0.5;
+constexpr double kSwitchPriorRad = 0.3;
 constexpr double kHealthyRad = 0.05;  // what rotation by a healthy gyro may be off by
 
 /// Rotation from the gyro while it is healthy, else the last rotation goes on; translation at constant velocity. The
@@ -34,7 +34,7 @@ class HealthSwitch : public TrajectoryModel {
     });
     if (!healthy_) motion.samples = steady_motion(samples_, rate_rad_s_, Eigen::Vector3d::Zero(), from_ns, to_ns);
     for (MotionSample& sample : motion.samples) sample.f_I_m_s2.setZero();
-    motion.end_covariance = loose_covariance(kPriorM, healthy_ ? kHealthyRad : kPriorRad);
+    motion.end_covariance = loose_covariance(kSwitchPriorM, healthy_ ? kHealthyRad : kSwitchPriorRad);
     from_ns_ = from_ns;
     return motion;
   }
@@ -61,7 +61,7 @@ class HealthSwitch : public TrajectoryModel {
   TimeNs from_ns_ = 0;
 };
 
-Estimate run(const sim::Sensors& sensors, const sim::Values& parameters, const OracleInput&) {
+Estimate run_slam_health_switch(const sim::Sensors& sensors, const sim::Values& parameters, const OracleInput&) {
   Estimate estimate;
   std::vector<ImuSample> samples;
   StartAtRest start;
@@ -83,7 +83,7 @@ Method slam_health_switch() {
               "wheel and visual odometry, the other sources of the original's switch.",
        .source = "the family of LOCUS, Palieri et al., RA-L 2021",
        .settings = {&rigid_settings()}},
-      run);
+      run_slam_health_switch);
 }
 
 }  // namespace tumble::scenarios

@@ -9,22 +9,22 @@ namespace tumble::scenarios {
 
 namespace {
 
-const Settings<SlamParams>& chain_settings() {
+const Settings<SlamParams>& slam_icp_chain_settings() {
   static const Settings<SlamParams> all = slam_settings({});
   return all;
 }
 
-const Settings<Saave::Params>& rate_settings() {
-  static const Settings<Saave::Params> all = saave_settings_beside(chain_settings().rows());
+const Settings<Saave::Params>& slam_icp_rate_settings() {
+  static const Settings<Saave::Params> all = saave_settings_beside(slam_icp_chain_settings().rows());
   return all;
 }
 
-Estimate run(const sim::Sensors& sensors, const sim::Values& parameters, const OracleInput&) {
+Estimate run_slam_icp(const sim::Sensors& sensors, const sim::Values& parameters, const OracleInput&) {
   std::vector<ImuSample> samples;
   Estimate estimate = begin_with_rates(sensors, samples, [&](Estimate& out) {
-    return saave_rates(sensors, samples, rate_settings(), parameters, out.rates);
+    return saave_rates(sensors, samples, slam_icp_rate_settings(), parameters, out.rates);
   });
-  if (estimate.status.ok()) run_slam_chain(sensors, samples, {chain_settings(), parameters}, {}, estimate);
+  if (estimate.status.ok()) run_slam_chain(sensors, samples, {slam_icp_chain_settings(), parameters}, {}, estimate);
   return estimate;
 }
 
@@ -34,8 +34,8 @@ Method slam_icp() {
   return rig_slam({.name = "icp",
                    .doc = "Sweeps deskewed with the rates of saave, registered point-to-plane to a voxel map.",
                    .source = "after Deschenes et al., ICRA 2024, with a registration of our own",
-                   .settings = {&chain_settings(), &rate_settings()}},
-                  run);
+                   .settings = {&slam_icp_chain_settings(), &slam_icp_rate_settings()}},
+                  run_slam_icp);
 }
 
 }  // namespace tumble::scenarios

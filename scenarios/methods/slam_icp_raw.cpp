@@ -8,7 +8,7 @@ namespace tumble::scenarios {
 
 namespace {
 
-Estimate run(const sim::Sensors& sensors, const sim::Values& parameters, const OracleInput&) {
+Estimate run_slam_icp_raw(const sim::Sensors& sensors, const sim::Values& parameters, const OracleInput&) {
   std::vector<ImuSample> samples;
   Estimate estimate =
       begin_with_rates(sensors, samples, [&](Estimate& out) { return raw_rates(sensors, samples, out.rates); });
@@ -24,7 +24,7 @@ Method slam_icp_raw() {
                    .source = "baseline of Deschenes et al., ICRA 2024",
                    .settings = {&seed_settings()},
                    .baseline = true},
-                  run);
+                  run_slam_icp_raw);
 }
 
 }  // namespace tumble::scenarios

@@ -62,7 +62,7 @@ class IteratedFilter : public TrajectoryModel {
   double gravity_m_s2_;
 };
 
-Estimate run(const sim::Sensors& sensors, const sim::Values& parameters, const OracleInput&) {
+Estimate run_slam_iterated_filter(const sim::Sensors& sensors, const sim::Values& parameters, const OracleInput&) {
   Estimate estimate;
   std::vector<ImuSample> samples;
   StartAtRest start;
@@ -84,7 +84,7 @@ Method slam_iterated_filter() {
            "mounting as states.",
        .source = "the family of FAST-LIO2, Xu et al., T-RO 2022",
        .settings = {&rigid_settings()}},
-      run);
+      run_slam_iterated_filter);
 }
 
 }  // namespace tumble::scenarios

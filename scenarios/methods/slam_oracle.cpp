@@ -8,16 +8,17 @@ namespace tumble::scenarios {
 
 namespace {
 
-const Settings<SlamParams>& settings() {
+const Settings<SlamParams>& slam_oracle_settings() {
   static const Settings<SlamParams> all = slam_settings(with_few_matches(with_calibration({})));
   return all;
 }
 
-Estimate run(const sim::Sensors& sensors, const sim::Values& parameters, const OracleInput& oracle) {
+Estimate run_slam_oracle(const sim::Sensors& sensors, const sim::Values& parameters, const OracleInput& oracle) {
   std::vector<ImuSample> samples;
   Estimate estimate = begin_with_rates(
       sensors, samples, [&](Estimate& out) { return unclipped_rates(sensors, *oracle.truth, out.rates); });
-  if (estimate.status.ok()) run_slam_chain(sensors, samples, {settings(), parameters}, {.calibration = true}, estimate);
+  if (estimate.status.ok())
+    run_slam_chain(sensors, samples, {slam_oracle_settings(), parameters}, {.calibration = true}, estimate);
   return estimate;
 }
 
@@ -28,9 +29,9 @@ Method slam_oracle() {
       {.name = "oracle",
        .doc = "The chain of tumble with the gyro's unclipped twin; the accelerometer stays as read. The bound.",
        .ours = true,
-       .settings = {&settings()},
+       .settings = {&slam_oracle_settings()},
        .needs_truth = true},
-      run);
+      run_slam_oracle);
 }
 
 }  // namespace tumble::scenarios

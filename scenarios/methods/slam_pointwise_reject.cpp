@@ -14,7 +14,7 @@ namespace tumble::scenarios {
 
 namespace {
 
-const Settings<baselines::PointwiseFilter::Params>& settings() {
+const Settings<baselines::PointwiseFilter::Params>& slam_pointwise_reject_settings() {
   static const Settings<baselines::PointwiseFilter::Params> all(baselines::PointwiseFilter::Params{},
                                                                 {.stated = {"gravity_m_s2"}});
   return all;
@@ -46,7 +46,7 @@ void run_filter(const sim::Sensors& sensors, std::span<const ImuSample> samples,
   if (run_over_sweeps(lidar, {covers, add}, estimate)) estimate.map = filter.map();
 }
 
-Estimate run(const sim::Sensors& sensors, const sim::Values& parameters, const OracleInput&) {
+Estimate run_slam_pointwise_reject(const sim::Sensors& sensors, const sim::Values& parameters, const OracleInput&) {
   Estimate estimate;
   std::vector<ImuSample> samples;
   StartAtRest start;
@@ -63,7 +63,7 @@ Estimate run(const sim::Sensors& sensors, const sim::Values& parameters, const O
   baselines::PointwiseFilter::Params params;
   params.T_IL = bridge::T_IL(sensors.imus.front(), sensors.lidars.front());
   params.gravity_m_s2 = sensors.gravity_m_s2;
-  settings().apply(parameters, params);
+  slam_pointwise_reject_settings().apply(parameters, params);
   baselines::PointwiseFilter filter(params, start.q_WI);
   run_filter(sensors, samples, filter, estimate);
   return estimate;
@@ -79,8 +79,8 @@ Method slam_pointwise_reject() {
            "motion, "
            "clipped axes left out. Not modelled: biases after the rest at the start, gravity and mounting as states.",
        .source = "the family of Point-LIO, He et al., Advanced Intelligent Systems 2023",
-       .settings = {&settings()}},
-      run);
+       .settings = {&slam_pointwise_reject_settings()}},
+      run_slam_pointwise_reject);
 }
 
 }  // namespace tumble::scenarios

@@ -9,15 +9,15 @@ namespace tumble::scenarios {
 
 namespace {
 
-const Settings<Saave::Params>& rate_settings() {
+const Settings<Saave::Params>& slam_published_rate_settings() {
   static const Settings<Saave::Params> all = saave_settings_beside(seed_settings().rows());
   return all;
 }
 
-Estimate run(const sim::Sensors& sensors, const sim::Values& parameters, const OracleInput&) {
+Estimate run_slam_published(const sim::Sensors& sensors, const sim::Values& parameters, const OracleInput&) {
   std::vector<ImuSample> samples;
   Estimate estimate = begin_with_rates(sensors, samples, [&](Estimate& out) {
-    return saave_rates(sensors, samples, rate_settings(), parameters, out.rates);
+    return saave_rates(sensors, samples, slam_published_rate_settings(), parameters, out.rates);
   });
   if (estimate.status.ok()) run_seed_chain(sensors, samples, parameters, estimate);
   return estimate;
@@ -32,8 +32,8 @@ Method slam_published() {
               "odometry fed back by the registration, time weighting, trimmed point to plane; its errors are "
               "parameters. Map in memory whole.",
        .source = "Deschenes et al., ICRA 2024, and the authors' launch files",
-       .settings = {&seed_settings(), &rate_settings()}},
-      run);
+       .settings = {&seed_settings(), &slam_published_rate_settings()}},
+      run_slam_published);
 }
 
 }  // namespace tumble::scenarios

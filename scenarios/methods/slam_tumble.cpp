@@ -12,22 +12,23 @@ namespace tumble::scenarios {
 
 namespace {
 
-const Settings<SlamParams>& chain_settings() {
+const Settings<SlamParams>& slam_tumble_chain_settings() {
   static const Settings<SlamParams> all =
       slam_settings(with_few_matches(with_calibration(with_saturation_deficit({}))));
   return all;
 }
 
-const Settings<RateSmoother::Params>& rate_settings() {
+const Settings<RateSmoother::Params>& slam_tumble_rate_settings() {
   static const Settings<RateSmoother::Params> all(
-      RateSmoother::Params{}, {.stated = stated_densities(), .beside = chain_settings().rows(), .prefix = "rate_"});
+      RateSmoother::Params{},
+      {.stated = stated_densities(), .beside = slam_tumble_chain_settings().rows(), .prefix = "rate_"});
   return all;
 }
 
-Estimate run(const sim::Sensors& sensors, const sim::Values& parameters, const OracleInput&) {
+Estimate run_slam_tumble(const sim::Sensors& sensors, const sim::Values& parameters, const OracleInput&) {
   std::vector<ImuSample> samples;
   Estimate estimate = begin_with_rates(sensors, samples, [&](Estimate& out) {
-    const RateSmoother::Params params = smoother_params(sensors.imus.front(), rate_settings(), parameters);
+    const RateSmoother::Params params = smoother_params(sensors.imus.front(), slam_tumble_rate_settings(), parameters);
     SmoothedRates smoothed;
     const Status status = tumble_rates(sensors, samples, params, smoothed, out.health);
     out.rates = std::move(smoothed.rates);
@@ -35,7 +36,7 @@ Estimate run(const sim::Sensors& sensors, const sim::Values& parameters, const O
     return status;
   });
   if (estimate.status.ok())
-    run_slam_chain(sensors, samples, {chain_settings(), parameters}, {.calibration = true}, estimate);
+    run_slam_chain(sensors, samples, {slam_tumble_chain_settings(), parameters}, {.calibration = true}, estimate);
   return estimate;
 }
 
@@ -46,8 +47,8 @@ Method slam_tumble() {
                    .doc = "The chain of icp with the rates of rate/tumble, the saturation deficit of clipped axes "
                           "estimated in the registration.",
                    .ours = true,
-                   .settings = {&chain_settings(), &rate_settings()}},
-                  run);
+                   .settings = {&slam_tumble_chain_settings(), &slam_tumble_rate_settings()}},
+                  run_slam_tumble);
 }
 
 }  // namespace tumble::scenarios

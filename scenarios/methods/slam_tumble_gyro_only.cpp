@@ -10,16 +10,17 @@ namespace tumble::scenarios {
 
 namespace {
 
-const Settings<SlamParams>& settings() {
+const Settings<SlamParams>& slam_tumble_gyro_only_settings() {
   static const Settings<SlamParams> all = slam_settings(with_calibration(with_saturation_deficit({})));
   return all;
 }
 
-Estimate run(const sim::Sensors& sensors, const sim::Values& parameters, const OracleInput&) {
+Estimate run_slam_tumble_gyro_only(const sim::Sensors& sensors, const sim::Values& parameters, const OracleInput&) {
   std::vector<ImuSample> samples;
   Estimate estimate =
       begin_with_rates(sensors, samples, [&](Estimate& out) { return railed_rates(sensors, samples, out.rates); });
-  if (estimate.status.ok()) run_slam_chain(sensors, samples, {settings(), parameters}, {.calibration = true}, estimate);
+  if (estimate.status.ok())
+    run_slam_chain(sensors, samples, {slam_tumble_gyro_only_settings(), parameters}, {.calibration = true}, estimate);
   return estimate;
 }
 
@@ -43,8 +44,8 @@ Method slam_tumble_gyro_only() {
                    .doc = "The chain of tumble with the clipped gyro: the saturation deficit of clipped axes comes "
                           "from the registration alone.",
                    .ours = true,
-                   .settings = {&settings()}},
-                  run);
+                   .settings = {&slam_tumble_gyro_only_settings()}},
+                  run_slam_tumble_gyro_only);
 }
 
 }  // namespace tumble::scenarios

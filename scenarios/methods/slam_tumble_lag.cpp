@@ -25,7 +25,7 @@ TumblingOdometry::Params defaults() {
   return out;
 }
 
-const Settings<TumblingOdometry::Params>& settings() {
+const Settings<TumblingOdometry::Params>& slam_tumble_lag_settings() {
   static const Settings<TumblingOdometry::Params> all(
       defaults(),
       {.stated = {"imu_*", "lever_arm_x_m", "lever_arm_y_m", "lever_arm_z_m", "gravity_m_s2",
@@ -41,7 +41,7 @@ const Settings<TumblingOdometry::Params>& settings() {
 
 TumblingOdometry::Params stated_params(const sim::Sensors& sensors, const sim::Values& parameters) {
   const sim::ImuRecord& imu = sensors.imus.front();
-  TumblingOdometry::Params params = settings().defaults();
+  TumblingOdometry::Params params = slam_tumble_lag_settings().defaults();
   ImuSheet& sheet = params.imu;
   if (imu.period_ns > 0) sheet.rate_hz = 1.0 / seconds(imu.period_ns);
   sheet.gyro_range_rad_s = imu.stated_gyro_range_rad_s;
@@ -52,7 +52,7 @@ TumblingOdometry::Params stated_params(const sim::Sensors& sensors, const sim::V
   params.T_IL = bridge::T_IL(imu, sensors.lidars.front());
   params.own_body_L = rig_body_L();
   params.expert.gravity_m_s2 = sensors.gravity_m_s2;
-  settings().apply(parameters, params);
+  slam_tumble_lag_settings().apply(parameters, params);
   return params;
 }
 
@@ -148,7 +148,7 @@ Status live_through(const sim::Sensors& sensors, std::span<const ImuSample> samp
   return {};
 }
 
-Estimate run(const sim::Sensors& sensors, const sim::Values& parameters, Word word) {
+Estimate run_slam_tumble_lag(const sim::Sensors& sensors, const sim::Values& parameters, Word word) {
   Estimate estimate;
   estimate.frame = Frame::imu;
   std::vector<ImuSample> samples;
@@ -179,7 +179,7 @@ Method slam_tumble_lag() {
       {.name = "tumble_lag",
        .doc = "TumblingOdometry, the library's door: one causal pass, each sweep's last word 0.3 s after it.",
        .ours = true,
-       .settings = {&settings()}},
+       .settings = {&slam_tumble_lag_settings()}},
       [](const sim::Sensors& sensors, const sim::Values& parameters, const OracleInput&) {
         return run(sensors, parameters, Word::last);
       });
@@ -189,7 +189,7 @@ Method slam_tumble_live() {
   return rig_slam({.name = "tumble_live",
                    .doc = "The same pass, live: the pose at each sample of the IMU by what came before it alone.",
                    .ours = true,
-                   .settings = {&settings()}},
+                   .settings = {&slam_tumble_lag_settings()}},
                   [](const sim::Sensors& sensors, const sim::Values& parameters, const OracleInput&) {
                     return run(sensors, parameters, Word::live);
                   });

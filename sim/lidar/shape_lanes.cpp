@@ -9,7 +9,7 @@ namespace tumble::sim {
 namespace {
 
 using Eigen::Vector3d;
-constexpr double kNone = std::numeric_limits<double>::infinity();
+constexpr double kUnbounded = std::numeric_limits<double>::infinity();
 
 /// Eight rays in the axes of a shape.
 struct LocalRays {
@@ -30,15 +30,15 @@ struct LocalRays {
 }
 
 [[gnu::target("avx2")]] void cast_on_plane(const Shape& shape, const LocalRays& rays, ShapeHits& hits) {
-  const double half_x = shape.size_m.x() > 0.0 ? shape.size_m.x() : kNone;
-  const double half_y = shape.size_m.y() > 0.0 ? shape.size_m.y() : kNone;
+  const double half_x = shape.size_m.x() > 0.0 ? shape.size_m.x() : kUnbounded;
+  const double half_y = shape.size_m.y() > 0.0 ? shape.size_m.y() : kUnbounded;
   const double normal_x = shape.R_FS(0, 2), normal_y = shape.R_FS(1, 2), normal_z = shape.R_FS(2, 2);
   for (int i = 0; i < kShapeLanes; ++i) {
     const double x = -rays.origin[2][i] / rays.direction[2][i];
     const bool ahead = rays.direction[2][i] < 0.0 && x >= 0.0;
     const bool within = std::abs(rays.origin[0][i] + x * rays.direction[0][i]) <= half_x &&
                         std::abs(rays.origin[1][i] + x * rays.direction[1][i]) <= half_y;
-    hits.range_m[i] = ahead && within ? x : kNone;
+    hits.range_m[i] = ahead && within ? x : kUnbounded;
     hits.normal_x[i] = normal_x;
     hits.normal_y[i] = normal_y;
     hits.normal_z[i] = normal_z;
@@ -52,8 +52,8 @@ struct LocalRays {
   alignas(64) double enter[kShapeLanes], enter_axis[kShapeLanes], enter_sign[kShapeLanes];
   alignas(64) double leave[kShapeLanes], leave_axis[kShapeLanes], leave_sign[kShapeLanes], misses[kShapeLanes];
   for (int i = 0; i < kShapeLanes; ++i) {
-    enter[i] = -kNone;
-    leave[i] = kNone;
+    enter[i] = -kUnbounded;
+    leave[i] = kUnbounded;
     enter_axis[i] = enter_sign[i] = leave_axis[i] = leave_sign[i] = misses[i] = 0.0;
   }
   for (int axis = 0; axis < 3; ++axis) {
@@ -62,8 +62,8 @@ struct LocalRays {
     for (int i = 0; i < kShapeLanes; ++i) {
       const bool along = d[i] == 0.0;
       const double low = (-half - o[i]) / d[i], high = (half - o[i]) / d[i];
-      const double near = along ? -kNone : low > high ? high : low;
-      const double far = along ? kNone : low > high ? low : high;
+      const double near = along ? -kUnbounded : low > high ? high : low;
+      const double far = along ? kUnbounded : low > high ? low : high;
       const double beside = std::abs(o[i]) > half ? 1.0 : 0.0;
       misses[i] = along ? misses[i] + beside : misses[i];
       const double towards = d[i] > 0.0 ? -1.0 : 1.0;
@@ -77,7 +77,7 @@ struct LocalRays {
   }
   for (int i = 0; i < kShapeLanes; ++i) {
     hits.range_m[i] = enter[i] >= 0.0 ? enter[i] : leave[i];
-    hits.range_m[i] = enter[i] > leave[i] || leave[i] < 0.0 || misses[i] != 0.0 ? kNone : hits.range_m[i];
+    hits.range_m[i] = enter[i] > leave[i] || leave[i] < 0.0 || misses[i] != 0.0 ? kUnbounded : hits.range_m[i];
     enter_axis[i] = enter[i] >= 0.0 ? enter_axis[i] : leave_axis[i];
     enter_sign[i] = enter[i] >= 0.0 ? enter_sign[i] : leave_sign[i];
   }

@@ -8,7 +8,7 @@ namespace tumble::sim {
 
 namespace {
 
-constexpr std::array kParameters = {
+constexpr std::array kDropParameters = {
     Parameter{"rest_s", 1.75, 0.5, 30.0, "s", "held still before it is let go"},
     Parameter{"release_s", 0.15, 0.0, 1.0, "s", "length over which the hand gives way: its hold fades out"},
     Parameter{"height_m", 1.0, 0.1, 20.0, "m", "of the lowest point of the held robot above the ground at the start"},
@@ -46,14 +46,14 @@ class Drop : public Motion {
   double rest_s_, release_s_;
 };
 
-std::unique_ptr<Motion> make(const Values& values, const engine::World& world) {
+std::unique_ptr<Motion> make_drop(const Values& values, const engine::World& world) {
   return std::make_unique<Drop>(values, world);
 }
 
 }  // namespace
 
 const MotionType& drop_motion() {
-  static const MotionType kType{{"drop", "held still above the ground and let go", kParameters}, make};
+  static const MotionType kType{{"drop", "held still above the ground and let go", kDropParameters}, make_drop};
   return kType;
 }
 

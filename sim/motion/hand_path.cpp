@@ -11,7 +11,7 @@ namespace tumble::sim {
 
 namespace {
 
-constexpr std::array kParameters = with_hand(std::array{
+constexpr std::array kHandPathParameters = with_hand(std::array{
     Parameter{"rest_s", 1.5, 0.0, 30.0, "s", "rest before the way"},
     Parameter{"shape", 0.0, 0.0, kPathShapes - 1.0, "1",
               "0: line along +x; 1: L, two equal legs; 2: eight; 3: free, smooth and random"},
@@ -32,7 +32,7 @@ constexpr std::array kParameters = with_hand(std::array{
 });
 
 constexpr double kTick_s = 0.001;
-constexpr double kLongest_s = 600.0;
+constexpr double kPathLongest_s = 600.0;
 
 /// A way in time: where the hand wants the centre at each tick from `start_s` on, level, from rest to rest.
 class Schedule {
@@ -88,7 +88,7 @@ class Schedule {
     const double length_m = way_m_.back();
     double s_m = 0.0, v_m_s = 0.0;
     for (double time_s = 0.0; length_m - s_m > 1e-3; time_s += kTick_s) {
-      if (time_s > kLongest_s) throw InvalidSituation("motion.hand_path: the way takes longer than 600 s");
+      if (time_s > kPathLongest_s) throw InvalidSituation("motion.hand_path: the way takes longer than 600 s");
       double aim_m_s = speed_m_s * std::max(1.0 + strokes.at(time_s), 0.2);
       bool pushed = false;
       for (std::size_t i = 0; i < std::min(world.patches.size(), kHandPatches); ++i) {
@@ -155,7 +155,7 @@ class HandPath : public Motion {
   Schedule schedule_;
 };
 
-std::unique_ptr<Motion> make(const Values& values, const engine::World& world) {
+std::unique_ptr<Motion> make_hand_path(const Values& values, const engine::World& world) {
   return std::make_unique<HandPath>(values, world);
 }
 
@@ -165,8 +165,8 @@ const MotionType& hand_path_motion() {
   static const MotionType kType{
       {"hand_path",
        "a hand leads a sphere along a line, an L, an eight or a free way, with pushes and bursts on patches",
-       kParameters},
-      make};
+       kHandPathParameters},
+      make_hand_path};
   return kType;
 }
 

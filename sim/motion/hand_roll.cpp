@@ -10,7 +10,7 @@ namespace tumble::sim {
 
 namespace {
 
-constexpr std::array kParameters = with_hand(std::array{
+constexpr std::array kHandRollParameters = with_hand(std::array{
     Parameter{"rest_s", 1.5, 0.0, 30.0, "s", "rest before the first leg"},
     Parameter{"leg_1_m", 1.0, 0.0, 20.0, "m", "first leg, along +x"},
     Parameter{"leg_2_m", 1.0, 0.0, 20.0, "m", "second leg; 0: a straight way"},
@@ -70,15 +70,15 @@ class HandRoll : public Motion {
   Leg first_, second_;
 };
 
-std::unique_ptr<Motion> make(const Values& values, const engine::World& world) {
+std::unique_ptr<Motion> make_hand_roll(const Values& values, const engine::World& world) {
   return std::make_unique<HandRoll>(values, world);
 }
 
 }  // namespace
 
 const MotionType& hand_roll_motion() {
-  static const MotionType kType{{"hand_roll", "a hand leads a sphere along two legs, from rest to rest", kParameters},
-                                make};
+  static const MotionType kType{
+      {"hand_roll", "a hand leads a sphere along two legs, from rest to rest", kHandRollParameters}, make_hand_roll};
   return kType;
 }
 

@@ -13,7 +13,7 @@ namespace tumble::sim {
 
 namespace {
 
-constexpr std::array kParameters = {
+constexpr std::array kStrollParameters = {
     Parameter{"rest_s", 1.75, 0.5, 30.0, "s", "held still before the first step"},
     Parameter{"height_m", 1.0, 0.1, 10.0, "m", "of the lowest point of the held robot above the ground at the start"},
     Parameter{"heading_rad", 0.0, -3.2, 3.2, "rad", "turn of the whole way about the vertical"},
@@ -97,7 +97,7 @@ class Stroll : public Motion {
   std::vector<Tremor> turns_, places_;  ///< about z, y and x; along x, y and z
 };
 
-std::unique_ptr<Motion> make(const Values& values, const engine::World& world) {
+std::unique_ptr<Motion> make_stroll(const Values& values, const engine::World& world) {
   return std::make_unique<Stroll>(values, world);
 }
 
@@ -105,7 +105,8 @@ std::unique_ptr<Motion> make(const Values& values, const engine::World& world) {
 
 const MotionType& stroll_motion() {
   static const MotionType kType{
-      {"stroll", "carried by hand along a level eight at a walker's pace, from rest to rest", kParameters}, make};
+      {"stroll", "carried by hand along a level eight at a walker's pace, from rest to rest", kStrollParameters},
+      make_stroll};
   return kType;
 }
 

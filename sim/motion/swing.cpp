@@ -12,7 +12,7 @@ namespace tumble::sim {
 
 namespace {
 
-constexpr std::array kParameters = {
+constexpr std::array kSwingParameters = {
     Parameter{"rest_s", 1.75, 0.5, 30.0, "s", "hanging before the hand takes hold"},
     Parameter{"lift_s", 1.0, 0.2, 10.0, "s", "in which the hand leads the lowest segment aside and up"},
     Parameter{"hold_s", 0.5, 0.0, 10.0, "s", "it holds it there"},
@@ -27,7 +27,7 @@ constexpr std::array kParameters = {
     Parameter{"hand_seed", 0.0, 0.0, 1e9, "1", "what is random about the hand belongs to this number, rounded down"},
 };
 
-constexpr double kLongest_s = 3600.0;
+constexpr double kSwingLongest_s = 3600.0;
 
 /// One swing: taken hold of, led away, held, let go.
 struct Lift {
@@ -43,7 +43,7 @@ std::vector<Lift> plan_lifts(const Values& values, Stream& stream) {
   const double shortest_s = values.at("lift_s") + values.at("hold_s") + values.at("release_s");
   const double spread_m = values.at("spread_m");
   std::vector<Lift> lifts;
-  for (double start_s = values.at("rest_s"); start_s < kLongest_s;) {
+  for (double start_s = values.at("rest_s"); start_s < kSwingLongest_s;) {
     const double side = stream.uniform() < values.at("other_side_share") ? -1.0 : 1.0;
     const double aside_m = std::max(0.0, values.at("aside_m") + bounded(stream, spread_m));
     const double up_m = std::max(0.0, values.at("up_m") + bounded(stream, spread_m));
@@ -106,15 +106,15 @@ class Swing : public Motion {
   std::vector<Lift> lifts_;
 };
 
-std::unique_ptr<Motion> make(const Values& values, const engine::World& world) {
+std::unique_ptr<Motion> make_swing(const Values& values, const engine::World& world) {
   return std::make_unique<Swing>(values, world);
 }
 
 }  // namespace
 
 const MotionType& swing_motion() {
-  static const MotionType kType{{"swing", "a hand leads what hangs aside and lets it go, again and again", kParameters},
-                                make};
+  static const MotionType kType{
+      {"swing", "a hand leads what hangs aside and lets it go, again and again", kSwingParameters}, make_swing};
   return kType;
 }
 

@@ -10,7 +10,7 @@ namespace tumble::sim {
 
 namespace {
 
-constexpr std::array kOwnParameters = {
+constexpr std::array kOwnThrowParameters = {
     Parameter{"rest_s", 1.75, 0.5, 30.0, "s", "held still before the throw"},
     Parameter{"throw_s", 0.3, 0.05, 2.0, "s", "length of the swing; force and torque rise and fall as a raised cosine"},
     Parameter{"height_m", 1.0, 0.1, 10.0, "m", "of the lowest point of the held robot above the ground at the start"},
@@ -18,7 +18,7 @@ constexpr std::array kOwnParameters = {
     Parameter{"velocity_m_s", 4.0, 0.0, 15.0, "m/s", "level velocity when it leaves the hand"},
     Parameter{"lift_m_s", 4.0, 0.0, 15.0, "m/s", "upward velocity when it leaves the hand"},
 };
-constexpr std::array kParameters = joined(kOwnParameters, kImpulseParameters);
+constexpr std::array kThrowParameters = joined(kOwnThrowParameters, kImpulseParameters);
 
 /// Held by a stiff hand, swung, let go.
 class Throw : public Motion {
@@ -47,14 +47,15 @@ class Throw : public Motion {
   Wrench impulse_;
 };
 
-std::unique_ptr<Motion> make(const Values& values, const engine::World& world) {
+std::unique_ptr<Motion> make_throw(const Values& values, const engine::World& world) {
   return std::make_unique<Throw>(values, world);
 }
 
 }  // namespace
 
 const MotionType& throw_motion() {
-  static const MotionType kType{{"throw", "held still above the ground, swung and let go", kParameters}, make};
+  static const MotionType kType{{"throw", "held still above the ground, swung and let go", kThrowParameters},
+                                make_throw};
   return kType;
 }
 

@@ -13,7 +13,7 @@ namespace tumble::sim {
 
 namespace {
 
-constexpr std::array kParameters = {
+constexpr std::array kTwirlParameters = {
     Parameter{"rest_s", 1.75, 0.5, 30.0, "s", "held still before the first stroke"},
     Parameter{"height_m", 1.0, 0.1, 10.0, "m", "of the lowest point of the held robot above the ground at the start"},
     Parameter{"yaw_rad", 0.0, -3.2, 3.2, "rad", "heading of the held robot"},
@@ -34,8 +34,8 @@ constexpr std::array kParameters = {
     Parameter{"hand_seed", 0.0, 0.0, 1e9, "1", "what is random about the hand belongs to this number, rounded down"},
 };
 
-constexpr double kSwayLow_hz = 0.3, kSwayHigh_hz = 4.0;
-constexpr double kLongest_s = 120.0;
+constexpr double kTwirlSwayLow_hz = 0.3, kTwirlSwayHigh_hz = 4.0;
+constexpr double kTwirlLongest_s = 120.0;
 
 /// One twist of the wrist or the fingers: its rate rises and falls as sin^2, from rest to rest.
 struct Stroke {
@@ -44,12 +44,12 @@ struct Stroke {
 
   /// Turned so far, in closed form.
   double angle_rad(double time_s) const {
-    constexpr double kPi = std::numbers::pi, kFall = 1.0 - kRise;
+    constexpr double kFall = 1.0 - kRise;
     const double u = std::clamp((time_s - start_s) / length_s, 0.0, 1.0);
     const double rise = std::min(u, kRise), fall = std::max(u - kRise, 0.0);
     return peak_rad_s * length_s *
-           (0.5 * rise - kRise / (2.0 * kPi) * std::sin(kPi * rise / kRise) + 0.5 * fall +
-            kFall / (2.0 * kPi) * std::sin(kPi * fall / kFall));
+           (0.5 * rise - kRise / (2.0 * std::numbers::pi) * std::sin(std::numbers::pi * rise / kRise) + 0.5 * fall +
+            kFall / (2.0 * std::numbers::pi) * std::sin(std::numbers::pi * fall / kFall));
   }
 };
 
@@ -57,7 +57,7 @@ std::vector<Stroke> plan_strokes(const Values& values, Stream& stream) {
   std::vector<Stroke> strokes;
   const double length_s = values.at("stroke_s"), interval_s = values.at("interval_s");
   double sign = stream.uniform() < 0.5 ? 1.0 : -1.0;
-  for (double start_s = values.at("rest_s") + 0.5; start_s < kLongest_s;) {
+  for (double start_s = values.at("rest_s") + 0.5; start_s < kTwirlLongest_s;) {
     const double off = std::clamp(stream.normal(), -2.5, 2.5);
     strokes.push_back({start_s, length_s, sign * (values.at("spin_rad_s") + off * values.at("spin_spread_rad_s"))});
     start_s += std::max(length_s, interval_s * stream.uniform(0.75, 1.25));
@@ -79,9 +79,9 @@ class Twirl : public Motion {
         inertia_B_kg_m2_(carried_inertia_B_kg_m2(hand_)) {
     Stream stream(static_cast<std::uint64_t>(values.at("hand_seed")), "hand.twirl");
     strokes_ = plan_strokes(values, stream);
-    turns_.emplace_back(stream, values.at("twist_rad"), kSwayLow_hz, kSwayHigh_hz);
-    for (int i = 0; i < 2; ++i) turns_.emplace_back(stream, values.at("sway_rad"), kSwayLow_hz, kSwayHigh_hz);
-    for (int i = 0; i < 3; ++i) places_.emplace_back(stream, values.at("sway_m"), kSwayLow_hz, kSwayHigh_hz);
+    turns_.emplace_back(stream, values.at("twist_rad"), kTwirlSwayLow_hz, kTwirlSwayHigh_hz);
+    for (int i = 0; i < 2; ++i) turns_.emplace_back(stream, values.at("sway_rad"), kTwirlSwayLow_hz, kTwirlSwayHigh_hz);
+    for (int i = 0; i < 3; ++i) places_.emplace_back(stream, values.at("sway_m"), kTwirlSwayLow_hz, kTwirlSwayHigh_hz);
   }
 
   BodyState start() const override { return hand_.start(); }
@@ -118,7 +118,7 @@ class Twirl : public Motion {
   std::vector<Tremor> turns_, places_;  ///< about x, z and y; along x, y and z
 };
 
-std::unique_ptr<Motion> make(const Values& values, const engine::World& world) {
+std::unique_ptr<Motion> make_twirl(const Values& values, const engine::World& world) {
   return std::make_unique<Twirl>(values, world);
 }
 
@@ -126,7 +126,7 @@ std::unique_ptr<Motion> make(const Values& values, const engine::World& world) {
 
 const MotionType& twirl_motion() {
   static const MotionType kType{
-      {"twirl", "carried in a hand and twirled about its x axis, stroke by stroke", kParameters}, make};
+      {"twirl", "carried in a hand and twirled about its x axis, stroke by stroke", kTwirlParameters}, make_twirl};
   return kType;
 }
 

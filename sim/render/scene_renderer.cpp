@@ -14,7 +14,7 @@ namespace tumble::sim {
 
 namespace {
 
-constexpr double kDegree_rad = 0.017453292519943295;
+constexpr double kRadPerDegree = 0.017453292519943295;
 constexpr int kLargestSide = 4096;
 constexpr int kOversampling = 2;  // rendered at twice the size and averaged: smooth edges without multisampling
 
@@ -196,14 +196,14 @@ Picture SceneRenderer::draw(const View& view) {
   mj_comPos(&model, impl_->data.get());
   mj_camlight(&model, impl_->data.get());
 
-  const Framing framing = frame(view, impl_->robot_radius_m(), model.vis.global.fovy * kDegree_rad);
+  const Framing framing = frame(view, impl_->robot_radius_m(), model.vis.global.fovy * kRadPerDegree);
   mjvCamera camera;
   mjv_defaultCamera(&camera);
   camera.type = mjCAMERA_FREE;
   std::copy_n(framing.look_at_W_m.data(), 3, camera.lookat);
   camera.distance = framing.distance_m;
-  camera.azimuth = view.azimuth_rad / kDegree_rad;
-  camera.elevation = view.elevation_rad / kDegree_rad;
+  camera.azimuth = view.azimuth_rad / kRadPerDegree;
+  camera.elevation = view.elevation_rad / kRadPerDegree;
 
   mjvOption option;
   mjv_defaultOption(&option);

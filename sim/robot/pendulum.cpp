@@ -8,7 +8,7 @@ namespace tumble::sim {
 
 namespace {
 
-constexpr std::array kParameters = {
+constexpr std::array kPendulumParameters = {
     Parameter{"height_m", 1.3, 0.2, 20.0, "m", "of the uppermost hinge above the ground; assumed"},
     Parameter{"segment_m", 0.25, 0.02, 2.0, "m",
               "length of each segment, hinge to hinge; makes the periods of RepoIMU's pendulum, about 1.46 and 0.67 s"},
@@ -20,7 +20,7 @@ constexpr std::array kParameters = {
     Parameter{"play_damping_nm_s", 0.1, 0.0, 10.0, "N m s", "of the same; assumed"},
 };
 
-constexpr double kHalfThickness_m = 0.02;  // of the bars with what they carry, for the moment about their length
+constexpr double kBarHalfThickness_m = 0.02;  // of the bars with what they carry, for the moment about their length
 constexpr int kSegments = 3;
 
 mjsJoint* joint(mjSpec* spec, const std::string& name) {
@@ -35,7 +35,7 @@ void shape_segment(mjSpec* spec, const Values& values, int number) {
   body->pos[2] = number == 1 ? -0.5 * length_m : -length_m;
   body->mass = mass_kg;
   body->inertia[0] = body->inertia[1] = mass_kg * length_m * length_m / 12.0;
-  body->inertia[2] = 0.5 * mass_kg * kHalfThickness_m * kHalfThickness_m;
+  body->inertia[2] = 0.5 * mass_kg * kBarHalfThickness_m * kBarHalfThickness_m;
   mjs_asGeom(mjs_findElement(spec, mjOBJ_GEOM, ("part_" + name).c_str()))->size[2] = 0.5 * length_m;
   mjsJoint* hinge = joint(spec, "hinge_" + std::to_string(number));
   hinge->pos[2] = 0.5 * length_m;
@@ -43,7 +43,7 @@ void shape_segment(mjSpec* spec, const Values& values, int number) {
   hinge->frictionloss = values.at("hinge_friction_nm");
 }
 
-void shape(mjSpec* spec, const Values& values, engine::World& world) {
+void shape_pendulum(mjSpec* spec, const Values& values, engine::World& world) {
   mjs_findBody(spec, "support")->pos[2] = values.at("height_m");
   for (int number = 1; number <= kSegments; ++number) shape_segment(spec, values, number);
   for (const char* name : {"play_twist", "play_sideways"}) {
@@ -58,11 +58,12 @@ void shape(mjSpec* spec, const Values& values, engine::World& world) {
 }  // namespace
 
 const RobotType& pendulum_robot() {
-  static const RobotType kType{{"pendulum", "three segments that hang on hinges, an IMU on the lowest", kParameters},
-                               "pendulum.xml",
-                               shape,
-                               "segment_3",
-                               "support"};
+  static const RobotType kType{
+      {"pendulum", "three segments that hang on hinges, an IMU on the lowest", kPendulumParameters},
+      "pendulum.xml",
+      shape_pendulum,
+      "segment_3",
+      "support"};
   return kType;
 }
 

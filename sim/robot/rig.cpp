@@ -9,7 +9,7 @@ namespace tumble::sim {
 
 namespace {
 
-constexpr std::array kParameters = {
+constexpr std::array kRigParameters = {
     Parameter{"mass_kg", 8.0, 0.5, 100.0, "kg", "whole rig; assumed"},
     Parameter{"inertia_x_kg_m2", 0.14, 0.005, 20.0, "kg m^2",
               "moment of inertia about the first principal axis through the centre of mass; assumed"},
@@ -38,7 +38,7 @@ const char* contact_ratio_of(std::string_view strut) {
   return "upright_contact_ratio";
 }
 
-void shape(mjSpec* spec, const Values& values, engine::World& world) {
+void shape_rig(mjSpec* spec, const Values& values, engine::World& world) {
   mjsBody* body = mjs_findBody(spec, "robot");
   body->mass = values.at("mass_kg");
   body->inertia[0] = values.at("inertia_x_kg_m2");
@@ -61,7 +61,7 @@ void shape(mjSpec* spec, const Values& values, engine::World& world) {
 
 const RobotType& rig_robot() {
   static const RobotType kType{
-      {"rig", "cage of twelve struts with two IMUs and a spinning lidar", kParameters}, "rig.xml", shape};
+      {"rig", "cage of twelve struts with two IMUs and a spinning lidar", kRigParameters}, "rig.xml", shape_rig};
   return kType;
 }
 

@@ -8,7 +8,7 @@ namespace tumble::sim {
 
 namespace {
 
-constexpr std::array kParameters = {
+constexpr std::array kSphereParameters = {
     Parameter{"radius_m", 0.145, 0.05, 1.0, "m", "outer radius of the shell; 29 cm across as published"},
     Parameter{"shell_mass_kg", 1.6, 0.05, 50.0, "kg", "thin shell; slip_study"},
     Parameter{"inner_mass_kg", 2.6, 0.05, 50.0, "kg", "instruments and battery, a homogeneous ball; slip_study"},
@@ -32,7 +32,7 @@ Eigen::Matrix3d inertia(double shell_kg, double radius_m, double inner_kg, doubl
          reduced_kg * (d_m.squaredNorm() * Eigen::Matrix3d::Identity() - d_m * d_m.transpose());
 }
 
-void shape(mjSpec* spec, const Values& values, engine::World& world) {
+void shape_sphere(mjSpec* spec, const Values& values, engine::World& world) {
   mjsBody* body = mjs_findBody(spec, "robot");
   const double shell_kg = values.at("shell_mass_kg"), inner_kg = values.at("inner_mass_kg");
   const double radius_m = values.at("radius_m");
@@ -54,9 +54,9 @@ void shape(mjSpec* spec, const Values& values, engine::World& world) {
 
 const RobotType& sphere_robot() {
   static const RobotType kType{
-      {"sphere", "sphere of 29 cm with an off-centre inside, three IMUs and a lidar", kParameters},
+      {"sphere", "sphere of 29 cm with an off-centre inside, three IMUs and a lidar", kSphereParameters},
       "sphere.xml",
-      shape};
+      shape_sphere};
   return kType;
 }
 

@@ -55,7 +55,7 @@ class EngineRays {
 };
 
 /// A ray and where the engine says it ends.
-struct Ray {
+struct TrialRay {
   Vector3d origin_m, direction;
   EngineRays::Hit expected;
 };
@@ -82,7 +82,7 @@ Vector3d origin_near_start(const Vector3d& start_W_m, Stream& stream) {
   return as_float(start_W_m + Vector3d(x_m, y_m, z_m));
 }
 
-Vector3d random_direction(Stream& stream) {
+Vector3d ray_direction(Stream& stream) {
   const double z = stream.normal(), y = stream.normal(), x = stream.normal();
   return as_float(Vector3d(x, y, z).normalized());
 }
@@ -98,7 +98,7 @@ void set_ray(RayPacket& packet, int lane, const Vector3d& origin_m, const Vector
   packet.surface_id[lane] = kNothing;
 }
 
-void note(const engine::World& world, const EngineRays& engine_rays, const Ray& ray, float range_m,
+void note(const engine::World& world, const EngineRays& engine_rays, const TrialRay& ray, float range_m,
           std::int32_t surface_id, RayDisagreement& out) {
   ++out.rays;
   const auto& [engine_range_m, geom] = ray.expected;
@@ -125,11 +125,11 @@ RayDisagreement compare_rays(const BuiltSituation& built, const RayTrialOptions&
   for (int done = 0; done < options.rays; done += kLanes) {
     RayPacket packet;
     packet.count = std::min(kLanes, options.rays - done);
-    std::array<Ray, kLanes> rays;
+    std::array<TrialRay, kLanes> rays;
     for (int i = 0; i < packet.count; ++i) {
       const Vector3d origin_m = i % 2 == 0 ? origin_above_ground(engine_rays, world.half_extent_m, stream)
                                            : origin_near_start(world.start_W_m, stream);
-      const Vector3d direction = random_direction(stream);
+      const Vector3d direction = ray_direction(stream);
       rays[static_cast<std::size_t>(i)] = {origin_m, direction, engine_rays.cast(origin_m, direction)};
       set_ray(packet, i, origin_m + Vector3d(0, 0, options.mirror_shift_m), direction);
     }

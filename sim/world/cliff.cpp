@@ -11,15 +11,15 @@ namespace tumble::sim {
 
 namespace {
 
-constexpr std::array kOwnParameters = {
+constexpr std::array kOwnCliffParameters = {
     Parameter{"drop_count", 2, 1, 6, "1", "drops, one below the other"},
     Parameter{"drop_height_m", 1.2, 0.2, 5.0, "m", "height of each drop; its face is a cell of the ground deep, 0.2 m"},
     Parameter{"ledge_length_m", 2.0, 0.3, 8.0, "m", "level length of the ledge below a drop, rounded to whole cells"},
     Parameter{"ledge_slope_rad", 0.35, 0.0, 1.0, "rad", "fall of a ledge along +x"},
 };
-constexpr std::array kParameters = joined(kOwnParameters, hillside::kCoverParameters);
+constexpr std::array kCliffParameters = joined(kOwnCliffParameters, hillside::kCoverParameters);
 
-void build(mjSpec* spec, const Values& values, std::uint64_t seed, engine::World& world) {
+void build_cliff(mjSpec* spec, const Values& values, std::uint64_t seed, engine::World& world) {
   Ground ground(hillside::kSide, hillside::kHalfExtent_m);
   // faces between two rows of nodes: elsewhere they would be half as steep
   const double cell_m = ground.cell_m();
@@ -40,8 +40,8 @@ void build(mjSpec* spec, const Values& values, std::uint64_t seed, engine::World
 const WorldType& cliff_world() {
   static const WorldType kType{
       {"cliff", "terraces of 40 by 40 m: flat top, steep drops along +x, sloping ledges, run-out, rocks, trunks",
-       kParameters},
-      build};
+       kCliffParameters},
+      build_cliff};
   return kType;
 }
 

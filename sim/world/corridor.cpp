@@ -12,7 +12,7 @@ namespace tumble::sim {
 
 namespace {
 
-constexpr std::array kOwnParameters = {
+constexpr std::array kOwnCorridorParameters = {
     Parameter{"length_m", 16.0, 4.0, 60.0, "m", "of the corridor along x, its middle at the origin"},
     Parameter{"half_width_m", 1.4, 0.6, 5.0, "m", "half distance of the walls"},
     Parameter{"wall_height_m", 2.6, 1.0, 10.0, "m", "height of walls and ceiling"},
@@ -21,7 +21,7 @@ constexpr std::array kOwnParameters = {
     Parameter{"niche_depth_m", 0.9, 0.2, 5.0, "m", "deepest niche; a door stands back a sixth of it to a half"},
     Parameter{"beam_count", 4, 0, 50, "1", "beams across below the ceiling"},
 };
-constexpr std::array kParameters = joined(kGroundParameters, kOwnParameters);
+constexpr std::array kCorridorParameters = joined(kGroundParameters, kOwnCorridorParameters);
 
 constexpr double kHalfWall_m = 0.08;
 constexpr Colour kWall = {0.85f, 0.84f, 0.8f, 1.0f}, kDoor = {0.45f, 0.3f, 0.2f, 1.0f},
@@ -135,7 +135,7 @@ void add_beams(mjSpec* spec, engine::World& world, const Values& values, Stream&
   }
 }
 
-void build(mjSpec* spec, const Values& values, std::uint64_t seed, engine::World& world) {
+void build_corridor(mjSpec* spec, const Values& values, std::uint64_t seed, engine::World& world) {
   Stream stream(seed, "terrain");
   Stream uneven(seed, "terrain.unevenness");
   const double half_x_m = values.at("length_m") / 2 + 2 * kHalfWall_m;
@@ -154,7 +154,8 @@ void build(mjSpec* spec, const Values& values, std::uint64_t seed, engine::World
 
 const WorldType& corridor_world() {
   static const WorldType kType{
-      {"corridor", "corridor along x with doors, niches, pillars and beams; closed at both ends", kParameters}, build};
+      {"corridor", "corridor along x with doors, niches, pillars and beams; closed at both ends", kCorridorParameters},
+      build_corridor};
   return kType;
 }
 

@@ -12,7 +12,7 @@ namespace tumble::sim {
 
 namespace {
 
-constexpr std::array kOwnParameters = {
+constexpr std::array kOwnFloorParameters = {
     Parameter{"patch_1_x_m", 0.0, -30, 30, "m", "centre of a patch of other friction"},
     Parameter{"patch_1_y_m", 0.0, -30, 30, "m", "centre of a patch of other friction"},
     Parameter{"patch_1_half_x_m", 0.0, 0, 30, "m", "half width along its own x axis; 0: no patch"},
@@ -52,7 +52,7 @@ constexpr std::array kOwnParameters = {
     Parameter{"obstacle_3_height_m", 0.015, 0.001, 0.08, "m", "as obstacle 1"},
     Parameter{"obstacle_3_depth_m", 0.1, 0.02, 10.0, "m", "as obstacle 1"},
 };
-constexpr std::array kParameters = joined(joined(kGroundParameters, kRoomParameters), kOwnParameters);
+constexpr std::array kFloorParameters = joined(joined(kGroundParameters, kRoomParameters), kOwnFloorParameters);
 constexpr int kPatches = 3, kObstacles = 3;
 constexpr double kObstacleHalfWidth_m = 0.6;
 constexpr double kBarRadius_m = 0.05;
@@ -99,7 +99,7 @@ void add_obstacles(mjSpec* spec, engine::World& world, const Values& values) {
   }
 }
 
-void build(mjSpec* spec, const Values& values, std::uint64_t seed, engine::World& world) {
+void build_floor(mjSpec* spec, const Values& values, std::uint64_t seed, engine::World& world) {
   Stream stream(seed, "terrain");
   Stream uneven(seed, "terrain.unevenness");  // a stream of its own: the furniture of a seed stays where it is
   const double half_m = values.at("room_half_m");
@@ -114,8 +114,9 @@ void build(mjSpec* spec, const Values& values, std::uint64_t seed, engine::World
 
 const WorldType& floor_world() {
   static const WorldType kType{
-      {"floor", "room with a floor, walls, ceiling, furniture, obstacles and patches of other friction", kParameters},
-      build};
+      {"floor", "room with a floor, walls, ceiling, furniture, obstacles and patches of other friction",
+       kFloorParameters},
+      build_floor};
   return kType;
 }
 

@@ -9,13 +9,13 @@ namespace tumble::sim {
 
 namespace {
 
-constexpr std::array kOwnParameters = {
+constexpr std::array kOwnHillParameters = {
     Parameter{"slope_rad", 0.6, 0.05, 1.2, "rad", "steepness of the slope between top and run-out"},
     Parameter{"drop_m", 4.0, 0.2, 12.0, "m", "height of the slope: gentler ones are longer"},
 };
-constexpr std::array kParameters = joined(kOwnParameters, hillside::kCoverParameters);
+constexpr std::array kHillParameters = joined(kOwnHillParameters, hillside::kCoverParameters);
 
-void build(mjSpec* spec, const Values& values, std::uint64_t seed, engine::World& world) {
+void build_hill(mjSpec* spec, const Values& values, std::uint64_t seed, engine::World& world) {
   const SlopeProfile profile{hillside::kEdge_m, values.at("slope_rad"), values.at("drop_m")};
   Ground ground(hillside::kSide, hillside::kHalfExtent_m);
   ground.transform([&](double x, double, double) { return profile.height_m(x); });
@@ -27,7 +27,8 @@ void build(mjSpec* spec, const Values& values, std::uint64_t seed, engine::World
 
 const WorldType& hill_world() {
   static const WorldType kType{
-      {"hill", "hill of 40 by 40 m: flat top, slope along +x, run-out, relief, rocks, trunks", kParameters}, build};
+      {"hill", "hill of 40 by 40 m: flat top, slope along +x, run-out, relief, rocks, trunks", kHillParameters},
+      build_hill};
   return kType;
 }
 

@@ -12,14 +12,14 @@ namespace tumble::sim {
 
 namespace {
 
-constexpr std::array kOwnParameters = {
+constexpr std::array kOwnRampParameters = {
     Parameter{"slope_rad", 0.12, 0.01, 0.5, "rad", "of the ramp up along +x"},
     Parameter{"ramp_x_m", -1.0, -20.0, 20.0, "m", "foot of the ramp"},
     Parameter{"ramp_length_m", 1.5, 0.3, 20.0, "m", "level length of the ramp"},
     Parameter{"plateau_m", 1.0, 0.1, 20.0, "m", "length of the level above it"},
     Parameter{"slope_down_rad", 0.12, 0.01, 1.2, "rad", "of the ramp down on the far side"},
 };
-constexpr std::array kParameters = joined(joined(kGroundParameters, kRoomParameters), kOwnParameters);
+constexpr std::array kRampParameters = joined(joined(kGroundParameters, kRoomParameters), kOwnRampParameters);
 constexpr double kHalfWidth_m = 1.5;
 constexpr double kHalfThickness_m = 0.15;
 
@@ -38,7 +38,7 @@ void add_slab(mjSpec* spec, engine::World& world, const Values& values, const st
   set_ground_contact(geom, values);
 }
 
-void build(mjSpec* spec, const Values& values, std::uint64_t seed, engine::World& world) {
+void build_ramp(mjSpec* spec, const Values& values, std::uint64_t seed, engine::World& world) {
   Stream stream(seed, "terrain");
   Stream uneven(seed, "terrain.unevenness");
   const double half_m = values.at("room_half_m");
@@ -58,7 +58,8 @@ void build(mjSpec* spec, const Values& values, std::uint64_t seed, engine::World
 }  // namespace
 
 const WorldType& ramp_world() {
-  static const WorldType kType{{"ramp", "room with a ramp up along +x, a plateau and a ramp down", kParameters}, build};
+  static const WorldType kType{{"ramp", "room with a ramp up along +x, a plateau and a ramp down", kRampParameters},
+                               build_ramp};
   return kType;
 }
 

@@ -13,14 +13,14 @@ namespace tumble::sim {
 
 namespace {
 
-constexpr std::array kOwnParameters = {
+constexpr std::array kOwnStairsParameters = {
     Parameter{"step_count", 18, 1, 80, "1", "steps of the flight"},
     Parameter{"step_rise_m", 0.17, 0.05, 0.5, "m", "height of a step"},
     Parameter{"step_tread_m", 0.29, 0.15, 1.0, "m", "depth of a step"},
     Parameter{"flight_half_width_m", 2.5, 0.8, 8.0, "m", "half width of the flight; a cheek wall stands at each side"},
     Parameter{"cheek_height_m", 0.4, 0.05, 2.0, "m", "height of the cheek walls above the edges of the steps"},
 };
-constexpr std::array kParameters = joined(kOwnParameters, hillside::kCoverParameters);
+constexpr std::array kStairsParameters = joined(kOwnStairsParameters, hillside::kCoverParameters);
 
 constexpr Colour kStone = {0.66f, 0.64f, 0.6f, 1.0f};
 
@@ -42,7 +42,7 @@ void add_cheeks(mjSpec* spec, engine::World& world, const Flight& flight, double
   }
 }
 
-void build(mjSpec* spec, const Values& values, std::uint64_t seed, engine::World& world) {
+void build_stairs(mjSpec* spec, const Values& values, std::uint64_t seed, engine::World& world) {
   const Flight flight{hillside::kEdge_m, static_cast<int>(values.at("step_count")), values.at("step_rise_m"),
                       values.at("step_tread_m"), values.at("flight_half_width_m")};
   // the ground follows the slope of the flight beside it, and lies a hand under the treads beneath it
@@ -70,8 +70,8 @@ void build(mjSpec* spec, const Values& values, std::uint64_t seed, engine::World
 const WorldType& stairs_world() {
   static const WorldType kType{
       {"stairs", "flight of stone steps along +x down a grassy slope of 40 by 40 m, level at the top and the foot",
-       kParameters},
-      build};
+       kStairsParameters},
+      build_stairs};
   return kType;
 }
 

@@ -15,7 +15,7 @@ namespace tumble::sim {
 
 namespace {
 
-constexpr std::array kOwnParameters = {
+constexpr std::array kOwnTubeParameters = {
     Parameter{"length_m", 16.0, 4.0, 60.0, "m", "of the tube along x, its middle at the origin"},
     Parameter{"half_width_m", 1.9, 0.8, 10.0, "m", "half width at the ground"},
     Parameter{"height_m", 2.2, 1.0, 10.0, "m", "from the ground to the crown"},
@@ -26,7 +26,7 @@ constexpr std::array kOwnParameters = {
     Parameter{"rock_count", 24, 0, 200, "1", "rocks on the ground, out of the way"},
     Parameter{"clear_half_width_m", 0.7, 0.2, 5.0, "m", "no rock comes closer to the x axis than this"},
 };
-constexpr std::array kParameters = joined(kGroundParameters, kOwnParameters);
+constexpr std::array kTubeParameters = joined(kGroundParameters, kOwnTubeParameters);
 constexpr Colour kRock = {0.42f, 0.36f, 0.33f, 1.0f};
 constexpr double kOver_m = 0.5;  // the ground reaches beyond the walls: no gap between the two
 
@@ -108,7 +108,7 @@ void add_rocks(mjSpec* spec, engine::World& world, const Values& values, Stream&
   }
 }
 
-void build(mjSpec* spec, const Values& values, std::uint64_t seed, engine::World& world) {
+void build_tube(mjSpec* spec, const Values& values, std::uint64_t seed, engine::World& world) {
   Stream stream(seed, "terrain");
   Stream uneven(seed, "terrain.unevenness");
   const double half_x_m = values.at("length_m") / 2;
@@ -129,7 +129,8 @@ void build(mjSpec* spec, const Values& values, std::uint64_t seed, engine::World
 
 const WorldType& tube_world() {
   static const WorldType kType{
-      {"tube", "lava tube along x: rough ground that rises to the sides, rough vault, rocks", kParameters}, build};
+      {"tube", "lava tube along x: rough ground that rises to the sides, rough vault, rocks", kTubeParameters},
+      build_tube};
   return kType;
 }
 

@@ -15,7 +15,7 @@ using Vector = SensorErrors::Vector;
 // Samples err in common: what the model of flight misses lasts longer than one of them. Of what they say of where the
 // errors lie this share is believed, as in fit_sensor_errors(), and of whether there are any ten times as much: with
 // all of it half the devices that are as on their sheet are taken for others, by a rig that is not known yet.
-constexpr double kBelieved = 0.03, kBelievedOfOdds = 0.3;
+constexpr double kDoubtBelieved = 0.03, kDoubtBelievedOfOdds = 0.3;
 
 // I + share U L U, L's lower and upper triangle alike
 void set_system(const SensorErrorEvidence& evidence, const Vector& deviation, double share, Matrix& system) {
@@ -29,21 +29,21 @@ void set_system(const SensorErrorEvidence& evidence, const Vector& deviation, do
 
 // rate_stream.md (R103); no number where the evidence is indefinite
 double log_odds(const SensorErrorEvidence& evidence, const Vector& deviation, Matrix& system) {
-  set_system(evidence, deviation, kBelievedOfOdds, system);
+  set_system(evidence, deviation, kDoubtBelievedOfOdds, system);
   const Eigen::LLT<Eigen::Ref<Matrix>> factor(system);
   if (factor.info() != Eigen::Success) return std::numeric_limits<double>::quiet_NaN();
-  const Vector z = kBelievedOfOdds * deviation.cwiseProduct(evidence.gradient);
+  const Vector z = kDoubtBelievedOfOdds * deviation.cwiseProduct(evidence.gradient);
   return 0.5 * z.dot(factor.solve(z)) - system.diagonal().array().log().sum();
 }
 
 // rate_stream.md (R103): cov_i + m_i m_i' of one device; false where the evidence is indefinite
 bool about_corrected(const SensorErrorEvidence& evidence, const Vector& deviation, DeviceDoubt::Work& work) {
   constexpr int kRest = SensorErrors::kSize - SensorErrors::kFelt;
-  set_system(evidence, deviation, kBelieved, work.system);
+  set_system(evidence, deviation, kDoubtBelieved, work.system);
   // scale and misalignment stay what they are held for: what the model of flight misses looks like them
   Vector mean = Vector::Zero();
   const Eigen::Matrix<double, kRest, kRest> rest = work.system.bottomRightCorner<kRest, kRest>();
-  mean.tail<kRest>() = rest.llt().solve(kBelieved * deviation.cwiseProduct(evidence.gradient).tail<kRest>());
+  mean.tail<kRest>() = rest.llt().solve(kDoubtBelieved * deviation.cwiseProduct(evidence.gradient).tail<kRest>());
   mean = deviation.cwiseProduct(mean).eval();
   const Eigen::LLT<Eigen::Ref<Matrix>> factor(work.system);
   if (factor.info() != Eigen::Success) return false;

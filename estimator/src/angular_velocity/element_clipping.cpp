@@ -15,8 +15,6 @@ namespace {
 constexpr double kTold = 2e-3, kNil = 3e-3;
 // Rails of the two signs that are further apart than this share are no device's own, whose digits end alike.
 constexpr double kLopsidedShare = 1e-4;
-// Readings closer than this share are equal, as RailDetector has it.
-constexpr double kEqualShare = 2e-5;
 // What is left of a tilt where rails are upright; the least deviation of a slope (misalignment left by the device).
 constexpr double kUprightSigma = 1e-5, kSlopeSigmaMin = 3e-4;
 // Samples beside a clipped one that may have met the rail: largest depth, as a share of the step before.

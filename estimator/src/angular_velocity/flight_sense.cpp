@@ -13,7 +13,6 @@ namespace {
 
 // Forces in a hand look like flight by twice the rate for 0.05 s at a time, flights of a gyro that reads half last.
 constexpr double kHalvedRun_s = 0.08;
-constexpr unsigned kGyroFlags = kClipGyroX | kClipGyroY | kClipGyroZ;
 
 }  // namespace
 
@@ -40,7 +39,7 @@ void FlightSense::step(const ImuSample& sample, State& state) const {
   const double rail = (1.0 - kBesideRail) * params_.gyro_range_rad_s;
   const bool in_range = params_.gyro_range_rad_s == 0.0 || state.average.rate_peak_rad_s < rail;
   take({mean.time_ns, mean.angular_velocity_rad_s, mean.specific_force_m_s2,
-        in_range && (mean.device_clip_flags & kGyroFlags) == 0},
+        in_range && (mean.device_clip_flags & kClipGyro) == 0},
        state);
   state.average = {};
 }

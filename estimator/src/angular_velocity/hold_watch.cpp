@@ -12,12 +12,12 @@ namespace {
 
 using sample_hold::kMoving_rad_s, sample_hold::kRepeatsMin, sample_hold::kSlowest;
 
-constexpr double kMovingMin = static_cast<double>(sample_hold::kMovingMin);
+constexpr double kMovingLeast = static_cast<double>(sample_hold::kMovingMin);
 constexpr double kMemory = static_cast<double>(sample_hold::kMovingMax);
 
 HeldReading held_reading(const HoldWatch::Memory& memory, const Eigen::Vector3d& reading) {
   HeldReading out;
-  if (memory.moving < kMovingMin || memory.repeated < kRepeatsMin * memory.moving) return out;
+  if (memory.moving < kMovingLeast || memory.repeated < kRepeatsMin * memory.moving) return out;
   out.period_samples = memory.moving / std::max(1.0, memory.moving - memory.repeated);
   if (out.period_samples > kSlowest) return {};
   out.repeats = memory.said > 1.0 && memory.said <= kSlowest;

@@ -16,9 +16,9 @@ constexpr std::size_t kReach = 2;
 constexpr double kRoundShare = 0.03;
 
 // Each reading once, in order of time.
-using Readings = std::span<const Eigen::Vector3d>;
+using Rates = std::span<const Eigen::Vector3d>;
 
-double largest_step(Readings readings, std::size_t at, std::size_t reach, Eigen::Index axis) {
+double largest_step(Rates readings, std::size_t at, std::size_t reach, Eigen::Index axis) {
   double out = 0.0;
   const std::size_t last = std::min(readings.size() - 1, at + reach);
   for (std::size_t i = at - std::min(at, reach); i < last; ++i)
@@ -27,7 +27,7 @@ double largest_step(Readings readings, std::size_t at, std::size_t reach, Eigen:
 }
 
 // rails.md (R76)
-std::uint8_t may_meet(Readings readings, std::size_t at, const RailPlanes& planes) {
+std::uint8_t may_meet(Rates readings, std::size_t at, const RailPlanes& planes) {
   const Eigen::Vector3d& reading = readings[at];
   std::uint8_t out = 0;
   for (std::size_t j = 0; j < 3; ++j) {
@@ -52,7 +52,7 @@ std::uint8_t may_meet_rails(const ImuSample* before, const ImuSample& now, const
   at = count;
   readings[count++] = now.angular_velocity_rad_s;
   if (after != nullptr) readings[count++] = after->angular_velocity_rad_s;
-  return may_meet(Readings(readings.data(), count), at, planes);
+  return may_meet(Rates(readings.data(), count), at, planes);
 }
 
 std::vector<std::uint8_t> may_meet_rails(std::span<const ImuSample> samples, const RailPlanes& planes) {

@@ -7,6 +7,8 @@
 #include <limits>
 #include <optional>
 
+#include "tumble/angular_velocity/detail/rail_shares.hpp"
+
 namespace tumble {
 
 namespace {
@@ -30,8 +32,6 @@ constexpr double kKinkAlone = 2.5;
 constexpr double kMoving = 10.0;
 // Log likelihood from which a segment counts that is thinner than noise, whatever its ends look like.
 constexpr double kThinAlone = 8.0;
-// Readings closer than this share of the level are equal (as RailDetector has it): scatter below it tells no more.
-constexpr double kEqualShare = 2e-5;
 // Of the scatter of a segment: samples that its level, its slope and its two ends (windows that met the rail in a part
 // only) take.
 constexpr std::size_t kThinTaken = 4;

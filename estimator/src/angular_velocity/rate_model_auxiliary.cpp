@@ -10,9 +10,9 @@ namespace tumble {
 namespace {
 
 using Eigen::Vector3d;
-using Row = Eigen::Matrix<double, 1, 6>;  // by rate and scaled acceleration
+using AuxiliaryRow = Eigen::Matrix<double, 1, 6>;  // by rate and scaled acceleration
 
-void add_row(const Row& row, double residual, double sigma, arrow::Block& block) {
+void add_row(const AuxiliaryRow& row, double residual, double sigma, arrow::Block& block) {
   const double information = 1.0 / (sigma * sigma);
   block.diagonal.noalias() += information * row.transpose() * row;
   block.gradient.noalias() -= information * residual * row.transpose();
@@ -59,7 +59,7 @@ void RateModel::add_auxiliary_imus(const RateObservation& observation, const Rat
     const Eigen::Matrix3d accel = seen_by(R_CI, mount.accel_elements, reading.force_by_elements);
     for (int j = 0; j < 3; ++j) {
       if (std::isfinite(reading.rate_rad_s[j])) {
-        Row row = Row::Zero();
+        AuxiliaryRow row = AuxiliaryRow::Zero();
         row.head<3>() = gyro.row(j);
         const double unknown =
             unknown_row(mount.gyro_elements, reading.rate_by_elements, j, estimate.knot.rate_rad_s.norm());
@@ -68,7 +68,7 @@ void RateModel::add_auxiliary_imus(const RateObservation& observation, const Rat
       }
       const Eigen::RowVector3d axis = accel.row(j);
       if (!std::isfinite(reading.force_m_s2[j]) || !sees_free_axes(axis, observation)) continue;
-      Row row = axis * rotation.by_knot;
+      AuxiliaryRow row = axis * rotation.by_knot;
       row.tail<3>() /= time_scale_s_;
       const double unknown = unknown_row(mount.accel_elements, reading.force_by_elements, j, force.norm());
       const double lasting =

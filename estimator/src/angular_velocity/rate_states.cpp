@@ -28,8 +28,8 @@ std::vector<std::optional<HeldRate>> read_in_time(std::span<const ImuSample> sam
 }
 
 // What remains open of the device's errors, in a rate, and no more than any rate: rate_smoother.md (R41).
-Eigen::Matrix3d considered(const arrow::ErrorMatrix& moved, const SensorErrors::Matrix& covariance,
-                           double rate_max_rad_s) {
+Eigen::Matrix3d open_of_errors(const arrow::ErrorMatrix& moved, const SensorErrors::Matrix& covariance,
+                               double rate_max_rad_s) {
   const Eigen::Matrix<double, 3, SensorErrors::kSize> rates = moved.topRows<3>(), spread = rates * covariance;
   const Eigen::Matrix3d out = spread.lazyProduct(rates.transpose());
   const double most = rate_max_rad_s * rate_max_rad_s;
@@ -97,7 +97,7 @@ std::vector<Eigen::Matrix3d> rate_covariances(const RateSmoother::Params& params
   fit.solution.iteration.for_each_conditional([&](std::size_t k, const arrow::Conditional& conditional) {
     const Eigen::Matrix3d covariance =
         arrow::rate_covariance(conditional, fit.solution.rig_covariance) +
-        considered(fit.moved.of_sample[k], health.sensor_errors.covariance, params.model.rate_max_rad_s) +
+        open_of_errors(fit.moved.of_sample[k], health.sensor_errors.covariance, params.model.rate_max_rad_s) +
         of_shared_delay(shared_s2, readings.known, readings.observations, estimates, k);
     out[k] = fit.model.reported(covariance, readings.observations[k], estimates[k]);
   });

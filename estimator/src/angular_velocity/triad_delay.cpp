@@ -20,7 +20,7 @@ using Eigen::Matrix3d;
 using Eigen::Vector3d;
 using Unknown = Eigen::Matrix<double, 6, 1>;  // lever arm, bias
 
-constexpr int kReach = 4;      // largest delay, in samples
+constexpr int kDelayMost = 4;  // largest delay, in samples
 constexpr int kPerSample = 4;  // delays tried to a sample, on the coarse and, as many again, about the best of them
 constexpr double kRateMin_rad_s = 2.0;
 constexpr std::size_t kSamplesMin = 20, kSamplesMax = 2000;
@@ -43,7 +43,7 @@ constexpr std::size_t kStrokesMin = 10;
 constexpr int kStruckPerSample = 8;
 
 // A triad's own readings: those that are not said twice, at the instants of which they tell.
-struct Readings {
+struct TriadReadings {
   std::vector<double> time_s;
   std::vector<Vector3d> value;
   std::vector<bool> clipped;
@@ -56,9 +56,9 @@ struct Readings {
   }
 };
 
-Readings readings_of(std::span<const ImuSample> samples, std::span<const Clipping> clippings, Triad triad) {
+TriadReadings readings_of(std::span<const ImuSample> samples, std::span<const Clipping> clippings, Triad triad) {
   const std::optional<HeldReadings> held = find_held(samples, triad);
-  Readings out;
+  TriadReadings out;
   for (std::size_t k = 0; k < samples.size(); ++k) {
     if (held && held->repeats[k]) continue;
     const double at_s = seconds(samples[k].time_ns - samples[0].time_ns) - (held ? held->behind_s(k) : 0.0);
@@ -78,7 +78,7 @@ struct Place {
 };
 
 // Cubic through the four readings about an instant; `from`: index of the last reading before it, which moves on.
-bool force_at(const Readings& force, double time_s, std::size_t& from, Vector3d& out) {
+bool force_at(const TriadReadings& force, double time_s, std::size_t& from, Vector3d& out) {
   while (from + 2 < force.size() && force.time_s[from + 1] <= time_s) ++from;
   if (from < 1 || from + 2 >= force.size() || force.time_s[from] > time_s) return false;
   out.setZero();
@@ -93,7 +93,7 @@ bool force_at(const Readings& force, double time_s, std::size_t& from, Vector3d&
   return true;
 }
 
-std::vector<Place> places(const Readings& gyro) {
+std::vector<Place> places(const TriadReadings& gyro) {
   std::vector<Place> out;
   for (std::size_t k = 1; k + 1 < gyro.size() && out.size() < kSamplesMax; ++k) {
     const Vector3d &before = gyro.value[k - 1], &w = gyro.value[k], &after = gyro.value[k + 1];
@@ -107,7 +107,7 @@ std::vector<Place> places(const Readings& gyro) {
 }
 
 // Robust cost of a delay, least over lever arm and bias: residuals of rate_smoother.md (R13).
-double cost(const Readings& accel, std::span<const Place> places, const Vector3d& lever_arm_m, double delay_s) {
+double cost(const TriadReadings& accel, std::span<const Place> places, const Vector3d& lever_arm_m, double delay_s) {
   Unknown prior, at, information;
   prior << lever_arm_m, Vector3d::Zero();
   information << Vector3d::Constant(1.0 / (kLeverSigma_m * kLeverSigma_m)),
@@ -143,7 +143,7 @@ struct Change {
   double begin_s, end_s, root;  ///< root of its norm
 };
 
-std::vector<Change> changes(const Readings& gyro) {
+std::vector<Change> changes(const TriadReadings& gyro) {
   std::vector<Change> out;
   for (std::size_t k = 1; k < gyro.size(); ++k) {
     if (gyro.clipped[k] || gyro.clipped[k - 1]) continue;
@@ -159,7 +159,8 @@ std::vector<Change> changes(const Readings& gyro) {
 // reading holds.
 class ForceIntegral {
  public:
-  explicit ForceIntegral(const Readings& force) : time_s_(force.time_s), norm_(force.size()), sum_(force.size(), 0.0) {
+  explicit ForceIntegral(const TriadReadings& force)
+      : time_s_(force.time_s), norm_(force.size()), sum_(force.size(), 0.0) {
     for (std::size_t k = 0; k < norm_.size(); ++k) {
       norm_[k] = force.value[k].norm();
       if (k > 0) sum_[k] = sum_[k - 1] + 0.5 * (norm_[k] + norm_[k - 1]) * (time_s_[k] - time_s_[k - 1]);
@@ -200,11 +201,11 @@ double correlation(std::span<const Change> changes, const ForceIntegral& force, 
 }
 
 // By what strikes the body; sigma 0 where that tells nothing.
-TriadDelay struck(const Readings& gyro, const Readings& accel, double period_s) {
+TriadDelay struck(const TriadReadings& gyro, const TriadReadings& accel, double period_s) {
   const std::vector<Change> turns = changes(gyro);
   if (turns.size() < kStruckMin || accel.size() < 4) return {};
   const ForceIntegral force(accel);
-  constexpr int kMost = kReach * kStruckPerSample;
+  constexpr int kMost = kDelayMost * kStruckPerSample;
   const double step_s = period_s / kStruckPerSample;
   const auto of = [&](int i) { return correlation(turns, force, i * step_s); };
   int at = -kMost;
@@ -216,20 +217,20 @@ TriadDelay struck(const Readings& gyro, const Readings& accel, double period_s) 
   if (best < kCorrelationMin || std::abs(at) == kMost) return {};
   const double left = of(at - 1), right = of(at + 1), bend = left - 2.0 * best + right;
   const double part = bend < 0.0 ? std::clamp(0.5 * (left - right) / bend, -0.5, 0.5) : 0.0;
-  const auto mean_period = [](const Readings& triad) {
+  const auto mean_period = [](const TriadReadings& triad) {
     return (triad.time_s.back() - triad.time_s.front()) / static_cast<double>(triad.size() - 1);
   };
   return {(at + part) * step_s, kStruckSigma * std::max(mean_period(gyro), mean_period(accel))};
 }
 
 // By how it flies; 0 where that tells nothing.
-double flown_s(const Readings& gyro, const Readings& accel, const Vector3d& lever_arm_m, double period_s) {
+double flown_s(const TriadReadings& gyro, const TriadReadings& accel, const Vector3d& lever_arm_m, double period_s) {
   const std::vector<Place> turning = places(gyro);
   if (turning.size() < kSamplesMin) return 0.0;
   const auto of = [&](double shift) { return cost(accel, turning, lever_arm_m, shift * period_s); };
   const double none = of(0.0);
   double best = none, shift = 0.0;
-  for (int i = -kReach * kPerSample; i <= kReach * kPerSample; ++i) {
+  for (int i = -kDelayMost * kPerSample; i <= kDelayMost * kPerSample; ++i) {
     if (i == 0) continue;
     const double tried = static_cast<double>(i) / kPerSample, found = of(tried);
     if (found < best) {
@@ -253,8 +254,8 @@ double flown_s(const Readings& gyro, const Readings& accel, const Vector3d& leve
 TriadDelay guess_triad_delay(std::span<const ImuSample> samples, std::span<const Clipping> clippings,
                              const Vector3d& lever_arm_m) {
   if (samples.size() < 2) return {};
-  const Readings gyro = readings_of(samples, clippings, Triad::gyro);
-  const Readings accel = readings_of(samples, clippings, Triad::accelerometer);
+  const TriadReadings gyro = readings_of(samples, clippings, Triad::gyro);
+  const TriadReadings accel = readings_of(samples, clippings, Triad::accelerometer);
   const double period_s = median_period_s(samples);
   const TriadDelay of_strokes = struck(gyro, accel, period_s);
   if (of_strokes.sigma_s > 0.0) return of_strokes;

@@ -14,7 +14,7 @@ constexpr double kVarianceMax = 1e18;
 // One eliminated knot of one axis: R x_k + S x_{k+1} = z with noise of unit variance, R upper triangular.
 // The state x is (rate, acceleration * time_scale), which keeps both columns of like size for any sample rate. saave.md
 // (S6)
-struct Row {
+struct EliminatedKnot {
   Eigen::Matrix2d R, S;
   Eigen::Vector2d z;
 };
@@ -45,7 +45,8 @@ void triangularise(Stack& a) {
   }
 }
 
-Row eliminate(Carried& carried, double rate, double deviation, double dt_s, double psd, double time_scale_s) {
+EliminatedKnot eliminate(Carried& carried, double rate, double deviation, double dt_s, double psd,
+                         double time_scale_s) {
   // square root of Q^-1 for the scaled state: Q = L L', L lower triangular, so L^-1 (F x_k - x_{k+1}) is white;
   // saave.md (S5)
   const double ratio = dt_s / time_scale_s;
@@ -105,8 +106,8 @@ Status check(std::span<const WnojSmoother::Measurement> measurements) {
   return {};
 }
 
-void smooth_axis(std::span<const WnojSmoother::Measurement> measurements, int axis, double psd, std::vector<Row>& rows,
-                 std::vector<WnojSmoother::Smoothed>& out) {
+void smooth_axis(std::span<const WnojSmoother::Measurement> measurements, int axis, double psd,
+                 std::vector<EliminatedKnot>& rows, std::vector<WnojSmoother::Smoothed>& out) {
   const std::size_t count = measurements.size();
   const double time_scale_s =
       seconds(measurements.back().time_ns - measurements.front().time_ns) / static_cast<double>(count - 1);
@@ -125,7 +126,7 @@ void smooth_axis(std::span<const WnojSmoother::Measurement> measurements, int ax
   Eigen::Matrix2d P = R_inv * R_inv.transpose();
   for (std::size_t k = count; k-- > 0;) {
     if (k + 1 < count) {
-      const Row& row = rows[k];
+      const EliminatedKnot& row = rows[k];
       R_inv = row.R.triangularView<Eigen::Upper>().solve(Eigen::Matrix2d::Identity());
       const Eigen::Matrix2d G = R_inv * row.S;
       x = (R_inv * row.z - G * x).eval();
@@ -150,7 +151,7 @@ Status WnojSmoother::smooth(std::span<const Measurement> measurements, std::vect
     out[0] = {measurements[0].rate_rad_s, Eigen::Vector3d::Zero(), measurements[0].variance_rad2_s2};
     return {};
   }
-  std::vector<Row> rows(measurements.size() - 1);
+  std::vector<EliminatedKnot> rows(measurements.size() - 1);
   for (int axis = 0; axis < 3; ++axis) smooth_axis(measurements, axis, params_.jerk_psd_rad2_s5, rows, out);
   return {};
 }

@@ -9,6 +9,12 @@
 
 namespace tumble::carried {
 
+/// Least determinant of the elements' rows: below, they do not span the axes.
+inline constexpr double kRowsMin = 0.1;
+/// Deviation of the time at which a reading was taken that the log says again, anywhere within the sample before:
+/// 1/sqrt(12).
+inline constexpr double kTaken_samples = 0.29;
+
 /// Where windows lie on the line of the nodes, which begins at the centre of the first sample's window.
 struct Windows {
   double period_s = 0.0;             ///< median

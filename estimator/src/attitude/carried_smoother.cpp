@@ -18,8 +18,6 @@ using carried::Node;
 
 namespace {
 
-constexpr double kRowsMin = 0.1;  // determinant of the elements' rows: below, they do not span the axes
-
 Status check(const CarriedSmoother::Params& params, std::span<const ImuSample> samples,
              const ClippedElements& clipped) {
   if (samples.empty()) return {Trouble::empty, "samples", 0.0, 1.0};
@@ -35,7 +33,7 @@ Status check(const CarriedSmoother::Params& params, std::span<const ImuSample> s
       return {Trouble::out_of_range, "covariance of a recovered rate", least, 0.0};
   }
   const double determinant = std::abs(clipped.rows.determinant());
-  if (!(determinant > kRowsMin)) return {Trouble::degenerate, "rows", determinant, kRowsMin};
+  if (!(determinant > carried::kRowsMin)) return {Trouble::degenerate, "rows", determinant, carried::kRowsMin};
   return check_samples(samples, params.expert.gap_max_s);
 }
 

@@ -18,10 +18,7 @@ using Eigen::Vector3d;
 
 namespace {
 
-constexpr double kRowsMin = 0.1;  // determinant of the elements' rows, as in CarriedSmoother
 constexpr double kTurnMax = 0.8;  // largest step of an attitude
-// A reading that the log says again was taken at some time since the sample before: the deviation of that, samples.
-constexpr double kTaken = 0.29;
 constexpr int kFirstNodes = 100;  // but for the first, which still find their attitude
 
 System::BorderVector moved(const carried::Constants& from, const carried::Constants& to) {
@@ -129,7 +126,7 @@ Status CarriedStream::push(const ImuSample& sample, const ClippedElements& known
   }
   if (known.signs.empty()) return {Trouble::out_of_range, "signs", 0.0, 1.0};
   const double determinant = std::abs(known.rows.determinant());
-  if (!(determinant > kRowsMin)) return {Trouble::degenerate, "rows", determinant, kRowsMin};
+  if (!(determinant > carried::kRowsMin)) return {Trouble::degenerate, "rows", determinant, carried::kRowsMin};
 
   append(sample, held, state);
   if (read_again(known, state)) rebuild(state);
@@ -233,14 +230,15 @@ void CarriedStream::add(const Reading& reading, State& state) const {
   carried::NodeReadings* const rates = reading.gyro.repeats ? nullptr : readings_at(rate_node);
   carried::NodeReadings* const forces = reading.accel.repeats ? nullptr : readings_at(force_node);
   if (rates != nullptr) {
-    const double share = reading.gyro.held() ? kTaken / reading.gyro.period_samples : 0.0;
+    const double share = reading.gyro.held() ? carried::kTaken_samples / reading.gyro.period_samples : 0.0;
     const Vector3d open_rad_s = share * (state.rows * reading.gyro.change).cwiseAbs();
     carried::add_rate(reading.sample, state.rows, reading.signs, rate_s - static_cast<double>(rate_node) * node_s,
                       open_rad_s, *rates);
   }
   if (forces != nullptr) {
-    const double share =
-        reading.accel.held() ? std::hypot(carried::kOpenShare, kTaken / reading.accel.period_samples) : 0.0;
+    const double share = reading.accel.held()
+                             ? std::hypot(carried::kOpenShare, carried::kTaken_samples / reading.accel.period_samples)
+                             : 0.0;
     carried::add_force(reading.sample, reading.signs, force_s - static_cast<double>(force_node) * node_s, *forces);
     forces->force_open_m_s2 = std::max(forces->force_open_m_s2, share * reading.accel.change.norm());
   }

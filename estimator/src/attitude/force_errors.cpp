@@ -3,6 +3,7 @@
 
 #include <algorithm>
 
+#include "tumble/common/detail/squared.hpp"
 #include "tumble/common/so3.hpp"
 #include "tumble/common/status.hpp"
 
@@ -10,11 +11,7 @@ namespace tumble {
 
 namespace {
 
-constexpr int kBias = 0, kScale = 3, kPlace = 12;
-
-double squared(double x) {
-  return x * x;
-}
+constexpr int kForceBias = 0, kScale = 3, kPlace = 12;
 
 }  // namespace
 
@@ -35,7 +32,7 @@ void ForceErrors::learn(std::span<const Eigen::Vector3d> forces, const Eigen::Ve
   if (!state.started) {
     for (int k = 0; k < params_.count; ++k) {
       auto prior = state.P.diagonal().segment<kPerUnit>(kPerUnit * k);
-      prior.segment<3>(kBias).setConstant(squared(params_.bias_sigma_m_s2));
+      prior.segment<3>(kForceBias).setConstant(squared(params_.bias_sigma_m_s2));
       prior.segment<9>(kScale).setConstant(squared(params_.scale_sigma));
       prior.segment<3>(kPlace).setConstant(squared(params_.place_sigma_m));
     }
@@ -77,7 +74,7 @@ void ForceErrors::update(State& state) const {
       for (int j = 0; j < params_.count; ++j) {
         const double weight = (j == k ? 1.0 : 0.0) - share;
         auto own = row.segment<kPerUnit>(kPerUnit * j);
-        own[kBias + axis] = weight;
+        own[kForceBias + axis] = weight;
         own.segment<3>(kScale + 3 * axis) = weight / samples * state.force_m_s2.col(j);
         own.segment<3>(kPlace) = weight / samples * state.by_place.row(axis).transpose();
       }
@@ -103,7 +100,7 @@ void ForceErrors::update(State& state) const {
 Eigen::Vector3d ForceErrors::corrected(int k, const Eigen::Vector3d& force, const State& state) {
   if (!state.started) return force;
   const auto own = state.x.segment<kPerUnit>(kPerUnit * k);
-  Eigen::Vector3d out = force - own.segment<3>(kBias);
+  Eigen::Vector3d out = force - own.segment<3>(kForceBias);
   for (int axis = 0; axis < 3; ++axis) out[axis] -= own.segment<3>(kScale + 3 * axis).dot(force);
   return out;
 }

@@ -12,7 +12,7 @@ namespace {
 
 constexpr int kBlaming = 3;  // of two units that differ, nobody is to blame
 constexpr double kMisfitTau_s = 0.5;
-constexpr double kUnharmed = 0.8;  // of the gyro's range, up to which units are compared
+constexpr double kComparable = 0.8;  // of the gyro's range, up to which units are compared
 
 constexpr double kPart = 0.02;  // of a clipped axis in another, from which on that is clipped too
 
@@ -98,7 +98,7 @@ void ImuMerge::watch_misfits(const Flags& present, const Vectors& rates, const V
   for (std::size_t k = 0; k < present.size(); ++k) {
     const ImuAverage& window = state.units[k].window;
     if (!present[k] || window.readings == 0) continue;
-    railed |= window.rate_peak_rad_s >= kUnharmed * params_.gyro_range_rad_s ||
+    railed |= window.rate_peak_rad_s >= kComparable * params_.gyro_range_rad_s ||
               window.force_peak_m_s2 >= params_.expert.outliers.subsample_saturation_share * params_.accel_range_m_s2;
   }
   if (railed) return;

@@ -22,7 +22,6 @@ constexpr std::size_t kHalf = kAxisLabels, kTwice = kAxisLabels + 1;  // after t
 constexpr std::size_t kLower = kAxisLabels + 2, kUpper = kAxisLabels + 3, kReadings = kAxisLabels + 4;
 constexpr std::size_t kCompared = kLower;  // what is no neighbour of the rates as they are
 constexpr double kClearly = 0.4;           // logarithm of a ratio of squares
-constexpr unsigned kAccelFlags = kClipAccelX | kClipAccelY | kClipAccelZ;
 
 using Readings = std::array<Eigen::Matrix3d, kReadings>;
 
@@ -152,7 +151,7 @@ PivotCheck::Found PivotCheck::find(std::span<const ImuSample> samples, std::span
     const double dt_s = seconds(samples[k].time_ns - samples[k - 1].time_ns);
     if (dt_s <= 0.0) continue;
     const bool at_rail = (rail_m_s2 > 0.0 && force.cwiseAbs().maxCoeff() >= rail_m_s2) ||
-                         (samples[k].device_clip_flags & kAccelFlags) != 0;
+                         (samples[k].device_clip_flags & kClipAccel) != 0;
     if (dt_s > params_.gap_max_s || at_rail || rates[k].source != RateSource::measured ||
         !check_sample(samples[k]).ok()) {
       for (Segments& segments : series) segments.close();

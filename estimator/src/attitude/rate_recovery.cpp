@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "tumble/common/detail/scalar_update.hpp"
+#include "tumble/common/detail/squared.hpp"
 #include "tumble/common/so3.hpp"
 #include "tumble/common/status.hpp"
 
@@ -17,10 +18,6 @@ constexpr double kSmallest = 1e-12;
 constexpr int kRate = 0, kAcceleration = 3, kForce = 6, kArms = 9;
 constexpr double kStartRateSigma_rad_s = 0.1, kStartAcceleration_rad_s2 = 200.0, kStartForce_m_s2 = 10.0;
 constexpr double kRailSigma_rad_s = 0.1;
-
-double squared(double x) {
-  return x * x;
-}
 
 using Row = Eigen::Matrix<double, 1, RateRecovery::kStates>;
 
@@ -132,8 +129,7 @@ void RateRecovery::step(std::span<const ImuSample> units, double dt_s, State& st
   if (met.rate && state.P.diagonal().segment<3>(kRate).maxCoeff() < squared(params_.recovered_sigma_rad_s)) {
     merged.angular_velocity_rad_s = state.x.segment<3>(kRate);
   } else if (met.rate) {
-    merged.device_clip_flags =
-        static_cast<std::uint8_t>(merged.device_clip_flags | kClipGyroX | kClipGyroY | kClipGyroZ);
+    merged.device_clip_flags = static_cast<std::uint8_t>(merged.device_clip_flags | kClipGyro);
   }
   // the mean of the units in use was moved to the mean place with a rate that may be wrong
   if (met.rate || met.force) merged.specific_force_m_s2 = state.x.segment<3>(kForce);

@@ -6,6 +6,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "tumble/common/detail/squared.hpp"
+
 namespace tumble {
 
 namespace {
@@ -15,10 +17,6 @@ using Eigen::Vector3d;
 
 constexpr double kTwoPi = 2.0 * std::numbers::pi;
 constexpr double kContactMin_m_s2 = 1.0;
-
-double squared(double x) {
-  return x * x;
-}
 
 double log_gaussian(double squared_norm, double variance) {
   return -1.5 * std::log(kTwoPi * variance) - 0.5 * squared_norm / variance;

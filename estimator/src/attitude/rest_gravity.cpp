@@ -13,7 +13,6 @@ namespace tumble {
 namespace {
 
 constexpr double kRested_s = 1.0;  // in all, for its size to be asked
-constexpr unsigned kAccelFlags = kClipAccelX | kClipAccelY | kClipAccelZ;
 
 /// Of a body without any force that could be gravity, in whatever unit.
 RestDetector::Params without_force(RestDetector::Params rests) {
@@ -76,7 +75,7 @@ void RestGravity::turn(const ImuSample& sample, const RateState& rate, double dt
   state.way_s += dt_s;
   const double peak = force.cwiseAbs().maxCoeff();
   const bool at_range = params_.accel_range_m_s2 > 0.0 && peak >= (1.0 - kBesideRail) * params_.accel_range_m_s2;
-  if (at_range || (sample.device_clip_flags & kAccelFlags) != 0) state.hidden_m_s += dt_s * peak;
+  if (at_range || (sample.device_clip_flags & kClipAccel) != 0) state.hidden_m_s += dt_s * peak;
 }
 
 /// What a rail hid of a segment hangs together as long as the segment lasts: imu_merge.md (I19).

@@ -8,6 +8,7 @@
 #include "tumble/attitude/detail/timing.hpp"
 #include "tumble/attitude/strapdown.hpp"
 #include "tumble/common/detail/scalar_update.hpp"
+#include "tumble/common/detail/squared.hpp"
 #include "tumble/common/so3.hpp"
 
 namespace tumble {
@@ -18,10 +19,6 @@ constexpr double kTiltSigmaStart_rad = 0.01;
 constexpr double kVelocitySigmaStart_m_s = 0.1;
 constexpr double kDisplacementSigmaStart_m = 0.1;
 constexpr int kTilt = 0, kBias = 2, kVelocity = 5, kDisplacement = 7, kHeading = 9;
-
-double squared(double x) {
-  return x * x;
-}
 
 /// Kalman update by one scalar measurement of state `index` of attitude.md (A4): `innovation` is measurement minus
 /// estimate. What is known of the heading stays: attitude.md (A8b).

@@ -13,7 +13,7 @@ namespace tumble {
 
 namespace {
 
-constexpr double kForceMin_m_s2 = 1e-6;
+constexpr double kNoDirection_m_s2 = 1e-6;
 /// The bias variance grows to the square of this in the forgetting time (0.1 deg/s, fixed by the publication).
 constexpr double kForgottenSigma_rad_s = 1.7453292519943295e-3;
 
@@ -42,7 +42,7 @@ Status Vqf::step(const ImuSample& sample, State& state) const {
   if (dt_s > 0.0) {
     detect_rest(sample, dt_s, state);
     state.q_NI = (state.q_NI * so3::exp((sample.angular_velocity_rad_s - state.bias_rad_s) * dt_s)).normalized();
-    if (sample.specific_force_m_s2.norm() >= kForceMin_m_s2) {
+    if (sample.specific_force_m_s2.norm() >= kNoDirection_m_s2) {
       const Eigen::Vector3d up_W = level_inertial_frame(sample.specific_force_m_s2, dt_s, state);
       if (params_.rest_bias_estimation || params_.motion_bias_estimation) estimate_bias(up_W, dt_s, state);
     }
@@ -69,7 +69,7 @@ Eigen::Vector3d Vqf::level_inertial_frame(const Eigen::Vector3d& f_I_m_s2, doubl
   // attitude.md (A3)
   state.f_N_m_s2.advance(state.q_NI * f_I_m_s2, params_.tau_s, dt_s, low_pass_warp(params_.tau_s, dt_s));
   const double length = state.f_N_m_s2.value.norm();
-  if (length < kForceMin_m_s2) return Eigen::Vector3d::UnitZ();
+  if (length < kNoDirection_m_s2) return Eigen::Vector3d::UnitZ();
   const Eigen::Vector3d up_W = state.q_WN * (state.f_N_m_s2.value / length);
   // attitude.md (A2)
   state.q_WN = (levelling(up_W) * state.q_WN).normalized();

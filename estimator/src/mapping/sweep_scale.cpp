@@ -23,7 +23,6 @@ constexpr std::size_t kChangesMin = 5, kChangesMax = 1000;
 constexpr std::size_t kSpanMax = 64;  // sweeps, of a lidar that is watched
 constexpr int kIterations = 10;
 constexpr double kHuber = 1.5, kPerMedian = 1.4826;  // deviations; of a normal distribution by its median deviation
-constexpr unsigned kAccelFlags = kClipAccelX | kClipAccelY | kClipAccelZ;
 
 using Change = SweepScaleWatch::Change;
 
@@ -45,7 +44,7 @@ class FeltMotion {
     auto next = std::lower_bound(samples_.begin(), samples_.end(), from_ns, later);
     Eigen::Vector3d velocity = Eigen::Vector3d::Zero(), place = velocity, at_middle = velocity;
     for (TimeNs now = from_ns; now < to_ns;) {
-      if (next == samples_.end() || (next->device_clip_flags & kAccelFlags) != 0) return std::nullopt;
+      if (next == samples_.end() || (next->device_clip_flags & kClipAccel) != 0) return std::nullopt;
       const TimeNs before_ns = next == samples_.begin() ? from_ns : std::prev(next)->time_ns;
       if (next->time_ns - before_ns > mapping::kGap_ns) return std::nullopt;
       const TimeNs until = std::min({next->time_ns, to_ns, now < middle_ns ? middle_ns : to_ns});

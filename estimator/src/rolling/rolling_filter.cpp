@@ -144,7 +144,7 @@ bool RollingFilter::spins_in_place(const State& state) const {
   const double averaged = params_.expert.node_s / (2.0 * kSlowRateTau_s);
   const Hypothesis& best = state.hypotheses[0];
   const Eigen::Array3d variance = best.P.diagonal().segment<3>(rolling::kGyroBias).array() +
-                                  rolling::squared(params_.expert.contact.rest_rate_sigma_rad_s) * averaged;
+                                  squared(params_.expert.contact.rest_rate_sigma_rad_s) * averaged;
   const Eigen::Array3d off =
       (state.slow_rate_rad_s - state.nominal.gyro_bias_rad_s - best.x.segment<3>(rolling::kGyroBias)).array();
   return (off.square() > kSpinSigmas * kSpinSigmas * variance).any();
@@ -170,7 +170,7 @@ void RollingFilter::call_uncertain(State& state) const {
   const double variance_m2 = state.position_covariance_m2(0, 0) + state.position_covariance_m2(1, 1);
   const bool event = slips(state.hypotheses[0].mode);
   if (!event) state.before_event_m2 = variance_m2;
-  state.uncertain = event && variance_m2 - state.before_event_m2 > rolling::squared(params_.expert.modes.uncertain_m);
+  state.uncertain = event && variance_m2 - state.before_event_m2 > squared(params_.expert.modes.uncertain_m);
 }
 
 /// Probabilities of slip and bump over all hypotheses.

@@ -16,8 +16,6 @@ namespace tumble {
 
 namespace {
 
-using rolling::squared;
-
 constexpr double kDropped = -120.0;   // log weight below the best at which a hypothesis is given up
 constexpr double kRestFloor = -60.0;  // least log likelihood of a node at rest: one bad node must not decide
 constexpr double kSettled_s = 1.0;    // after so long in one mode it does not matter when it began

@@ -39,8 +39,6 @@ constexpr double kStartTilt_rad = 0.15;  // of a start in motion: a push of 1.5 
 // of a gap: a sphere that turned slower than this on both sides was not pushed about in between, but for a little
 constexpr double kGapTurning_rad_s = 1.0, kGapStill_rad_s2 = 0.5;
 constexpr double kGapStep = 0.15;  // of a change of rate times the gap's length: when in it the change came
-constexpr std::uint8_t kGyroFlags = kClipGyroX | kClipGyroY | kClipGyroZ,
-                       kAccelFlags = kClipAccelX | kClipAccelY | kClipAccelZ;
 
 }  // namespace
 
@@ -113,9 +111,9 @@ void integrate(const RollingParams& params, const ImuAverage& reading, RollingNo
   nominal.q_WI = (q_mid * half).normalized();
   const double gravity = params.gravity_m_s2;
   const bool beyond = reading.rate_peak_rad_s >= params.gyro_range_rad_s;
-  const bool lost = (sample.device_clip_flags & kGyroFlags) != 0 ||
+  const bool lost = (sample.device_clip_flags & kClipGyro) != 0 ||
                     (beyond && !(params.expert.rails.recovered_rate_sigma_rad_s > 0.0));
-  const bool clipped = lost || beyond || (sample.device_clip_flags & kAccelFlags) != 0 ||
+  const bool clipped = lost || beyond || (sample.device_clip_flags & kClipAccel) != 0 ||
                        reading.force_peak_m_s2 >= params.accel_range_m_s2;
   // a force that is clipped, or turned by a rate that is, says nothing: the velocity of the centre is kept,
   // rolling.md (R7)
@@ -169,7 +167,7 @@ ImuAverage gap_piece(const RollingParams& params, const ImuSample& before, const
   const Eigen::Vector3d change = after.angular_velocity_rad_s - before.angular_velocity_rad_s;
   ImuSample sample = after;
   sample.angular_velocity_rad_s = before.angular_velocity_rad_s + share * change;
-  sample.device_clip_flags = kAccelFlags;  // of the force nothing is known
+  sample.device_clip_flags = kClipAccel;  // of the force nothing is known
   const double turning = std::max(before.angular_velocity_rad_s.norm(), after.angular_velocity_rad_s.norm());
   const double acceleration =
       kGapStill_rad_s2 + params.expert.gap.gap_acceleration_rad_s2 * std::min(1.0, turning / kGapTurning_rad_s);

@@ -5,6 +5,7 @@
 #include <optional>
 
 #include "tumble/common/detail/imu_average.hpp"
+#include "tumble/common/detail/squared.hpp"
 #include "tumble/rolling/rolling_model.hpp"
 #include "tumble/rolling/rolling_params.hpp"
 
@@ -19,10 +20,6 @@ using Vector = Eigen::Matrix<double, kStates, 1>;
 using Row = Eigen::Matrix<double, 1, kStates>;
 using Covariance = Eigen::Matrix<double, kStates, kStates>;
 using Moving = Eigen::Matrix<double, 9, kStates>;
-
-inline double squared(double x) {
-  return x * x;
-}
 
 /// Quiet for so long, and no faster: it stands still, and so does the position that is given out.
 inline constexpr double kHeldAfter_s = 0.1, kHeldSpeed_m_s = 0.02;

@@ -9,17 +9,17 @@ namespace tumble::rolling {
 
 namespace {
 
-constexpr double kBelieved = 5.0;        // sigmas
+constexpr double kBelievedSigmas = 5.0;
 constexpr double kNoDirection_m = 0.05;  // between two places nearer than this
 
-/// A measurement further off than kBelieved is taken for a coarser one, by as much: linear corrections as large as that
-/// would bend the whole run: rolling.md (R32).
+/// A measurement further off than kBelievedSigmas is taken for a coarser one, by as much: linear corrections as large
+/// as that would bend the whole run: rolling.md (R32).
 void measure(const Row& H, double measured, double variance, NodeRecord& record, Vector& x, Covariance& P) {
   const auto k = static_cast<std::size_t>(record.rows++);
   const Vector PHt = P * H.transpose();
   record.H[k] = H;
   record.innovation[k] = measured - H.dot(x);
-  record.variance[k] = std::max(H.dot(PHt) + variance, squared(record.innovation[k] / kBelieved));
+  record.variance[k] = std::max(H.dot(PHt) + variance, squared(record.innovation[k] / kBelievedSigmas));
   record.gain[k] = PHt / record.variance[k];
   x += record.gain[k] * record.innovation[k];
   P.noalias() -= PHt * record.gain[k].transpose();

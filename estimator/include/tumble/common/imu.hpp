@@ -18,6 +18,8 @@ enum ClipFlag : std::uint8_t {
   kClipAccelY = 16,
   kClipAccelZ = 32,
 };
+inline constexpr std::uint8_t kClipGyro = kClipGyroX | kClipGyroY | kClipGyroZ;
+inline constexpr std::uint8_t kClipAccel = kClipAccelX | kClipAccelY | kClipAccelZ;
 
 /// One reading of an inertial measurement unit, in the unit's own axes I.
 /// The values are means over the sample's window, which ends at `time_ns`.

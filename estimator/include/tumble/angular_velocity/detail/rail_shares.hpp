@@ -14,4 +14,7 @@ inline constexpr double kStatedRailMin = 0.85;
 /// where a reading at it stands. Further below a reading is one for sure. rails.md (R54), (R75), rate_stream.md (R94).
 inline constexpr double kBesideRail = 0.02;
 
+/// Of a rail: readings closer than this are equal, as RailDetector has it.
+inline constexpr double kEqualShare = 2e-5;
+
 }  // namespace tumble
