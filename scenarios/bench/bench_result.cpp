@@ -17,7 +17,7 @@ namespace {
 using nlohmann::ordered_json;
 
 constexpr const char* kFormat = "tumble bench";
-constexpr int kFormatVersion = 1;
+constexpr int kBenchFormatVersion = 1;
 
 ordered_json to_json(const BenchDraw& draw) {
   ordered_json values = ordered_json::object();
@@ -57,8 +57,8 @@ BenchResult result_from(const ordered_json& node) {
   if (!node.is_object() || node.value("format", "") != kFormat)
     throw BadInput(std::string("not a line of format '") + kFormat + "'");
   const ordered_json version = node.value("format_version", ordered_json());
-  if (version != kFormatVersion)
-    throw BadInput("format_version " + version.dump() + ", must be " + std::to_string(kFormatVersion));
+  if (version != kBenchFormatVersion)
+    throw BadInput("format_version " + version.dump() + ", must be " + std::to_string(kBenchFormatVersion));
   BenchResult result;
   const auto text = [&](const char* key) { return node.at(key).get<std::string>(); };
   result.suite = text("suite");
@@ -90,7 +90,7 @@ std::string to_line(const BenchResult& result) {
   ordered_json draws = ordered_json::array();
   for (const BenchDraw& draw : result.draws) draws.push_back(to_json(draw));
   const ordered_json line = {{"format", kFormat},
-                             {"format_version", kFormatVersion},
+                             {"format_version", kBenchFormatVersion},
                              {"suite", result.suite},
                              {"suite_digest", result.suite_digest},
                              {"kind", to_string(result.kind)},

@@ -21,15 +21,15 @@ struct Ideal {
 enum class Sort { several, size, count };
 
 /// A line of registration: what it is called, and its numbers. Those that a type does not have are passed over.
-struct Line {
+struct ComplicationLine {
   std::string_view what;
   std::vector<Ideal> numbers;
   Sort sort = Sort::several;
 };
 
 /// The unit's own words (sim/world, "0: none"); what is a shape rather than a disturbance stays.
-std::span<const Line> of_world() {
-  static const std::vector<Line> kLines = {
+std::span<const ComplicationLine> of_world() {
+  static const std::vector<ComplicationLine> kLines = {
       {"rocks", {{"rock_count"}}, Sort::count},
       {"trunks", {{"trunk_count"}}, Sort::count},
       {"pillars", {{"pillar_count"}}, Sort::count},
@@ -55,8 +55,8 @@ std::span<const Line> of_world() {
   return kLines;
 }
 
-std::span<const Line> of_robot() {
-  static const std::vector<Line> kLines = {
+std::span<const ComplicationLine> of_robot() {
+  static const std::vector<ComplicationLine> kLines = {
       {"centre of mass off its place", {{"com_x_m"}, {"com_y_m"}, {"com_z_m"}}},
       {"inside off the centre", {{"inner_x_m"}, {"inner_y_m"}, {"inner_z_m"}}},
       {"struts that differ",
@@ -67,8 +67,8 @@ std::span<const Line> of_robot() {
   return kLines;
 }
 
-std::span<const Line> of_motion() {
-  static const std::vector<Line> kLines = {
+std::span<const ComplicationLine> of_motion() {
+  static const std::vector<ComplicationLine> kLines = {
       {"spin forward", {{"spin_forward_rad_s"}}, Sort::size},
       {"spin to the side", {{"spin_side_rad_s"}}, Sort::size},
       {"spin about the vertical", {{"spin_up_rad_s"}}, Sort::size},
@@ -93,8 +93,8 @@ std::span<const Line> of_motion() {
 // methods take for a range
 constexpr double kBeyondRates_rad_s = 100.0, kBeyondForces_m_s2 = 1000.0;
 
-std::span<const Line> of_imu() {
-  static const std::vector<Line> kLines = {
+std::span<const ComplicationLine> of_imu() {
+  static const std::vector<ComplicationLine> kLines = {
       {"rail of the gyro", {{"gyro_rail_rad_s"}, {"gyro_range_rad_s", kBeyondRates_rad_s}}},
       {"rail of the accelerometer", {{"accel_rail_m_s2"}, {"accel_range_m_s2", kBeyondForces_m_s2}}},
       {"tilt, scale and offset of the rails",
@@ -155,8 +155,8 @@ std::span<const Line> of_imu() {
   return kLines;
 }
 
-std::span<const Line> of_lidar() {
-  static const std::vector<Line> kLines = {
+std::span<const ComplicationLine> of_lidar() {
+  static const std::vector<ComplicationLine> kLines = {
       {"noise of ranges", {{"range_noise_m"}}, Sort::size},
       {"quanta", {{"range_quantum_m"}, {"intensity_quantum"}}},
       {"lost returns", {{"detection_range_m"}, {"dropout_share"}}},
@@ -167,8 +167,8 @@ std::span<const Line> of_lidar() {
   return kLines;
 }
 
-std::span<const Line> of_mounting() {
-  static const std::vector<Line> kLines = {
+std::span<const ComplicationLine> of_mounting() {
+  static const std::vector<ComplicationLine> kLines = {
       {"errors of its mounting", {{"x_m"}, {"y_m"}, {"z_m"}, {"roll_rad"}, {"pitch_rad"}, {"yaw_rad"}}}};
   return kLines;
 }
@@ -176,9 +176,9 @@ std::span<const Line> of_mounting() {
 using Numbers = std::map<std::string, Distribution>;
 
 /// The lines that `numbers`, which stand at `place`, are not ideal in.
-void add(const std::string& part, const std::string& place, std::span<const Line> lines, const Numbers& numbers,
-         std::vector<Complication>& out) {
-  for (const Line& line : lines) {
+void add(const std::string& part, const std::string& place, std::span<const ComplicationLine> lines,
+         const Numbers& numbers, std::vector<Complication>& out) {
+  for (const ComplicationLine& line : lines) {
     Complication found{part + ": " + std::string(line.what), {}, {}, line.sort == Sort::count};
     double value = 0.0;
     for (const Ideal& ideal : line.numbers) {

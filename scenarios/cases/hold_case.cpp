@@ -11,7 +11,7 @@ namespace tumble::scenarios {
 
 namespace {
 
-std::string text_of(double value) {
+std::string four_digits(double value) {
   std::ostringstream text;
   text.precision(4);
   text << value;
@@ -19,7 +19,7 @@ std::string text_of(double value) {
 }
 
 /// A finite number of the metric; none, where there is not.
-std::optional<double> value_of(const Outcome& outcome, const std::string& metric) {
+std::optional<double> finite_value_of(const Outcome& outcome, const std::string& metric) {
   for (const Score& score : outcome.scores) {
     if (score.metric == metric && std::isfinite(score.value)) return score.value;
   }
@@ -45,7 +45,7 @@ std::string doc_of(const Shrunk& shrunk, const std::string& method, const std::s
 
 std::string how_it_fails(const CaseResult& result) {
   std::string text = to_string(result.status);
-  if (result.value) text += ", " + result.expected.metric + " " + text_of(*result.value);
+  if (result.value) text += ", " + result.expected.metric + " " + four_digits(*result.value);
   return text;
 }
 
@@ -60,8 +60,8 @@ Scenario named_case_of(const Shrunk& shrunk, const std::string& name, const std:
   expected.metric = failure.metric.empty() ? headline_metrics(shrunk.drawn.kind).front() : failure.metric;
   if (!failure.metric.empty()) expected.worse_than = failure.limit;
   expected.status = to_string(shrunk.left.status);
-  expected.drawn = value_of(shrunk.drawn, expected.metric);
-  expected.value = value_of(shrunk.left, expected.metric);
+  expected.drawn = finite_value_of(shrunk.drawn, expected.metric);
+  expected.value = finite_value_of(shrunk.left, expected.metric);
   out.doc = doc_of(shrunk, method, out.name, shrunk.drawn.seed);
   out.named_case = NamedCase{out.name, shrunk.drawn.seed, version, command, {expected}};
   out.name = name;
@@ -73,7 +73,7 @@ Failure failure_of(const Expectation& expected) {
 }
 
 CaseResult hold_case(const std::string& name, const Expectation& expected, const Outcome& outcome) {
-  CaseResult result{name,  expected.method, expected, outcome.status, value_of(outcome, expected.metric),
+  CaseResult result{name,  expected.method, expected, outcome.status, finite_value_of(outcome, expected.metric),
                     false, false,           ""};
   result.fails = failure_of(expected).holds(outcome);
   if (!expected.fails) {
@@ -90,12 +90,12 @@ CaseResult hold_case(const std::string& name, const Expectation& expected, const
     result.fault = std::string("fails by ") + to_string(outcome.status) + ", was " + expected.status;
   } else if (expected.value.has_value() != result.value.has_value()) {
     result.fault =
-        expected.metric + (result.value ? " has a value now: " + text_of(*result.value) : " has no value now");
+        expected.metric + (result.value ? " has a value now: " + four_digits(*result.value) : " has no value now");
   } else if (result.value) {
     const MetricInfo& info = metric_info(expected.metric);
     const double was = *expected.value, is = *result.value;
     const bool within = std::abs(is) <= kCaseFactor * std::abs(was) && std::abs(was) <= kCaseFactor * std::abs(is);
-    const std::string what = expected.metric + " is " + text_of(is) + ", was " + text_of(was);
+    const std::string what = expected.metric + " is " + four_digits(is) + ", was " + four_digits(was);
     if (!within && tumble::scenarios::is_better(info, is, was)) is_better("better: " + what);
     if (!within && !result.better) result.fault = what;
   }
@@ -106,7 +106,7 @@ Expectation accepted(const Expectation& expected, const Outcome& outcome) {
   Expectation out = expected;
   out.fails = failure_of(expected).holds(outcome);
   out.status = to_string(outcome.status);
-  out.value = value_of(outcome, expected.metric);
+  out.value = finite_value_of(outcome, expected.metric);
   return out;
 }
 

@@ -4,6 +4,7 @@
 
 #include "scenarios/certificate/rows.hpp"
 #include "scenarios/draw/data_sheet.hpp"
+#include "scenarios/standard_gravity.hpp"
 #include "sim/imu/allan.hpp"
 #include "sim/imu/bias.hpp"
 #include "sim/imu/imu_simulation.hpp"
@@ -13,10 +14,9 @@ namespace tumble::scenarios {
 namespace {
 
 constexpr double kRate_hz = 100.0;
-constexpr double kGravity_m_s2 = 9.80665;
 
 /// Rates of a device's readings at rest [rad/s] and its specific forces [m/s^2].
-struct Readings {
+struct RestReadings {
   std::vector<Eigen::Vector3d> gyro, accel;
 };
 
@@ -47,10 +47,10 @@ constexpr std::initializer_list<const char*> kNoises = {"gyro_noise_rad_s_sqrt_h
 constexpr std::initializer_list<const char*> kInstabilities = {"gyro_bias_in_run_rad_s", "accel_bias_in_run_m_s2"};
 constexpr std::initializer_list<const char*> kWalks = {"gyro_bias_walk_rad_s_sqrt_s", "accel_bias_walk_m_s2_sqrt_s"};
 
-Readings rest(const sim::SensorSpec& sensor, double duration_s, std::uint64_t seed) {
+RestReadings rest(const sim::SensorSpec& sensor, double duration_s, std::uint64_t seed) {
   sim::ImuRecord record;
   sim::ImuTruth truth;
-  sim::simulate_imu_at_rest(sensor, duration_s, kRate_hz, kGravity_m_s2, seed, record, truth);
+  sim::simulate_imu_at_rest(sensor, duration_s, kRate_hz, kStandardGravity_m_s2, seed, record, truth);
   return {std::move(record.gyro_rad_s), std::move(record.accel_m_s2)};
 }
 
@@ -72,7 +72,7 @@ struct Stated {
 
   Stated(const sim::Values& sheet, const std::string& prefix, const std::string& unit) {
     const auto value = [&](const std::string& name) { return sheet.at(prefix + "_" + name); };
-    const double signal = prefix == "accel" ? kGravity_m_s2 : 0.0;
+    const double signal = prefix == "accel" ? kStandardGravity_m_s2 : 0.0;
     const bool precise = value("handover_" + unit) > signal;
     noise = value((precise ? "precise_noise_" : "noise_") + unit + "_sqrt_hz");
     bias.in_run = value("bias_in_run_" + unit);
@@ -131,10 +131,10 @@ std::vector<CertificateEntry> certify_imu_noise(const CertificateInput& input, c
     multiply(sensor, kNoises, setup.noise_factor);
     multiply(sensor, kInstabilities, setup.bias_factor);
     multiply(sensor, kWalks, setup.bias_factor);
-    const Readings all = rest(sensor, setup.duration_s, setup.seed);
+    const RestReadings all = rest(sensor, setup.duration_s, setup.seed);
     multiply(sensor, kNoises, 0.0);
     multiply(sensor, kInstabilities, 0.0);
-    const Readings walk = rest(sensor, setup.duration_s / 2.0, setup.seed);
+    const RestReadings walk = rest(sensor, setup.duration_s / 2.0, setup.seed);
     for (CertificateEntry& each : entries_of(device + " gyro", gyro, curve_of(all.gyro), curve_of(walk.gyro))) {
       entries.push_back(std::move(each));
     }

@@ -45,17 +45,17 @@ double off_plane_m(const std::string& surface, const Eigen::Vector3d& p_W_m) {
   return -1.0;
 }
 
-struct Errors {
+struct RangeErrors {
   double largest_m = 0.0;
   std::int64_t points = 0;
 };
 
 /// What the lidar reports, carried to the world by the true pose at the firing.
-Errors against_planes(const sim::Recording& recording, double added_range_m) {
+RangeErrors against_planes(const sim::Recording& recording, double added_range_m) {
   const sim::LidarRecord& record = recording.sensors.lidars.at(0);
   const sim::LidarTruth& truth = recording.truth.lidars.at(0);
   const TruthTrack track(recording.truth, Frame::lidar);
-  Errors errors;
+  RangeErrors errors;
   for (std::size_t sweep = 0; sweep < record.sweep_start_ns.size(); ++sweep) {
     for (std::uint64_t i = record.sweep_first[sweep]; i < record.sweep_first[sweep + 1]; ++i) {
       const std::int64_t time_ns = record.sweep_start_ns[sweep] + record.offset_ns[i];
@@ -79,7 +79,7 @@ std::vector<CertificateEntry> certify_lidar_range(const CertificateInput& input,
   std::vector<CertificateEntry> entries;
   for (const auto& [robot, device] : {std::pair{"rig", "rs16"}, std::pair{"sphere", "mid100"}}) {
     const sim::Recording recording = sim::simulate(build(input, moving_lidar(input, robot, device)));
-    const Errors errors = against_planes(recording, setup.added_range_m);
+    const RangeErrors errors = against_planes(recording, setup.added_range_m);
     CertificateEntry entry{"lidar_range_analytic",
                            device,
                            "each point of a moving lidar without noise lies on the plane that it hit: largest distance",

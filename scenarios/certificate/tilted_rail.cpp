@@ -19,6 +19,7 @@
 #include "scenarios/certificate/rows.hpp"
 #include "scenarios/certificate/set_up.hpp"
 #include "scenarios/draw/data_sheet.hpp"
+#include "scenarios/standard_gravity.hpp"
 #include "sim/imu/imu_simulation.hpp"
 
 namespace tumble::scenarios {
@@ -29,7 +30,6 @@ using Eigen::Matrix3d;
 using Eigen::Vector3d;
 
 constexpr double kStep_s = 0.0005;
-constexpr double kGravity_m_s2 = 9.80665;
 
 /// Turns about x, y and z in turn beyond any gyro's rail here, and somewhat about the others; pushed along x so hard
 /// that each element of an accelerometer meets its rail as it comes round.
@@ -100,13 +100,13 @@ int side(const Triad& triad, std::size_t k, int j) {
 }
 
 /// How far fitted planes are from the drawn ones.
-struct Errors {
+struct PlaneErrors {
   double slope = 0.0, distance_share = 0.0;
   int samples = 0;  ///< of the element and sign that had fewest
 };
 
 /// Rows of one element's fit: the reading along its axis from the two beside, the side and 1.
-void fit_element(const Triad& triad, int j, double believed_tilt, Errors& errors) {
+void fit_element(const Triad& triad, int j, double believed_tilt, PlaneErrors& errors) {
   const int first = (j + 1) % 3, second = (j + 2) % 3;
   std::vector<std::size_t> clipped;
   std::array<int, 2> count = {0, 0};
@@ -142,12 +142,12 @@ std::vector<CertificateEntry> certify_tilted_rail(const CertificateInput& input,
   const double gyro_rail = sensor.values.at("gyro_rail_rad_s"), accel_rail = sensor.values.at("accel_rail_m_s2");
   const sim::Truth motion = beyond_every_rail(gyro_rail, accel_rail);
   constexpr int kMany = 1 << 30;
-  Errors gyro{0.0, 0.0, kMany}, accel{0.0, 0.0, kMany};
+  PlaneErrors gyro{0.0, 0.0, kMany}, accel{0.0, 0.0, kMany};
   for (int device = 1; device <= setup.devices; ++device) {
     sim::ImuRecord record;
     sim::ImuTruth truth;
-    sim::simulate_imu(motion, sensor, Eigen::Isometry3d::Identity(), kGravity_m_s2, static_cast<std::uint64_t>(device),
-                      record, truth);
+    sim::simulate_imu(motion, sensor, Eigen::Isometry3d::Identity(), kStandardGravity_m_s2,
+                      static_cast<std::uint64_t>(device), record, truth);
     const Triad rates{record.gyro_rad_s, truth.gyro_unclipped_rad_s, matrix(truth.gyro_elements),
                       truth.gyro_element_offset_rad_s, gyro_rail};
     const Triad forces{record.accel_m_s2, truth.accel_unclipped_m_s2, matrix(truth.accel_elements),

@@ -20,7 +20,6 @@ namespace tumble::scenarios {
 namespace {
 
 constexpr std::size_t kLastWords = 300;
-constexpr double kMib = 1024.0 * 1024.0;
 
 void limit(int resource, double value) {
   const auto most = static_cast<rlim_t>(value);

@@ -43,7 +43,6 @@ namespace {
 }  // namespace
 
 void limit_memory(double mib) {
-  constexpr double kMib = 1024.0 * 1024.0;
   rlimit both{};
   getrlimit(RLIMIT_DATA, &both);
   both.rlim_cur = std::min({both.rlim_cur, both.rlim_max, static_cast<rlim_t>(mib * kMib)});

@@ -52,6 +52,8 @@ class Process {
   bool own_group_ = false;
 };
 
+inline constexpr double kMib = 1024.0 * 1024.0;  ///< bytes
+
 /// Of this process and of those that it makes: at most so much data (RLIMIT_DATA) each, and never more than whoever
 /// started it allows. What needs more is refused: std::bad_alloc, or no process.
 void limit_memory(double mib);

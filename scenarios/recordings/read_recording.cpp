@@ -11,10 +11,10 @@ namespace tumble::scenarios {
 namespace {
 
 /// Archive that reads every field out of a group.
-class Reader {
+class RecordingReader {
  public:
   /// `scratch`: where columns are set aside that are not kept in memory.
-  explicit Reader(hdf5::Group group, std::filesystem::path scratch = {})
+  explicit RecordingReader(hdf5::Group group, std::filesystem::path scratch = {})
       : group_(std::move(group)), scratch_(std::move(scratch)) {}
 
   void value(const char* name, std::string& value) { value = group_.text_attribute(name); }
@@ -64,7 +64,7 @@ class Reader {
   void texts(const char* name, std::vector<std::string>& texts) { texts = group_.read_texts(name); }
   template <class Record, class Fields>
   void group(const char* name, Record& record, Fields&& fields) {
-    Reader inner(group_.open(name), scratch_);
+    RecordingReader inner(group_.open(name), scratch_);
     fields(inner, record);
   }
   template <class Record, class Fields>
@@ -72,7 +72,7 @@ class Reader {
     const hdf5::Group all = group_.open(name);
     const std::size_t count = all.count();
     for (std::size_t i = 0; i < count; ++i) {
-      Reader inner(all.open(std::to_string(i)), scratch_);
+      RecordingReader inner(all.open(std::to_string(i)), scratch_);
       fields(inner, records.emplace_back());
     }
   }
@@ -166,7 +166,7 @@ RecordingInfo read_info(const std::filesystem::path& path) {
 sim::Sensors read_sensors(const std::filesystem::path& path) {
   const hdf5::InputFile file(path);
   require_format(file.root());
-  Reader reader(file.root().open("sensors"));
+  RecordingReader reader(file.root().open("sensors"));
   sim::Sensors sensors;
   sensors_fields(reader, sensors);
   require_sound(path.string(), find_problem(sensors), reader.digest_or_empty(), digest(sensors, nullptr));
@@ -177,7 +177,7 @@ sim::Sensors read_sensors(const std::filesystem::path& path, const std::filesyst
                           std::vector<PointStore>& points) {
   const hdf5::InputFile file(path);
   require_format(file.root());
-  Reader reader(file.root().open("sensors"), scratch);
+  RecordingReader reader(file.root().open("sensors"), scratch);
   sim::Sensors sensors;
   std::vector<StoredLidar> lidars;
   sensors_fields(reader, sensors, lidars);
@@ -199,7 +199,7 @@ bool states_digest(const std::filesystem::path& path) {
 
 sim::Truth read_truth(const std::filesystem::path& path) {
   const hdf5::InputFile file(path);
-  Reader reader(truth_group(file, path));
+  RecordingReader reader(truth_group(file, path));
   sim::Truth truth;
   ContactColumns contacts;
   truth_fields(reader, truth, contacts);
@@ -210,7 +210,7 @@ sim::Truth read_truth(const std::filesystem::path& path) {
 
 StoredTruth read_truth(const std::filesystem::path& path, const std::filesystem::path& scratch) {
   const hdf5::InputFile file(path);
-  Reader reader(truth_group(file, path), scratch);
+  RecordingReader reader(truth_group(file, path), scratch);
   StoredTruth truth;
   truth_fields(reader, truth, truth.contacts);
   require_one_length(truth.contacts, path.string());

@@ -10,16 +10,16 @@ namespace tumble::scenarios {
 
 namespace {
 
-constexpr std::int64_t kRaster_ns = 1'000'000, kLongest_ns = 4 * kRaster_ns;
+constexpr std::int64_t kRaster_ns = 1'000'000, kLongestStep_ns = 4 * kRaster_ns;
 constexpr double kLeastShare = 0.02;
 constexpr std::size_t kLeast = 100;  // stamps
 constexpr double kReach_s = 0.5;
-constexpr std::int64_t kGap_ns = kLongest_ns + 2 * kRaster_ns;  // longer than any step that counts
+constexpr std::int64_t kStampGap_ns = kLongestStep_ns + 2 * kRaster_ns;  // longer than any step that counts
 
 /// Sums of a piece up to each of its stamps: n, i, v, i i, i v, v being what a steady beat leaves of them.
-class Line {
+class StampLine {
  public:
-  explicit Line(std::span<const std::int64_t> piece) : piece_(piece) {
+  explicit StampLine(std::span<const std::int64_t> piece) : piece_(piece) {
     const auto last = static_cast<double>(piece.size() - 1);
     step_ns_ = last > 0.0 ? static_cast<double>(piece.back() - piece.front()) / last : 0.0;
     sums_.resize(piece.size() + 1);
@@ -53,7 +53,7 @@ class Line {
 };
 
 void even_out(std::span<const std::int64_t> piece, std::vector<std::int64_t>& out) {
-  const Line line(piece);
+  const StampLine line(piece);
   const auto reach = static_cast<std::size_t>(1e9 * kReach_s / std::max(line.step_ns(), 1e5));
   for (std::size_t k = 0; k < piece.size(); ++k) {
     const std::size_t first = k > reach ? k - reach : 0, end = std::min(piece.size(), k + reach + 1);
@@ -68,12 +68,12 @@ void even_out(std::span<const std::int64_t> piece, std::vector<std::int64_t>& ou
 
 bool are_rounded(std::span<const std::int64_t> stamps_ns) {
   if (stamps_ns.size() < kLeast) return false;
-  std::array<std::size_t, kLongest_ns / kRaster_ns + 2> counts{};
+  std::array<std::size_t, kLongestStep_ns / kRaster_ns + 2> counts{};
   std::size_t all = 0;
   for (std::size_t k = 1; k < stamps_ns.size(); ++k) {
     const std::int64_t step = stamps_ns[k] - stamps_ns[k - 1];
     if (step % kRaster_ns != 0 || step <= 0) return false;
-    if (step > kLongest_ns + kRaster_ns) continue;
+    if (step > kLongestStep_ns + kRaster_ns) continue;
     ++counts[static_cast<std::size_t>(step / kRaster_ns)];
     ++all;
   }
@@ -91,7 +91,7 @@ std::vector<std::int64_t> evened(std::span<const std::int64_t> stamps_ns) {
   out.reserve(stamps_ns.size());
   for (std::size_t first = 0; first < stamps_ns.size();) {
     std::size_t end = first + 1;
-    while (end < stamps_ns.size() && stamps_ns[end] - stamps_ns[end - 1] < kGap_ns) ++end;
+    while (end < stamps_ns.size() && stamps_ns[end] - stamps_ns[end - 1] < kStampGap_ns) ++end;
     even_out(stamps_ns.subspan(first, end - first), out);
     first = end;
   }
@@ -102,7 +102,7 @@ std::int64_t mean_step_ns(std::span<const std::int64_t> stamps_ns) {
   std::int64_t sum = 0, steps = 0;
   for (std::size_t k = 1; k < stamps_ns.size(); ++k) {
     const std::int64_t step = stamps_ns[k] - stamps_ns[k - 1];
-    if (step < kGap_ns) sum += step, ++steps;
+    if (step < kStampGap_ns) sum += step, ++steps;
   }
   return steps > 0 ? sum / steps : 0;
 }

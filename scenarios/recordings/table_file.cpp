@@ -10,13 +10,12 @@
 #include <system_error>
 
 #include "scenarios/errors.hpp"
+#include "scenarios/recordings/whole_seconds.hpp"
 
 namespace tumble::scenarios {
 
 namespace {
 
-constexpr std::int64_t kNsPerS = 1000000000;
-constexpr std::int64_t kSecondsMax = 9'000'000'000;  // of a time stamp: nanoseconds must fit
 /// Bytes of a table that are written at a time.
 constexpr std::size_t kBlock = 1 << 16;
 
@@ -70,10 +69,10 @@ void TableWriter::number(double value) {
 
 void TableWriter::time_s(std::int64_t time_ns) {
   const std::int64_t magnitude = std::llabs(time_ns);
-  std::string fraction = std::to_string(magnitude % kNsPerS);
+  std::string fraction = std::to_string(magnitude % kSecond_ns);
   fraction.insert(0, 9 - fraction.size(), '0');
   std::string text = time_ns < 0 ? "-" : "";
-  text.append(std::to_string(magnitude / kNsPerS)).append(1, '.').append(fraction);
+  text.append(std::to_string(magnitude / kSecond_ns)).append(1, '.').append(fraction);
   cell(text);
 }
 
@@ -144,7 +143,7 @@ std::int64_t Table::time_ns(const Row& row, std::size_t column) const {
     std::string digits = text.substr(point + 1, 9);
     digits.append(9 - digits.size(), '0');
     const bool fits = whole >= -kSecondsMax && whole <= kSecondsMax;
-    if (fits && parse(digits, fraction)) return whole * kNsPerS + (text.front() == '-' ? -fraction : fraction);
+    if (fits && parse(digits, fraction)) return whole * kSecond_ns + (text.front() == '-' ? -fraction : fraction);
   }
   const double value_s = number(row, column);
   if (!std::isfinite(value_s) || std::abs(value_s) > static_cast<double>(kSecondsMax)) {

@@ -6,6 +6,7 @@
 #include <limits>
 #include <utility>
 
+#include "scenarios/not_finite.hpp"
 #include "scenarios/scoring/beside_truth.hpp"
 #include "scenarios/scoring/binned_metric.hpp"
 #include "scenarios/scoring/families.hpp"
@@ -16,19 +17,18 @@ namespace tumble::scenarios {
 
 namespace {
 
-enum class Axis { depth, length, count };
+enum class BinAxis { depth, length, count };
 
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr std::array kDepthEdges = {0.0, 0.5, 1.0, 2.0, 4.0, 8.0, kInfinity};  // rad/s
 constexpr std::array kLengthEdges = {0.0,   0.025, 0.055,    0.105,
                                      0.205, 0.405, kInfinity};  // s, between samples at 100 Hz
 constexpr std::array kCountEdges = {1.0, 2.0, 3.0, 4.0};
 
-template <Axis kAxis>
+template <BinAxis kAxis>
 constexpr const auto& edges() {
-  if constexpr (kAxis == Axis::depth) return kDepthEdges;
-  if constexpr (kAxis == Axis::length) return kLengthEdges;
-  if constexpr (kAxis == Axis::count) return kCountEdges;
+  if constexpr (kAxis == BinAxis::depth) return kDepthEdges;
+  if constexpr (kAxis == BinAxis::length) return kLengthEdges;
+  if constexpr (kAxis == BinAxis::count) return kCountEdges;
 }
 
 /// Of each sample: how long the segment of clipped samples is that it belongs to; 0 where it is not clipped.
@@ -48,14 +48,14 @@ std::vector<double> segment_lengths_s(const ScoredEstimate& scored) {
 }
 
 /// The measure by which a rate at a clipped sample is sorted.
-template <Axis kAxis>
+template <BinAxis kAxis>
 double measure(const ScoredEstimate& scored, const PairedRate& pair) {
-  if constexpr (kAxis == Axis::depth) return clipping_truth(scored).depth_rad_s(pair.sample);
-  if constexpr (kAxis == Axis::length) return scored.once(segment_lengths_s)[pair.sample];
-  if constexpr (kAxis == Axis::count) return static_cast<double>(std::popcount(pair.clipped_axes()));
+  if constexpr (kAxis == BinAxis::depth) return clipping_truth(scored).depth_rad_s(pair.sample);
+  if constexpr (kAxis == BinAxis::length) return scored.once(segment_lengths_s)[pair.sample];
+  if constexpr (kAxis == BinAxis::count) return static_cast<double>(std::popcount(pair.clipped_axes()));
 }
 
-template <Axis kAxis, std::size_t kBin, int kPercent>
+template <BinAxis kAxis, std::size_t kBin, int kPercent>
 bool error_in_bin(const ScoredEstimate& scored, double& value) {
   std::vector<double> norms;
   for (const PairedRate& pair : paired_rates(scored)) {
@@ -63,12 +63,10 @@ bool error_in_bin(const ScoredEstimate& scored, double& value) {
     const double own = measure<kAxis>(scored, pair);
     if (own >= edges<kAxis>()[kBin] && own < edges<kAxis>()[kBin + 1]) norms.push_back(pair.error_rad_s().norm());
   }
-  const std::optional<double> found = quantile_of_all(norms, kPercent / 100.0);
-  if (found) value = *found;
-  return found.has_value();
+  return quantile_of(norms, kPercent / 100.0, value);
 }
 
-template <Axis kAxis, std::size_t kBin>
+template <BinAxis kAxis, std::size_t kBin>
 void add_bin(const char* axis, const std::string& words, std::vector<Metric>& all) {
   const auto name = [&](const char* base) {
     return BinnedMetric{base, axis, edges<kAxis>()[kBin], edges<kAxis>()[kBin + 1]}.name();
@@ -82,7 +80,7 @@ void add_bin(const char* axis, const std::string& words, std::vector<Metric>& al
                  error_in_bin<kAxis, kBin, 99>});
 }
 
-template <Axis kAxis, std::size_t... kBins>
+template <BinAxis kAxis, std::size_t... kBins>
 void add_bins(const char* axis, const std::string& words, std::vector<Metric>& all, std::index_sequence<kBins...>) {
   (add_bin<kAxis, kBins>(axis, words, all), ...);
 }
@@ -102,12 +100,12 @@ std::vector<MetricInfo> binned_rate_quantities() {
 
 std::vector<Metric> binned_rate_metrics() {
   std::vector<Metric> all;
-  add_bins<Axis::depth>("clip_depth_rad_s", "whose axis with the largest loss lost so much to the rail", all,
-                        std::make_index_sequence<kDepthEdges.size() - 1>());
-  add_bins<Axis::length>("clip_length_s", "in segments of such length", all,
-                         std::make_index_sequence<kLengthEdges.size() - 1>());
-  add_bins<Axis::count>("clipped_axes", "with so many axes clipped", all,
-                        std::make_index_sequence<kCountEdges.size() - 1>());
+  add_bins<BinAxis::depth>("clip_depth_rad_s", "whose axis with the largest loss lost so much to the rail", all,
+                           std::make_index_sequence<kDepthEdges.size() - 1>());
+  add_bins<BinAxis::length>("clip_length_s", "in segments of such length", all,
+                            std::make_index_sequence<kLengthEdges.size() - 1>());
+  add_bins<BinAxis::count>("clipped_axes", "with so many axes clipped", all,
+                           std::make_index_sequence<kCountEdges.size() - 1>());
   return all;
 }
 

@@ -10,6 +10,9 @@
 
 namespace tumble::scenarios {
 
+/// Of a device's clip flags those of its gyro's axes.
+inline constexpr std::uint8_t kGyroClipFlags = 0b000111;
+
 /// What the primary gyro should have read, and where its rail took something away.
 ///
 /// Definition, used by every score: axis j of a sample is clipped when the reading differs from its unclipped twin (the

@@ -50,7 +50,7 @@ struct EndError {
 };
 
 // estimated motion from the sixth registered sweep to the last sweep, seen from the true one
-std::optional<EndError> end_error(const ScoredEstimate& scored) {
+std::optional<EndError> end_pose_error(const ScoredEstimate& scored) {
   const TruthTrack& truth = truth_track(scored);
   PoseState first, last;
   if (!ends_of(scored, first, last)) return std::nullopt;
@@ -64,14 +64,14 @@ std::optional<EndError> end_error(const ScoredEstimate& scored) {
 }
 
 bool translation_error_end(const ScoredEstimate& scored, double& value) {
-  const std::optional<EndError>& error = scored.once(end_error);
+  const std::optional<EndError>& error = scored.once(end_pose_error);
   if (!error) return false;
   value = error->translation_m.norm();
   return true;
 }
 
 bool rotation_error_end(const ScoredEstimate& scored, double& value) {
-  const std::optional<EndError>& error = scored.once(end_error);
+  const std::optional<EndError>& error = scored.once(end_pose_error);
   if (!error) return false;
   value = rotation_angle_rad(error->rotation);
   return true;

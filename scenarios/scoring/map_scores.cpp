@@ -86,7 +86,7 @@ bool unique_share(const ScoredEstimate& scored, double& value) {
   return true;
 }
 
-bool coverage(const ScoredEstimate& scored, double& value) {
+bool map_coverage(const ScoredEstimate& scored, double& value) {
   if (scored.estimate().map.empty() || scored.truth().lidars.empty()) return false;
   const std::vector<Eigen::Vector3f> surface = seen_surface(scored.truth());
   if (surface.empty()) return false;
@@ -123,7 +123,7 @@ std::vector<Metric> map_metrics() {
       {{"map_coverage", Unit::share, "share of the truly seen surface (cells of 0.1 m) within 0.25 m of a map point",
         Sense::higher, Place::held, kNoTarget, Compared::by_difference},
        Kind::slam,
-       coverage},
+       map_coverage},
       {{"map_error_mean_m", Unit::m, "mean distance of map points to the true surface, each at most 0.5 m",
         Sense::lower, Place::held},
        Kind::slam,

@@ -19,15 +19,15 @@ constexpr double kImpact_m_s2 = 20.0;
 constexpr std::int64_t kQuiet_ns = 20'000'000;
 
 /// Indices of the first and the last moving physics sample; first > last when nothing moves.
-struct Span {
+struct MovingSpan {
   std::size_t first = 1, last = 0;
 };
 
-Span moving_span(const sim::Truth& truth) {
+MovingSpan moving_span(const sim::Truth& truth) {
   const auto moves = [&](std::size_t k) {
     return truth.v_WB_m_s[k].norm() > kMovingSpeed_m_s || truth.w_WB_B_rad_s[k].norm() > kMovingRate_rad_s;
   };
-  Span span;
+  MovingSpan span;
   bool found = false;
   for (std::size_t k = 0; k < truth.v_WB_m_s.size(); ++k) {
     if (!moves(k)) continue;
@@ -75,7 +75,7 @@ MotionSummary summarise_motion(const sim::Sensors& sensors, const sim::Truth& tr
     out.peak_rate_rad_s = std::max(out.peak_rate_rad_s, w.norm());
   out.impacts = count_impacts(truth);
 
-  const Span span = moving_span(truth);
+  const MovingSpan span = moving_span(truth);
   if (span.first > span.last) return out;
   const std::size_t steps = span.last - span.first + 1;
   const double period_s = 1e-9 * static_cast<double>(truth.period_ns);

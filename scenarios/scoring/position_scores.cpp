@@ -65,7 +65,7 @@ bool rest_drift(const ScoredEstimate& scored, double& value) {
 
 /// Squared errors over their stated variances, once it moves. In the axes that the covariance is stated in: those of
 /// the estimate's own world.
-std::vector<double> normalised_errors(const ScoredEstimate& scored) {
+std::vector<double> normalised_position_errors(const ScoredEstimate& scored) {
   const Estimate& estimate = scored.estimate();
   const PairedTrack& track = paired_track(scored);
   const Eigen::Matrix3d R_estimate_W = track.alignment.transform().linear().transpose();
@@ -83,12 +83,12 @@ std::vector<double> normalised_errors(const ScoredEstimate& scored) {
   return normalised;
 }
 
-bool coverage_3sigma(const ScoredEstimate& scored, double& value) {
-  return share_within_3sigma(scored.once(normalised_errors), value);
+bool position_coverage_3sigma(const ScoredEstimate& scored, double& value) {
+  return share_within_3sigma(scored.once(normalised_position_errors), value);
 }
 
 bool nees_median(const ScoredEstimate& scored, double& value) {
-  return normalised_median(scored.once(normalised_errors), value);
+  return normalised_median(scored.once(normalised_position_errors), value);
 }
 
 }  // namespace
@@ -110,7 +110,7 @@ std::vector<Metric> position_metrics() {
         "share of the errors per axis, once it moves, within three stated standard deviations", Sense::two_sided,
         Place::held, kNormal3Sigma, Compared::by_difference},
        Kind::position,
-       coverage_3sigma},
+       position_coverage_3sigma},
       {{"position_nees_median", Unit::number,
         "median of the same errors squared over their stated variances, as a multiple of a normal variable's",
         Sense::two_sided, Place::held, 1.0},

@@ -27,12 +27,6 @@ ErrorNorms error_norms(const ScoredEstimate& scored) {
   return norms;
 }
 
-bool quantile_of(const std::vector<double>& values, double share, double& value) {
-  const std::optional<double> found = quantile_of_all(values, share);
-  if (found) value = *found;
-  return found.has_value();
-}
-
 bool clipped_median(const ScoredEstimate& scored, double& value) {
   return quantile_of(scored.once(error_norms).clipped_rad_s, 0.5, value);
 }
@@ -90,7 +84,7 @@ struct NormalisedErrors {
   std::vector<double> all, flight, impact;
 };
 
-NormalisedErrors normalised_errors(const ScoredEstimate& scored) {
+NormalisedErrors normalised_rate_errors(const ScoredEstimate& scored) {
   NormalisedErrors normalised;
   for (const PairedRate& pair : paired_rates(scored)) {
     if (pair.clipped_axes() == 0) continue;
@@ -106,16 +100,16 @@ NormalisedErrors normalised_errors(const ScoredEstimate& scored) {
   return normalised;
 }
 
-bool coverage_3sigma(const ScoredEstimate& scored, double& value) {
-  return share_within_3sigma(scored.once(normalised_errors).all, value);
+bool rate_coverage_3sigma(const ScoredEstimate& scored, double& value) {
+  return share_within_3sigma(scored.once(normalised_rate_errors).all, value);
 }
 
 bool coverage_3sigma_flight(const ScoredEstimate& scored, double& value) {
-  return share_within_3sigma(scored.once(normalised_errors).flight, value);
+  return share_within_3sigma(scored.once(normalised_rate_errors).flight, value);
 }
 
 bool coverage_3sigma_impact(const ScoredEstimate& scored, double& value) {
-  return share_within_3sigma(scored.once(normalised_errors).impact, value);
+  return share_within_3sigma(scored.once(normalised_rate_errors).impact, value);
 }
 
 bool mean_of(const std::vector<double>& values, double& value) {
@@ -125,11 +119,11 @@ bool mean_of(const std::vector<double>& values, double& value) {
 }
 
 bool nees_flight(const ScoredEstimate& scored, double& value) {
-  return mean_of(scored.once(normalised_errors).flight, value);
+  return mean_of(scored.once(normalised_rate_errors).flight, value);
 }
 
 bool nees_impact(const ScoredEstimate& scored, double& value) {
-  return mean_of(scored.once(normalised_errors).impact, value);
+  return mean_of(scored.once(normalised_rate_errors).impact, value);
 }
 
 }  // namespace
@@ -154,7 +148,7 @@ std::vector<Metric> rate_metrics() {
         "share of clipped axes whose error lies within three reported standard deviations", Sense::two_sided,
         Place::held, kNormal3Sigma, Compared::by_difference},
        Kind::rate,
-       coverage_3sigma},
+       rate_coverage_3sigma},
       {{"rate_error_clipped_max_rad_s", Unit::rad_s, "largest norm of the rate error at clipped samples", Sense::lower},
        Kind::rate,
        clipped_max},

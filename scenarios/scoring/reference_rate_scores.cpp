@@ -32,12 +32,6 @@ double error_axis(const Eigen::Vector3d& estimate, const Eigen::Vector3d& refere
 
 using ErrorOf = double (*)(const Eigen::Vector3d&, const Eigen::Vector3d&);
 
-bool quantile_of(const std::vector<double>& values, double share, double& value) {
-  const std::optional<double> found = quantile_of_all(values, share);
-  if (found) value = *found;
-  return found.has_value();
-}
-
 /// Of the estimate at clipped samples; of one axis, at the samples at which that axis clips.
 template <ErrorOf kError, int kPercent, unsigned kAxes>
 bool clipped_error(const ScoredEstimate& scored, double& value) {
@@ -84,7 +78,7 @@ Eigen::Vector3d reference_variance(const ScoredEstimate& scored, const ClippingT
 }
 
 /// With the reference's own error counted, unlike rate_coverage_3sigma.
-bool coverage(const ScoredEstimate& scored, double& value) {
+bool reference_coverage(const ScoredEstimate& scored, double& value) {
   const ClippingTruth& truth = clipping_truth(scored);
   if (!truth.is_reference()) return false;
   const Eigen::Vector3d own = reference_variance(scored, truth);
@@ -177,7 +171,7 @@ std::vector<Metric> reference_rate_metrics() {
         "share of clipped axes whose error lies within three standard deviations of method and reference together",
         Sense::two_sided, Place::detail, kNormal3Sigma, Compared::by_difference},
        Kind::rate,
-       coverage});
+       reference_coverage});
   all.push_back(
       {{"rate_clipped_called_measured", Unit::share,
         "share of axes that clip by a reference and that the method calls neither clipped nor doubtful", Sense::lower},

@@ -30,7 +30,7 @@ constexpr double kLeastSpeed_m_s = 0.05;
 constexpr double kHalf = 0.5;
 constexpr double kLost_m = 0.1, kFlagged_m = 0.03;
 
-struct Span {
+struct SlipSpan {
   std::int64_t begin_ns, end_ns;
 };
 
@@ -49,14 +49,14 @@ class Events {
     spans_.back().end_ns = end_ns;
     gripped_ns_ = 0;
   }
-  const std::vector<Span>& spans() const { return spans_; }
+  const std::vector<SlipSpan>& spans() const { return spans_; }
 
  private:
-  std::vector<Span> spans_;
+  std::vector<SlipSpan> spans_;
   std::int64_t gripped_ns_ = 0;  ///< since the last spell
 };
 
-std::vector<Span> true_spans(const sim::Truth& truth) {
+std::vector<SlipSpan> true_spans(const sim::Truth& truth) {
   if (truth.label.size() != truth.q_WB.size()) {
     throw BadInput("truth.label has " + std::to_string(truth.label.size()) + " entries, must have " +
                    std::to_string(truth.q_WB.size()));
@@ -69,7 +69,7 @@ std::vector<Span> true_spans(const sim::Truth& truth) {
   return events.spans();
 }
 
-bool counts(const Span& span, const sim::Truth& truth) {
+bool counts(const SlipSpan& span, const sim::Truth& truth) {
   if (span.end_ns - span.begin_ns < kShortest_ns) return false;
   const auto before = [](const sim::ContactTruth& contact, std::int64_t time_ns) { return contact.time_ns < time_ns; };
   auto contact = std::lower_bound(truth.contacts.begin(), truth.contacts.end(), span.begin_ns, before);
@@ -80,7 +80,7 @@ bool counts(const Span& span, const sim::Truth& truth) {
 }
 
 /// A label holds from its own instant to the next one's.
-std::vector<Span> claimed_spans(const Estimate& estimate) {
+std::vector<SlipSpan> claimed_spans(const Estimate& estimate) {
   if (estimate.contacts.size() != estimate.poses.size()) {
     throw BadInput("the estimate has " + std::to_string(estimate.contacts.size()) + " contacts for " +
                    std::to_string(estimate.poses.size()) + " poses");
@@ -92,9 +92,9 @@ std::vector<Span> claimed_spans(const Estimate& estimate) {
   return events.spans();
 }
 
-std::int64_t covered_ns(const Span& span, const std::vector<Span>& by, std::int64_t margin_ns) {
+std::int64_t covered_ns(const SlipSpan& span, const std::vector<SlipSpan>& by, std::int64_t margin_ns) {
   std::int64_t sum_ns = 0, done_ns = span.begin_ns;  // widened spans may overlap
-  for (const Span& one : by) {
+  for (const SlipSpan& one : by) {
     const std::int64_t begin_ns = std::max(done_ns, one.begin_ns - margin_ns);
     const std::int64_t end_ns = std::min(span.end_ns, one.end_ns + margin_ns);
     if (end_ns <= begin_ns) continue;
@@ -104,28 +104,28 @@ std::int64_t covered_ns(const Span& span, const std::vector<Span>& by, std::int6
   return sum_ns;
 }
 
-bool half_covered(const Span& span, const std::vector<Span>& by, std::int64_t margin_ns) {
+bool half_covered(const SlipSpan& span, const std::vector<SlipSpan>& by, std::int64_t margin_ns) {
   return static_cast<double>(covered_ns(span, by, margin_ns)) >=
          kHalf * static_cast<double>(span.end_ns - span.begin_ns);
 }
 
 struct Comparison {
-  std::vector<Span> events;  ///< true ones that count
-  std::vector<Span> claimed;
-  std::vector<Span> right;  ///< claimed ones that are right
+  std::vector<SlipSpan> events;  ///< true ones that count
+  std::vector<SlipSpan> claimed;
+  std::vector<SlipSpan> right;  ///< claimed ones that are right
 };
 
 std::optional<Comparison> compare(const ScoredEstimate& scored) {
   const sim::Truth& truth = scored.truth();
   // a reference knows poses alone
   if (scored.estimate().contacts.empty() || truth.label.empty()) return std::nullopt;
-  const std::vector<Span> all = true_spans(truth);
+  const std::vector<SlipSpan> all = true_spans(truth);
   Comparison out;
-  for (const Span& span : all) {
+  for (const SlipSpan& span : all) {
     if (counts(span, truth)) out.events.push_back(span);
   }
   out.claimed = claimed_spans(scored.estimate());
-  for (const Span& span : out.claimed) {
+  for (const SlipSpan& span : out.claimed) {
     if (half_covered(span, all, kMargin_ns)) out.right.push_back(span);
   }
   return out;
@@ -144,7 +144,7 @@ bool recall(const ScoredEstimate& scored, double& value) {
   const auto& found = scored.once(compare);
   if (!found || found->events.empty()) return false;
   const auto count = std::count_if(found->events.begin(), found->events.end(),
-                                   [&](const Span& event) { return half_covered(event, found->right, 0); });
+                                   [&](const SlipSpan& event) { return half_covered(event, found->right, 0); });
   value = static_cast<double>(count) / static_cast<double>(found->events.size());
   return true;
 }
@@ -153,10 +153,10 @@ bool delay(const ScoredEstimate& scored, double& value) {
   const auto& found = scored.once(compare);
   if (!found) return false;
   std::vector<double> delays_s;
-  for (const Span& event : found->events) {
+  for (const SlipSpan& event : found->events) {
     if (!half_covered(event, found->right, 0)) continue;
     const auto first = std::find_if(found->right.begin(), found->right.end(),
-                                    [&](const Span& span) { return span.end_ns > event.begin_ns; });
+                                    [&](const SlipSpan& span) { return span.end_ns > event.begin_ns; });
     delays_s.push_back(1e-9 * static_cast<double>(std::max<std::int64_t>(first->begin_ns - event.begin_ns, 0)));
   }
   if (delays_s.empty()) return false;
@@ -185,7 +185,7 @@ std::vector<Passed> passed_events(const ScoredEstimate& scored) {
   const auto error_m = [](const PairedPose& pose) -> Eigen::Vector2d {
     return (pose.estimate.p_WA_m - pose.truth.p_WA_m).head<2>();
   };
-  for (const Span& span : true_spans(truth)) {
+  for (const SlipSpan& span : true_spans(truth)) {
     if (!counts(span, truth)) continue;
     const auto before = pose_at(span.begin_ns - kMargin_ns), after = pose_at(span.end_ns + kMargin_ns);
     if (after == poses.end() || !(variance_m2(*after) > 0.0)) continue;

@@ -11,6 +11,7 @@
 #include <utility>
 
 #include "scenarios/errors.hpp"
+#include "scenarios/not_finite.hpp"
 #include "sim/random/stream.hpp"
 
 namespace tumble::scenarios {
@@ -18,7 +19,6 @@ namespace tumble::scenarios {
 namespace {
 
 constexpr std::size_t kValuesMin = 6;  // a 95 % interval of the median needs as many: 2 / 2^5 > 5 %
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 // in double: the place of a rank needs no more digits, and long double takes three times as long
 using Quick = boost::math::policies::policy<boost::math::policies::promote_double<false>>;

@@ -19,19 +19,19 @@ namespace {
 constexpr double kTwoSided95 = 1.959963984540054;  // normal quantile of 0.975
 constexpr std::size_t kIntervalMin = 4, kStudentMin = 10, kClassesFrom = 24;
 
-using Pairs = std::vector<std::pair<double, double>>;
+using CompletePairs = std::vector<std::pair<double, double>>;
 
-Pairs complete_pairs(std::span<const double> x, std::span<const double> y) {
+CompletePairs complete_pairs(std::span<const double> x, std::span<const double> y) {
   if (x.size() != y.size())
     throw BadInput("dependence: " + std::to_string(x.size()) + " numbers beside " + std::to_string(y.size()));
-  Pairs pairs;
+  CompletePairs pairs;
   for (std::size_t i = 0; i < x.size(); ++i) {
     if (!std::isnan(x[i]) && !std::isnan(y[i])) pairs.emplace_back(x[i], y[i]);
   }
   return pairs;
 }
 
-std::vector<double> column(const Pairs& pairs, double std::pair<double, double>::*member) {
+std::vector<double> column(const CompletePairs& pairs, double std::pair<double, double>::*member) {
   std::vector<double> out;
   out.reserve(pairs.size());
   for (const auto& pair : pairs) out.push_back(pair.*member);
@@ -43,7 +43,7 @@ double mean(std::span<const double> values) {
 }
 
 /// Ends of the classes of sorted pairs, as many as are wanted at most. What has one x is never parted.
-std::vector<std::size_t> class_ends(const Pairs& sorted, std::size_t wanted) {
+std::vector<std::size_t> class_ends(const CompletePairs& sorted, std::size_t wanted) {
   const std::size_t n = sorted.size();
   std::vector<std::size_t> distinct;
   for (std::size_t i = 1; i <= n; ++i) {
@@ -102,7 +102,7 @@ std::vector<double> mean_ranks(std::span<const double> values) {
 
 Correlation rank_correlation(std::span<const double> x, std::span<const double> y) {
   using Pair = std::pair<double, double>;
-  const Pairs pairs = complete_pairs(x, y);
+  const CompletePairs pairs = complete_pairs(x, y);
   Correlation out;
   if (pairs.size() < kIntervalMin) return out;
   const std::vector<double> a = mean_ranks(column(pairs, &Pair::first)), b = mean_ranks(column(pairs, &Pair::second));
@@ -129,7 +129,7 @@ Correlation rank_correlation(std::span<const double> x, std::span<const double> 
 
 FirstOrder first_order_index(std::span<const double> x, std::span<const double> y) {
   using Pair = std::pair<double, double>;
-  Pairs pairs = complete_pairs(x, y);
+  CompletePairs pairs = complete_pairs(x, y);
   FirstOrder out;
   if (pairs.size() < kClassesFrom) return out;
   std::sort(pairs.begin(), pairs.end());
@@ -159,7 +159,7 @@ FirstOrder first_order_index(std::span<const double> x, std::span<const double> 
 }
 
 std::vector<DependenceClass> partial_dependence(std::span<const double> x, std::span<const double> y, Centre centre) {
-  Pairs pairs = complete_pairs(x, y);
+  CompletePairs pairs = complete_pairs(x, y);
   std::vector<DependenceClass> out;
   if (pairs.size() < kDependenceDrawsMin) return out;
   std::sort(pairs.begin(), pairs.end());

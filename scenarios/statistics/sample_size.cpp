@@ -9,12 +9,11 @@
 #include <vector>
 
 #include "scenarios/errors.hpp"
+#include "scenarios/not_finite.hpp"
 
 namespace tumble::scenarios {
 
 namespace {
-
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 void require(const Plan& plan) {
   for (const auto& [name, value] : {std::pair{"risk", plan.risk}, std::pair{"power", plan.power}}) {

@@ -9,14 +9,13 @@
 #include <vector>
 
 #include "scenarios/errors.hpp"
+#include "scenarios/not_finite.hpp"
 
 namespace tumble::scenarios {
 
 namespace {
 
 constexpr double kTail = 0.025;  // of either side of a 95 % interval
-constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 std::vector<double> numbers_of(std::span<const double> values) {
   std::vector<double> numbers;
@@ -59,6 +58,12 @@ std::optional<double> quantile_of_all(std::span<const double> values, double sha
   if (values.empty()) return std::nullopt;
   const bool finite = std::all_of(values.begin(), values.end(), [](double v) { return std::isfinite(v); });
   return finite ? quantile(values, share) : kNaN;
+}
+
+bool quantile_of(std::span<const double> values, double share, double& value) {
+  const std::optional<double> found = quantile_of_all(values, share);
+  if (found) value = *found;
+  return found.has_value();
 }
 
 namespace {

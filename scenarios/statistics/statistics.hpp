@@ -20,6 +20,8 @@ double quantile(std::span<const double> values, double share);
 /// The same of values all of which count: one that is not finite spoils the figure instead of leaving it, NaN. Nothing
 /// when there are none.
 std::optional<double> quantile_of_all(std::span<const double> values, double share);
+/// The same into `value`, which is left as it is when there are none: false then.
+bool quantile_of(std::span<const double> values, double share, double& value);
 
 /// Median of one number of each row; as `quantile`.
 template <class Row>

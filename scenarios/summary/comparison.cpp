@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "scenarios/errors.hpp"
+#include "scenarios/not_finite.hpp"
 #include "scenarios/statistics/bootstrap.hpp"
 #include "scenarios/statistics/many_tests.hpp"
 #include "scenarios/statistics/paired.hpp"
@@ -18,10 +19,8 @@ namespace tumble::scenarios {
 
 namespace {
 
-constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
-
 /// Values of the two on one draw.
-struct Pair {
+struct ValuePair {
   double own, other;
 };
 
@@ -41,9 +40,9 @@ void require_sound(const Summary& summary, const ComparisonOptions& options) {
 }
 
 /// Draws of which both have a value or have failed; where there is no worst value a failure has none.
-std::vector<Pair> pairs_of(const MetricSummary& own, const MetricSummary& other, double worst) {
+std::vector<ValuePair> pairs_of(const MetricSummary& own, const MetricSummary& other, double worst) {
   const std::vector<RankedValue> first = ranked_values(own, worst), second = ranked_values(other, worst);
-  std::vector<Pair> pairs;
+  std::vector<ValuePair> pairs;
   auto at = second.begin();
   for (const RankedValue& each : first) {
     while (at != second.end() && at->seed < each.seed) ++at;
@@ -58,9 +57,9 @@ double less(double own, double other) {
 }
 
 /// How much worse each pair is than the margin allows.
-std::vector<double> beyond(const Margin& margin, const MetricInfo& info, const std::vector<Pair>& pairs) {
+std::vector<double> beyond(const Margin& margin, const MetricInfo& info, const std::vector<ValuePair>& pairs) {
   std::vector<double> out;
-  for (const Pair& pair : pairs) out.push_back(worse_by(info, pair.own, pair.other, margin));
+  for (const ValuePair& pair : pairs) out.push_back(worse_by(info, pair.own, pair.other, margin));
   return out;
 }
 
@@ -106,14 +105,14 @@ class Comparing {
 
   void add_metric(const Contest& contest, const MetricInfo& info, const std::string& name, const MetricSummary& own,
                   const MetricSummary& other) {
-    const std::vector<Pair> pairs = pairs_of(own, other, worst_value(info));
+    const std::vector<ValuePair> pairs = pairs_of(own, other, worst_value(info));
     if (pairs.empty()) return;
     MetricComparison row{contest, name};
     row.pairs = static_cast<std::int64_t>(pairs.size());
-    row.median = median_of(pairs, &Pair::own);
-    row.against_median = median_of(pairs, &Pair::other);
+    row.median = median_of(pairs, &ValuePair::own);
+    row.against_median = median_of(pairs, &ValuePair::other);
     std::vector<double> raw, worse_by;
-    for (const Pair& pair : pairs) {
+    for (const ValuePair& pair : pairs) {
       worse_by.push_back(less(how_bad(info, pair.own), how_bad(info, pair.other)));
       raw.push_back(info.sense == Sense::two_sided ? worse_by.back() : less(pair.own, pair.other));
     }

@@ -7,6 +7,7 @@
 #include <map>
 #include <set>
 
+#include "scenarios/not_finite.hpp"
 #include "scenarios/scoring/metric.hpp"
 #include "scenarios/statistics/bootstrap.hpp"
 #include "scenarios/statistics/many_tests.hpp"
@@ -15,8 +16,6 @@
 namespace tumble::scenarios {
 
 namespace {
-
-constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 
 double badness(const MetricInfo& info, const Outcome& outcome) {
   if (outcome.status != OutcomeStatus::ok) return how_bad(info, worst_value(info));
@@ -31,12 +30,12 @@ double improvement(double before, double now) {
   return before == now ? 0.0 : before - now;
 }
 
-struct Pairs {
+struct InputPairs {
   InputWorth worth;
   std::vector<double> improvements;
 };
 
-void add(const MetricInfo& info, const TriageRow& before, const TriageRow& now, Pairs& pairs) {
+void add(const MetricInfo& info, const TriageRow& before, const TriageRow& now, InputPairs& pairs) {
   InputWorth& worth = pairs.worth;
   worth.input = now.input;
   worth.doc = now.doc;
@@ -51,7 +50,7 @@ void add(const MetricInfo& info, const TriageRow& before, const TriageRow& now, 
   pairs.improvements.push_back(gained);
 }
 
-InputWorth concluded(Pairs pairs) {
+InputWorth concluded(InputPairs pairs) {
   InputWorth& worth = pairs.worth;
   worth.cured_share = worth.failed == 0 ? Interval{kNaN, kNaN, kNaN} : share_interval(worth.cured, worth.failed);
   worth.improvement = {kNaN, kNaN, kNaN};
@@ -74,7 +73,7 @@ bool matters_more(const InputWorth& a, const InputWorth& b) {
 /// The inputs over the draws of one scenario, or over all where it is empty.
 std::vector<InputWorth> worth_within(std::span<const DrawTriage> draws, const MetricInfo& info,
                                      const std::string& scenario) {
-  std::map<std::string, Pairs> inputs;
+  std::map<std::string, InputPairs> inputs;
   for (const DrawTriage& draw : draws) {
     if (draw.rows.empty() || !(scenario.empty() || draw.draw.scenario == scenario)) continue;
     const std::span<const TriageRow> replaced = std::span(draw.rows).subspan(1);

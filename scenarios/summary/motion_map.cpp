@@ -19,7 +19,7 @@ struct Decades {
 };
 
 /// One axis of the grid, in decades.
-struct Axis {
+struct GridAxis {
   double low = 0.0, step = 1.0;
   double width = 0.0;  ///< of the kernel, in cells
 
@@ -37,7 +37,7 @@ double value_of(const DrawValues& draw, const char* metric) {
   return std::nan("");
 }
 
-Axis axis_over(const std::vector<Decades>& points, double Decades::*member) {
+GridAxis axis_over(const std::vector<Decades>& points, double Decades::*member) {
   double low = std::numeric_limits<double>::infinity(), high = -low, sum = 0.0, square = 0.0;
   for (const Decades& point : points) {
     low = std::min(low, point.*member);
@@ -46,7 +46,7 @@ Axis axis_over(const std::vector<Decades>& points, double Decades::*member) {
   }
   const double count = static_cast<double>(points.size()), mean = sum / count;
   for (const Decades& point : points) square += (point.*member - mean) * (point.*member - mean);
-  Axis axis;
+  GridAxis axis;
   axis.low = low - kMargin;
   axis.step = (high - low + 2.0 * kMargin) / static_cast<double>(kCells);
   axis.width = std::max(0.5, std::sqrt(square / count) * std::pow(count, -1.0 / 6.0) / axis.step);
@@ -65,7 +65,7 @@ std::vector<double> kernel(std::size_t from, double width) {
   return weights;
 }
 
-std::vector<double> smoothed(const std::vector<double>& counts, const Axis& rate, const Axis& force) {
+std::vector<double> smoothed(const std::vector<double>& counts, const GridAxis& rate, const GridAxis& force) {
   std::vector<double> along(kCells * kCells), out(kCells * kCells);
   for (std::size_t from = 0; from < kCells; ++from) {
     const std::vector<double> weights = kernel(from, rate.width);
@@ -117,7 +117,7 @@ MotionMap motion_map(std::span<const DrawValues> draws) {
     all.push_back({std::log10(point.rate_rad_s), std::log10(point.force_m_s2)});
   }
   if (all.empty()) return map;
-  const Axis rate = axis_over(all, &Decades::rate), force = axis_over(all, &Decades::force);
+  const GridAxis rate = axis_over(all, &Decades::rate), force = axis_over(all, &Decades::force);
   std::vector<double> shares(kCells * kCells);
   for (const Decades& point : all)
     shares[force.cell(point.force) * kCells + rate.cell(point.rate)] += 1.0 / static_cast<double>(all.size());

@@ -38,11 +38,11 @@ void require_contest(const std::string& metric, const std::string& kind) {
 }
 
 /// Of one draw what each of the two has: a value, or the worst in its place.
-struct Pair {
+struct AnswerPair {
   std::optional<double> own, other;
 };
 /// By scenario, then by seed.
-using Pairs = std::map<std::string, std::map<std::uint64_t, Pair>, std::less<>>;
+using AnswerPairs = std::map<std::string, std::map<std::uint64_t, AnswerPair>, std::less<>>;
 
 std::optional<double> value_of(const OutcomeView& row, const Question& question) {
   if (row.status != OutcomeStatus::ok) return worst_value(metric_info(question.metric));
@@ -52,23 +52,23 @@ std::optional<double> value_of(const OutcomeView& row, const Question& question)
   return std::nullopt;
 }
 
-Pairs pairs_of(const Results& results, const Question& question, std::uint64_t last_seed) {
-  Pairs pairs;
+AnswerPairs pairs_of(const Results& results, const Question& question, std::uint64_t last_seed) {
+  AnswerPairs pairs;
   Names names;
   results.each(Rows::plain, names, [&](const OutcomeView& row) {
     if (row.seed < question.first_seed || row.seed > last_seed) return;
     const std::string method(row.method);
     const bool own = is_named(question.method, row.kind, method);
     if (!own && !is_named(question.against, row.kind, method)) return;
-    Pair& pair = pairs[std::string(row.scenario)][row.seed];
+    AnswerPair& pair = pairs[std::string(row.scenario)][row.seed];
     (own ? pair.own : pair.other) = value_of(row, question);
   });
   return pairs;
 }
 
 /// Looks in their order until one answers.
-Answer answer_of(const std::string& scenario, const std::map<std::uint64_t, Pair>& pairs, const Question& question,
-                 std::uint64_t last_seed) {
+Answer answer_of(const std::string& scenario, const std::map<std::uint64_t, AnswerPair>& pairs,
+                 const Question& question, std::uint64_t last_seed) {
   SequentialSignTest test(question.risk / static_cast<double>(question.scenarios.size()));
   const MetricInfo& info = metric_info(question.metric);
   const Margin wanted{-question.margin.value, question.margin.relative};
@@ -148,12 +148,12 @@ void claim(Results& results, const Question& question, const std::filesystem::pa
 
 std::vector<Answer> answers(const Results& results, const Question& question, std::uint64_t last_seed) {
   require_sound(question);
-  const Pairs pairs = pairs_of(results, question, last_seed);
+  const AnswerPairs pairs = pairs_of(results, question, last_seed);
   std::vector<Answer> out;
   for (const std::string& scenario : question.scenarios) {
     const auto found = pairs.find(scenario);
-    out.push_back(answer_of(scenario, found == pairs.end() ? std::map<std::uint64_t, Pair>() : found->second, question,
-                            last_seed));
+    out.push_back(answer_of(scenario, found == pairs.end() ? std::map<std::uint64_t, AnswerPair>() : found->second,
+                            question, last_seed));
   }
   return out;
 }

@@ -21,7 +21,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-[[noreturn]] void fail(const fs::path& path, int error) {
+[[noreturn]] void fail_to_lock(const fs::path& path, int error) {
   throw BadInput(path.string() + ": cannot be locked: " + std::generic_category().message(error));
 }
 
@@ -65,12 +65,12 @@ bool is_at(const fs::path& path, int fd) {
 DatabaseOwner::DatabaseOwner(const fs::path& database) : database_(database), lock_(lock_of(database)) {
   for (int attempt = 0; attempt < 100; ++attempt) {
     const int fd = open(lock_.c_str(), O_RDWR | O_CREAT | O_CLOEXEC | O_NOFOLLOW, 0666);
-    if (fd < 0) fail(lock_, errno);
+    if (fd < 0) fail_to_lock(lock_, errno);
     if (flock(fd, LOCK_EX | LOCK_NB) != 0) {
       const int error = errno;
       const std::string holder = who_holds(fd);
       close(fd);
-      if (error != EWOULDBLOCK) fail(lock_, error);
+      if (error != EWOULDBLOCK) fail_to_lock(lock_, error);
       throw BadInput(database.string() + ": " + holder + " is writing to it; name another file, or wait for its end");
     }
     if (is_at(lock_, fd)) {
@@ -79,7 +79,7 @@ DatabaseOwner::DatabaseOwner(const fs::path& database) : database_(database), lo
     }
     close(fd);
   }
-  if (fd_ < 0) fail(lock_, EAGAIN);
+  if (fd_ < 0) fail_to_lock(lock_, EAGAIN);
   const std::string text = who_we_are() + "\n";
   // the lock is held whether or not it can be said by whom
   if (ftruncate(fd_, 0) == 0 && pwrite(fd_, text.data(), text.size(), 0) < 0) return;

@@ -26,8 +26,6 @@ namespace tumble::scenarios {
 
 namespace {
 
-constexpr double kMib = 1024.0 * 1024.0;
-
 // resident size of this process now
 double resident_mib() {
   std::ifstream file("/proc/self/statm");

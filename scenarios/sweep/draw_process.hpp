@@ -27,6 +27,11 @@ struct DrawTask {
   Keeping keeping;  ///< of a plain setting alone
 };
 
+/// How long one waits for workers at a time before looking at the clock.
+inline constexpr int kPollMs = 200;
+/// What the simulation of a draw may take beyond its runs, in units of a run's time-out.
+inline constexpr double kSimulateTimeouts = 2.0;
+
 /// Of a run whose process ended without an answer.
 OutcomeStatus ended_as(const Process::End& end);
 

@@ -8,6 +8,7 @@
 #include <sstream>
 
 #include "scenarios/errors.hpp"
+#include "scenarios/not_finite.hpp"
 #include "scenarios/statistics/paired.hpp"
 #include "scenarios/statistics/statistics.hpp"
 
@@ -15,10 +16,7 @@ namespace tumble::scenarios {
 
 namespace {
 
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
-constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
-
-std::string text_of(double value) {
+std::string three_digits(double value) {
   std::ostringstream text;
   text.precision(3);
   text << value;
@@ -51,14 +49,15 @@ double badness(const MetricInfo& info, double value) {
   return info.unit == Unit::share ? 1.0 - value : std::abs(value - info.target);
 }
 
-struct Pair {
+struct GatePair {
   std::uint64_t seed = 0;
   double before = 0.0, now = 0.0;  ///< infinite where it was not ok, as the worst
 };
 
-/// Pairs of a metric. A draw on which both runs are without a value says nothing; one that has lost it is in `lost`.
-struct Pairs {
-  std::vector<Pair> pairs;
+/// GatePairs of a metric. A draw on which both runs are without a value says nothing; one that has lost it is in
+/// `lost`.
+struct GatePairs {
+  std::vector<GatePair> pairs;
   std::vector<std::uint64_t> lost;
 };
 
@@ -67,11 +66,11 @@ double value_at(const MethodRun& run, const std::string& metric, std::size_t dra
   return values == run.values.end() ? kNaN : values->second[draw];
 }
 
-Pairs pairs_of(const GateRun& all, const MethodRun& before, const MethodRun& now, const MetricInfo& info) {
-  Pairs out;
+GatePairs pairs_of(const GateRun& all, const MethodRun& before, const MethodRun& now, const MetricInfo& info) {
+  GatePairs out;
   for (std::size_t k = 0; k < all.seeds.size(); ++k) {
     const bool was_ok = before.status[k] == OutcomeStatus::ok, is_ok = now.status[k] == OutcomeStatus::ok;
-    Pair pair{all.seeds[k], value_at(before, info.name, k), value_at(now, info.name, k)};
+    GatePair pair{all.seeds[k], value_at(before, info.name, k), value_at(now, info.name, k)};
     if (was_ok && std::isnan(pair.before)) continue;
     if (was_ok && is_ok && std::isnan(pair.now)) out.lost.push_back(pair.seed);
     // a run that is not ok ranks as the worst, whatever numbers it left
@@ -89,31 +88,32 @@ double chance_beyond(std::vector<double> differences, double margin) {
 }
 
 /// Whether a draw is worse than any accepted one was, beyond the allowed; the fault says which.
-void hold_worst_draw(const MetricInfo& info, const std::vector<Pair>& pairs, const GatePolicy& policy,
+void hold_worst_draw(const MetricInfo& info, const std::vector<GatePair>& pairs, const GatePolicy& policy,
                      GateResult& result) {
   if (pairs.empty()) return;
-  const auto worse = [&](double Pair::*member) {
-    return
-        [&info, member](const Pair& a, const Pair& b) { return badness(info, a.*member) < badness(info, b.*member); };
+  const auto worse = [&](double GatePair::*member) {
+    return [&info, member](const GatePair& a, const GatePair& b) {
+      return badness(info, a.*member) < badness(info, b.*member);
+    };
   };
-  const Pair& before = *std::max_element(pairs.begin(), pairs.end(), worse(&Pair::before));
-  const Pair& now = *std::max_element(pairs.begin(), pairs.end(), worse(&Pair::now));
+  const GatePair& before = *std::max_element(pairs.begin(), pairs.end(), worse(&GatePair::before));
+  const GatePair& now = *std::max_element(pairs.begin(), pairs.end(), worse(&GatePair::now));
   const double slack = by_difference(info) ? margin_of(info, policy) : 0.0;
   if (!(badness(info, now.now) > policy.worst * badness(info, before.before) + slack)) return;
   result.seed = now.seed;
-  result.fault = "worst draw: " + text_of(now.now) + " at seed " + std::to_string(now.seed) + ", was " +
-                 text_of(before.before) + " at most as bad";
+  result.fault = "worst draw: " + three_digits(now.now) + " at seed " + std::to_string(now.seed) + ", was " +
+                 three_digits(before.before) + " at most as bad";
 }
 
 /// Tests of a metric count once, two-sided ones too: they take twice the smaller chance. Puts a shift of the pairs, and
 /// the fault where it is one, into a result that says of what they are.
-void hold_middle(const std::vector<Pair>& pairs, const MetricInfo& info, const GatePolicy& policy, std::size_t tests,
-                 GateResult& result) {
+void hold_middle(const std::vector<GatePair>& pairs, const MetricInfo& info, const GatePolicy& policy,
+                 std::size_t tests, GateResult& result) {
   result.draws = pairs.size();
-  result.accepted = median_of(pairs, &Pair::before);
-  result.value = median_of(pairs, &Pair::now);
+  result.accepted = median_of(pairs, &GatePair::before);
+  result.value = median_of(pairs, &GatePair::now);
   std::vector<double> more, less;
-  for (const Pair& pair : pairs) {
+  for (const GatePair& pair : pairs) {
     more.push_back(difference(info, pair.before, pair.now));
     less.push_back(-more.back());
   }
@@ -134,8 +134,8 @@ void hold_middle(const std::vector<Pair>& pairs, const MetricInfo& info, const G
                  std::to_string(count) + " of " + std::to_string(pairs.size());
 }
 
-GateResult hold_metric(const Pairs& found, const MethodRun& before, const MetricInfo& info, const GatePolicy& policy,
-                       std::size_t tests) {
+GateResult hold_metric(const GatePairs& found, const MethodRun& before, const MetricInfo& info,
+                       const GatePolicy& policy, std::size_t tests) {
   GateResult result{before.scenario, before.kind, before.method, info.name};
   hold_middle(found.pairs, info, policy, tests, result);
   if (!found.lost.empty()) {
@@ -200,7 +200,7 @@ struct Pooled {
   Kind kind = Kind::rate;
   std::string method;
   const MetricInfo* info = nullptr;
-  std::vector<Pair> pairs = {};
+  std::vector<GatePair> pairs = {};
   bool is_of(const MethodRun& run, const MetricInfo& metric) const {
     return run.kind == kind && run.method == method && &metric == info;
   }
@@ -252,7 +252,7 @@ std::vector<GateResult> hold_to_gate(const GateRun& run, const Gate& gate) {
     }
     held.push_back(hold_outcomes(run, before, now, verdicts));
     for (const MetricInfo* info : metrics) {
-      const Pairs found_pairs = pairs_of(run, before, now, *info);
+      const GatePairs found_pairs = pairs_of(run, before, now, *info);
       held.push_back(hold_metric(found_pairs, before, *info, gate.policy, tests));
       for (Pooled& pooled : all) {
         if (pooled.is_of(before, *info))

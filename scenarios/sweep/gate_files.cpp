@@ -37,7 +37,7 @@ std::vector<std::string> cells_of(const std::string& line) {
 }
 
 /// One line of the table, for messages.
-struct Line {
+struct GateLine {
   const std::string& file;
   int number;
   std::vector<std::string> cells;
@@ -52,7 +52,7 @@ bool read_number(const std::string& text, Number& value) {
   return error == std::errc() && end == text.data() + text.size();
 }
 
-std::vector<std::uint64_t> read_seeds(const Line& line) {
+std::vector<std::uint64_t> read_seeds(const GateLine& line) {
   const std::array<std::string, kKeyCells> head = {"scenario", "kind", "method", "metric"};
   if (line.cells.size() <= kKeyCells || !std::equal(head.begin(), head.end(), line.cells.begin())) {
     line.fail("must begin with scenario,kind,method,metric and name a seed in each further column");
@@ -67,7 +67,7 @@ std::vector<std::uint64_t> read_seeds(const Line& line) {
   return seeds;
 }
 
-Kind read_kind(const Line& line) {
+Kind read_kind(const GateLine& line) {
   std::vector<std::string> known;
   for (const Kind kind : kKinds) {
     if (line.cells[1] == to_string(kind)) return kind;
@@ -77,7 +77,7 @@ Kind read_kind(const Line& line) {
 }
 
 /// A method of this build, or one that was described.
-void require_method(const Line& line, const MethodRun& run, std::span<const MethodPointer> described) {
+void require_method(const GateLine& line, const MethodRun& run, std::span<const MethodPointer> described) {
   if (std::any_of(described.begin(), described.end(), [&](const MethodPointer& method) {
         return method->info.kind == run.kind && method->info.name == run.method;
       }))
@@ -89,7 +89,7 @@ void require_method(const Line& line, const MethodRun& run, std::span<const Meth
   }
 }
 
-void read_statuses(const Line& line, MethodRun& run) {
+void read_statuses(const GateLine& line, MethodRun& run) {
   for (std::size_t i = kKeyCells; i < line.cells.size(); ++i) {
     const auto status = outcome_status_named(line.cells[i]);
     if (!status) line.fail("unknown status '" + line.cells[i] + "'");
@@ -97,7 +97,7 @@ void read_statuses(const Line& line, MethodRun& run) {
   }
 }
 
-void read_values(const Line& line, MethodRun& run) {
+void read_values(const GateLine& line, MethodRun& run) {
   const std::vector<std::string> known = held_metrics(run.kind);
   const std::string& metric = line.cells[3];
   if (std::find(known.begin(), known.end(), metric) == known.end()) {
@@ -115,7 +115,7 @@ void read_values(const Line& line, MethodRun& run) {
   }
 }
 
-void read_row(const Line& line, std::span<const MethodPointer> described, GateRun& run) {
+void read_row(const GateLine& line, std::span<const MethodPointer> described, GateRun& run) {
   if (line.cells.size() != kKeyCells + run.seeds.size()) {
     line.fail(std::to_string(line.cells.size()) + " columns, must be " + std::to_string(kKeyCells + run.seeds.size()));
   }
@@ -153,7 +153,7 @@ GateRun parse_gate_run(const std::string& text, const std::string& file, std::sp
   std::string content;
   for (int number = 1; std::getline(stream, content); ++number) {
     if (content.empty() || content[0] == '#') continue;
-    const Line line{file, number, cells_of(content)};
+    const GateLine line{file, number, cells_of(content)};
     if (run.seeds.empty())
       run.seeds = read_seeds(line);
     else

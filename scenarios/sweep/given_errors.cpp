@@ -14,8 +14,6 @@ namespace tumble::scenarios {
 
 namespace {
 
-constexpr std::uint8_t kGyroFlags = 0b000111;
-
 Eigen::Vector3d direction(sim::Stream& stream) {
   const double z = stream.normal(), y = stream.normal(), x = stream.normal();
   return Eigen::Vector3d(x, y, z).normalized();
@@ -69,7 +67,7 @@ void state_no_rail(sim::ImuRecord& imu) {
   double largest = 0.0;
   for (const Eigen::Vector3d& reading : imu.gyro_rad_s) largest = std::max(largest, reading.lpNorm<Eigen::Infinity>());
   imu.stated_gyro_range_rad_s = std::max(imu.stated_gyro_range_rad_s, 1.1 * largest);
-  for (std::uint8_t& flags : imu.clip_flags) flags = static_cast<std::uint8_t>(flags & ~kGyroFlags);
+  for (std::uint8_t& flags : imu.clip_flags) flags = static_cast<std::uint8_t>(flags & ~kGyroClipFlags);
 }
 
 /// Clipped readings give way to the unclipped ones with a constant error per segment of clipping: what a rate method
@@ -93,7 +91,7 @@ void rate_error(sim::Sensors& sensors, const sim::Truth& truth, const sim::Situa
 void stated_rail(sim::Sensors& sensors, const sim::Truth& truth, const sim::Situation& situation, double size) {
   sim::ImuRecord& imu = primary(sensors, truth);
   imu.stated_gyro_range_rad_s = situation.sensors.front().values.at("gyro_rail_rad_s") * (1.0 + size);
-  for (std::uint8_t& flags : imu.clip_flags) flags = static_cast<std::uint8_t>(flags & ~kGyroFlags);
+  for (std::uint8_t& flags : imu.clip_flags) flags = static_cast<std::uint8_t>(flags & ~kGyroClipFlags);
 }
 
 /// Methods that are told the rail by a parameter of their own.

@@ -5,6 +5,8 @@
 #include <nlohmann/json.hpp>
 #include <stdexcept>
 
+#include "scenarios/sweep/setting_json.hpp"
+
 namespace tumble::scenarios {
 
 namespace {
@@ -25,14 +27,6 @@ std::vector<Score> scores_from(const json& pairs) {
                       value.is_null() ? std::numeric_limits<double>::quiet_NaN() : value.get<double>()});
   }
   return scores;
-}
-
-json to_json(const Setting& setting) {
-  return json::array({setting.key, setting.value});
-}
-
-Setting setting_from(const json& pair) {
-  return {pair.at(0).get<std::string>(), pair.at(1).get<double>()};
 }
 
 json to_json(const Outcome& outcome) {

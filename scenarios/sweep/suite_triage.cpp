@@ -18,10 +18,6 @@ namespace tumble::scenarios {
 
 namespace {
 
-constexpr int kPollMs = 200;
-// what the simulation of a draw may take beyond its runs, in units of a run's time-out
-constexpr double kSimulateTimeouts = 2.0;
-constexpr double kMemoryMinMib = 64.0, kMemoryMaxMib = 1e7;
 constexpr char kBetween = '\t';  // the input's name and its outcome; no name holds one
 
 /// In the draw's own process: a line per row as it comes, then an empty one; or the reason why there are no more.
@@ -130,8 +126,7 @@ std::set<DrawName> failed_draws(const Results& results, const Method& method, co
 
 std::vector<DrawTriage> triage_draws(const DataRoot& data, std::span<const DrawName> draws, const Method& method,
                                      const SuiteTriageOptions& options) {
-  if (!(options.memory_mib >= kMemoryMinMib && options.memory_mib <= kMemoryMaxMib))
-    throw BadInput("memory is " + std::to_string(options.memory_mib) + " MiB, must be within [64, 1e7]");
+  require_worker_memory(options.memory_mib);
   std::map<std::string, Scenario> scenarios;
   for (const DrawName& draw : draws) {
     if (!scenarios.contains(draw.scenario)) scenarios.emplace(draw.scenario, load_scenario(data, draw.scenario));

@@ -21,11 +21,8 @@ namespace tumble::scenarios {
 
 namespace {
 
-constexpr int kPollMs = 200;
 constexpr int kJobsMax = 4096;
-// what the simulation of a draw may take beyond its methods, in units of a method's time-out
-constexpr double kSimulateTimeouts = 2.0;
-constexpr double kMemoryMinMib = 64.0, kMemoryMaxMib = 1e7;
+
 void claim(Results& results, const DataRoot& data, const Suite& suite, const std::filesystem::path& database) {
   const std::string digest = data_digest(data);
   const std::string known = results.note("data");
@@ -291,6 +288,12 @@ std::uint64_t SweepProgress::not_ok() const {
   return count;
 }
 
+void require_worker_memory(double mib) {
+  constexpr double kMinMib = 64.0, kMaxMib = 1e7;
+  if (!(mib >= kMinMib && mib <= kMaxMib))
+    throw BadInput("memory is " + std::to_string(mib) + " MiB, must be within [64, 1e7]");
+}
+
 Results open_results(const DataRoot& data, const Suite& suite, const std::filesystem::path& database) {
   Results results(database, Results::Mode::create_or_append);
   claim(results, data, suite, database);
@@ -316,8 +319,7 @@ SweepProgress sweep(const DataRoot& data, const Suite& suite, const DatabaseOwne
   }
   if (!suite.recordings.empty() && options.keep.which != Keep::Which::none)
     throw BadInput("suite " + suite.name + ": its draws are recordings, which are there already; none is kept");
-  if (!(options.memory_mib >= kMemoryMinMib && options.memory_mib <= kMemoryMaxMib))
-    throw BadInput("memory is " + std::to_string(options.memory_mib) + " MiB, must be within [64, 1e7]");
+  require_worker_memory(options.memory_mib);
   Results results = open_results(data, suite, database.database());
   if (options.keep.which != Keep::Which::none) results.set_note(kKeepNote, to_string(options.keep));
   return Sweep(data, suite, results, options, database.database()).run();

@@ -68,6 +68,8 @@ struct SweepProgress {
 
 /// Unless told, what a worker may hold: as much as a command of somebody else's (processes/command.hpp).
 inline constexpr double kWorkerMemoryMib = 8192.0;
+/// Throws BadInput: no worker can hold so little, or so much.
+void require_worker_memory(double mib);
 
 struct SweepOptions {
   int jobs = 1;                             ///< workers

@@ -7,6 +7,7 @@
 #include "scenarios/errors.hpp"
 #include "scenarios/methods/external_method.hpp"
 #include "scenarios/sweep/run_again.hpp"
+#include "scenarios/sweep/setting_json.hpp"
 
 namespace tumble::scenarios {
 
@@ -16,14 +17,6 @@ using nlohmann::json;
 
 // of a method's time-out: by then a command of somebody else's is ended by what knows all that it has started
 constexpr double kOwnShare = 0.9;
-
-Setting setting_from(const json& pair) {
-  return {pair.at(0).get<std::string>(), pair.at(1).get<double>()};
-}
-
-json to_json(const Setting& setting) {
-  return json::array({setting.key, setting.value});
-}
 
 }  // namespace
 

@@ -3,6 +3,7 @@
 #include <array>
 #include <cmath>
 
+#include "scenarios/scoring/clipping.hpp"
 #include "scenarios/scoring/truth_track.hpp"
 #include "scenarios/sweep/triage.hpp"
 
@@ -12,7 +13,7 @@ namespace {
 
 using Readings = std::vector<Eigen::Vector3d>;
 
-constexpr std::uint8_t kGyroFlags = 0b000111, kAccelFlags = 0b111000;
+constexpr std::uint8_t kAccelClipFlags = 0b111000;
 constexpr std::uint32_t kInstant_ns = 1000;  // nothing moves in it, yet stamps still differ, as mappers ask for
 
 double largest(const Readings& readings) {
@@ -30,7 +31,7 @@ bool replace_gyro(sim::ImuRecord& imu, const Readings& readings) {
   if (readings.size() != imu.gyro_rad_s.size() || readings == imu.gyro_rad_s) return false;
   imu.gyro_rad_s = readings;
   imu.stated_gyro_range_rad_s = beyond(imu.stated_gyro_range_rad_s, readings);
-  for (std::uint8_t& flags : imu.clip_flags) flags = static_cast<std::uint8_t>(flags & ~kGyroFlags);
+  for (std::uint8_t& flags : imu.clip_flags) flags = static_cast<std::uint8_t>(flags & ~kGyroClipFlags);
   return true;
 }
 
@@ -38,7 +39,7 @@ bool replace_accel(sim::ImuRecord& imu, const Readings& readings) {
   if (readings.size() != imu.accel_m_s2.size() || readings == imu.accel_m_s2) return false;
   imu.accel_m_s2 = readings;
   imu.stated_accel_range_m_s2 = beyond(imu.stated_accel_range_m_s2, readings);
-  for (std::uint8_t& flags : imu.clip_flags) flags = static_cast<std::uint8_t>(flags & ~kAccelFlags);
+  for (std::uint8_t& flags : imu.clip_flags) flags = static_cast<std::uint8_t>(flags & ~kAccelClipFlags);
   return true;
 }
 

@@ -14,17 +14,17 @@ namespace tumble::baselines {
 namespace {
 
 using Eigen::Vector3d;
-using State = Eigen::Matrix<double, 6, 1>;
-using Covariance = Eigen::Matrix<double, 6, 6>;
+using RateAndAcceleration = Eigen::Matrix<double, 6, 1>;
+using RateCovariance = Eigen::Matrix<double, 6, 6>;
 
 constexpr int kIterations = 4;  // of an update: the centripetal force is quadratic in the rate
 
-struct Filter {
-  State x = State::Zero();
-  Covariance P = Covariance::Zero();
+struct AccelerometerFilter {
+  RateAndAcceleration x = RateAndAcceleration::Zero();
+  RateCovariance P = RateCovariance::Zero();
 
   void predict(double dt_s, double psd) {
-    Covariance F = Covariance::Identity(), Q = Covariance::Zero();
+    RateCovariance F = RateCovariance::Identity(), Q = RateCovariance::Zero();
     F.topRightCorner<3, 3>().diagonal().setConstant(dt_s);
     Q.topLeftCorner<3, 3>().diagonal().setConstant(psd * dt_s * dt_s * dt_s / 3.0);
     Q.topRightCorner<3, 3>().diagonal().setConstant(psd * dt_s * dt_s / 2.0);
@@ -39,8 +39,8 @@ struct Filter {
   // iterated: the last linearisation stands where the update ends
   void measure_difference(const Vector3d& p_I_m, const Vector3d& difference, double variance) {
     const RigConstants place{.lever_arm_m = p_I_m};
-    const State before = x;
-    Covariance after = P;
+    const RateAndAcceleration before = x;
+    RateCovariance after = P;
     for (int i = 0; i < kIterations; ++i) {
       const RateFactor f = flight_factor({x.head<3>(), x.tail<3>()}, place, difference);
       const Vector3d innovation = -(f.residual + f.by_knot * (before - x));
@@ -74,7 +74,7 @@ Status AccelerometerRate::estimate(std::span<const ImuSample> samples,
   const double noise = params_.accel_noise_density * params_.accel_noise_density / period_s;
 
   std::vector<RateState> states(samples.size());
-  Filter filter;
+  AccelerometerFilter filter;
   filter.x.head<3>() = samples.front().angular_velocity_rad_s;
   filter.P.diagonal() << Vector3d::Constant(1.0), Vector3d::Constant(100.0);
   for (std::size_t k = 0; k < samples.size(); ++k) {

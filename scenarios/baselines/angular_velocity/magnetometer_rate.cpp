@@ -17,16 +17,16 @@ namespace {
 using Eigen::Matrix3d;
 using Eigen::Vector3d;
 
-constexpr int kSize = 12, kRate = 0, kAcceleration = 3, kField = 6, kIron = 9;
-using Vector = Eigen::Matrix<double, kSize, 1>;
-using Matrix = Eigen::Matrix<double, kSize, kSize>;
+constexpr int kStateSize = 12, kRate = 0, kAcceleration = 3, kField = 6, kIron = 9;
+using Vector = Eigen::Matrix<double, kStateSize, 1>;
+using Matrix = Eigen::Matrix<double, kStateSize, kStateSize>;
 
 // The field is kept in units of 10 uT, so that the covariance is of one order.
 constexpr double kUnitT = 1e-5;
 // Disturbance grows no further than this, in power.
 constexpr double kDisturbedMax = 1e4;
 
-struct Filter {
+struct FieldFilter {
   Vector x = Vector::Zero();
   Matrix P = Matrix::Zero();
 
@@ -53,17 +53,17 @@ struct Filter {
   void measure_axis(int j, double reading, double variance) { x += component_update(j, reading - x[j], variance, P); }
 
   void measure_field(const Vector3d& reading, double variance) {
-    Eigen::Matrix<double, 3, kSize> H = Eigen::Matrix<double, 3, kSize>::Zero();
+    Eigen::Matrix<double, 3, kStateSize> H = Eigen::Matrix<double, 3, kStateSize>::Zero();
     H.middleCols<3>(kField).setIdentity();
     H.middleCols<3>(kIron).setIdentity();
     const Vector3d innovation = reading - x.segment<3>(kField) - x.segment<3>(kIron);
-    x += vector_update<3, kSize>(H, innovation, variance * Matrix3d::Identity(), P);
+    x += vector_update<3, kStateSize>(H, innovation, variance * Matrix3d::Identity(), P);
     P = (0.5 * (P + P.transpose())).eval();
   }
 };
 
 // What the first reading says: the sum of field and hard iron is known, its parts are not.
-void start_field(const Vector3d& reading, double noise, double iron, Filter& filter) {
+void start_field(const Vector3d& reading, double noise, double iron, FieldFilter& filter) {
   filter.x.segment<3>(kField) = reading;
   filter.P.block<3, 3>(kField, kField).diagonal().setConstant(noise * noise + iron * iron);
   filter.P.block<3, 3>(kIron, kIron).diagonal().setConstant(iron * iron);
@@ -91,7 +91,7 @@ Status MagnetometerRate::estimate(std::span<const ImuSample> samples, std::span<
   const double disturbance = params_.disturbance_t_sqrt_s / kUnitT, earth = params_.earth_field_t / kUnitT;
 
   std::vector<RateState> states(samples.size());
-  Filter filter;
+  FieldFilter filter;
   filter.x.head<3>() = samples.front().angular_velocity_rad_s;
   filter.P.topLeftCorner<6, 6>().diagonal() << Vector3d::Constant(1.0), Vector3d::Constant(100.0);
   bool started = false;

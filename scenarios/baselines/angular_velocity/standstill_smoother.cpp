@@ -16,9 +16,9 @@ namespace {
 
 using Eigen::Matrix3d;
 using Eigen::Vector3d;
-constexpr int kSize = 12;  // error state: attitude (world axes), velocity, rate, acceleration
-using Error = Eigen::Matrix<double, kSize, 1>;
-using Covariance = Eigen::Matrix<double, kSize, kSize>;
+constexpr int kErrorSize = 12;  // error state: attitude (world axes), velocity, rate, acceleration
+using Error = Eigen::Matrix<double, kErrorSize, 1>;
+using ErrorCovariance = Eigen::Matrix<double, kErrorSize, kErrorSize>;
 
 struct Navigation {
   Eigen::Quaterniond q_WI = Eigen::Quaterniond::Identity();
@@ -42,12 +42,12 @@ struct Navigation {
 
 struct Belief {
   Navigation mean;
-  Covariance covariance = Covariance::Zero();
+  ErrorCovariance covariance = ErrorCovariance::Zero();
 };
 
 struct Step {
   Belief before, after;  // of the readings of this sample
-  Covariance transition = Covariance::Identity();
+  ErrorCovariance transition = ErrorCovariance::Identity();
 };
 
 // Noise per sample, from the parameters and the period.
@@ -72,7 +72,7 @@ struct BoundedAcceleration {
 };
 
 void predict(const StandstillSmoother::Params& p, const BoundedAcceleration& process, const Noise& noise,
-             const ImuSample& sample, double dt_s, Belief& belief, Covariance& F) {
+             const ImuSample& sample, double dt_s, Belief& belief, ErrorCovariance& F) {
   Navigation& n = belief.mean;
   // the force is a mean over the sample's window, which ends where the step ends
   // rates are means over windows too: the body turns by that of the window that ends here
@@ -94,7 +94,7 @@ void predict(const StandstillSmoother::Params& p, const BoundedAcceleration& pro
   const Vector3d rate = n.rate_rad_s;
   n.rate_rad_s = motion(0, 0) * rate + motion(0, 1) * n.acceleration_rad_s2;
   n.acceleration_rad_s2 = motion(1, 0) * rate + motion(1, 1) * n.acceleration_rad_s2;
-  Covariance Q = Covariance::Zero();
+  ErrorCovariance Q = ErrorCovariance::Zero();
   Q.diagonal().head<6>() << Vector3d::Constant(1e-12), Vector3d::Constant(noise.accel_variance * dt_s * dt_s);
   const Eigen::Matrix2d change = process.noise(motion);
   for (int i = 0; i < 2; ++i) {
@@ -104,12 +104,12 @@ void predict(const StandstillSmoother::Params& p, const BoundedAcceleration& pro
 }
 
 // One scalar reading: residual = row * error + noise.
-void measure(const Eigen::Matrix<double, 1, kSize>& row, double residual, double variance, Belief& belief) {
+void measure(const Eigen::Matrix<double, 1, kErrorSize>& row, double residual, double variance, Belief& belief) {
   belief.mean.add(scalar_update(row, residual, variance, belief.covariance));
 }
 
 void measure_component(int index, double residual, double variance, Belief& belief) {
-  Eigen::Matrix<double, 1, kSize> row = Eigen::Matrix<double, 1, kSize>::Zero();
+  Eigen::Matrix<double, 1, kErrorSize> row = Eigen::Matrix<double, 1, kErrorSize>::Zero();
   row[index] = 1.0;
   measure(row, residual, variance, belief);
 }
@@ -135,7 +135,7 @@ bool is_lost(const StandstillSmoother::Params& p, const ImuSample& sample, const
 }
 
 // Attitude and velocity start anew and take nothing back to what lies before; the rate goes on.
-void start_anew(const ImuSample& sample, Belief& belief, Covariance& F) {
+void start_anew(const ImuSample& sample, Belief& belief, ErrorCovariance& F) {
   constexpr double kAnyTilt = 10.0, kAnyVelocity = 1e4;  // variances
   Navigation& n = belief.mean;
   const Vector3d up = (n.q_WI * sample.specific_force_m_s2).normalized();
@@ -174,8 +174,8 @@ std::vector<bool> standstills(const StandstillSmoother::Params& p, std::span<con
 
 // Rauch-Tung-Striebel: what the next sample learnt from its future, carried to this one.
 void smooth(const Step& next, Belief& now, const Belief& next_smoothed) {
-  const Covariance& ahead = next.before.covariance;
-  const Covariance gain = ahead.ldlt().solve(next.transition * now.covariance).transpose();
+  const ErrorCovariance& ahead = next.before.covariance;
+  const ErrorCovariance gain = ahead.ldlt().solve(next.transition * now.covariance).transpose();
   now.mean.add(gain * next_smoothed.mean.minus(next.before.mean));
   now.covariance += (gain * (next_smoothed.covariance - ahead) * gain.transpose()).eval();
 }

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "scenarios/baselines/attitude/force_min.hpp"
 #include "scenarios/baselines/attitude/madgwick_step.hpp"
 #include "tumble/attitude/detail/tilt.hpp"
 #include "tumble/attitude/detail/timing.hpp"
@@ -14,7 +15,6 @@ namespace tumble::baselines {
 
 namespace {
 
-constexpr double kForceMin_m_s2 = 1e-6;
 constexpr double kCodeFullRate_rad_s = 2.0;
 constexpr double kCodeDeadZone = 0.1;
 /// sin(pitch) from which on roll and yaw cannot be told apart, and the complementary step is left out

@@ -3,16 +3,13 @@
 
 #include <cmath>
 
+#include "scenarios/baselines/attitude/force_min.hpp"
 #include "tumble/attitude/detail/timing.hpp"
 #include "tumble/attitude/strapdown.hpp"
 #include "tumble/common/detail/scalar_update.hpp"
 #include "tumble/common/so3.hpp"
 
 namespace tumble::baselines {
-
-namespace {
-constexpr double kForceMin_m_s2 = 1e-6;
-}  // namespace
 
 Eskf::Eskf(const Params& p) : params_(p) {
   require_fields(p);

@@ -3,6 +3,7 @@
 
 #include <cmath>
 
+#include "scenarios/baselines/attitude/force_min.hpp"
 #include "scenarios/baselines/attitude/madgwick_step.hpp"
 #include "tumble/attitude/detail/timing.hpp"
 #include "tumble/attitude/strapdown.hpp"
@@ -11,7 +12,6 @@ namespace tumble::baselines {
 
 namespace {
 
-constexpr double kForceMin_m_s2 = 1e-6;
 constexpr double kGradientMin = 1e-12;
 
 /// Gradient J^T F of half the squared distance between the predicted and the measured direction of "up", as (x, y, z,

@@ -1,15 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "scenarios/baselines/attitude/mahony.hpp"
 
+#include "scenarios/baselines/attitude/force_min.hpp"
 #include "tumble/attitude/detail/timing.hpp"
 #include "tumble/attitude/strapdown.hpp"
 #include "tumble/common/so3.hpp"
 
 namespace tumble::baselines {
-
-namespace {
-constexpr double kForceMin_m_s2 = 1e-6;
-}
 
 Mahony::Mahony(const Params& params) : params_(params) {
   require_fields(params);

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "scenarios/baselines/attitude/force_min.hpp"
 #include "scenarios/baselines/rolling/attitude_check.hpp"
 #include "tumble/attitude/detail/timing.hpp"
 #include "tumble/common/so3.hpp"
@@ -11,8 +12,6 @@
 namespace tumble::baselines {
 
 namespace {
-
-constexpr double kForceMin_m_s2 = 1e-6;
 
 /// Eq 8: each axis scaled by the larger factor of the two others, for it moves when the sphere turns about those.
 Eigen::Vector3d coupling(const Eigen::Vector3d& factor) {

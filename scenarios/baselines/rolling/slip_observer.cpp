@@ -12,10 +12,8 @@ namespace tumble::baselines {
 
 namespace {
 
-using State = SlipObserver::State;
-
 /// Mean of the acceleration minus the least-squares slope of the rolling velocity over the window.
-Eigen::Vector2d residual(const State& state) {
+Eigen::Vector2d residual(const SlipObserver::State& state) {
   constexpr int kSize = SlipObserver::kWindow;
   double t = 0.0, t_mean = 0.0;
   std::array<double, kSize> times{};

@@ -23,17 +23,17 @@ void take_column(const ros::PointCloud2& cloud, std::size_t row_bytes, std::size
   }
 }
 
-struct FieldType {
+struct ReadType {
   std::size_t bytes;
   void (*take)(const ros::PointCloud2&, std::size_t, std::size_t, std::vector<double>&);
 };
 
 /// By the number of the type; of others nothing is known.
-const FieldType* type_of(std::uint8_t datatype) {
-  static const FieldType known[] = {{1, take_column<std::int8_t>},  {1, take_column<std::uint8_t>},
-                                    {2, take_column<std::int16_t>}, {2, take_column<std::uint16_t>},
-                                    {4, take_column<std::int32_t>}, {4, take_column<std::uint32_t>},
-                                    {4, take_column<float>},        {8, take_column<double>}};
+const ReadType* type_of(std::uint8_t datatype) {
+  static const ReadType known[] = {{1, take_column<std::int8_t>},  {1, take_column<std::uint8_t>},
+                                   {2, take_column<std::int16_t>}, {2, take_column<std::uint16_t>},
+                                   {4, take_column<std::int32_t>}, {4, take_column<std::uint32_t>},
+                                   {4, take_column<float>},        {8, take_column<double>}};
   return datatype >= ros::PointField::int8 && datatype <= ros::PointField::float64 ? &known[datatype - 1] : nullptr;
 }
 
@@ -57,7 +57,7 @@ Cloud cloud_of(const ros::PointCloud2& message, const std::string& where) {
   }
   out.points = std::size_t{message.width} * message.height;
   for (const ros::PointField& field : message.fields) {
-    const FieldType* type = type_of(field.datatype);
+    const ReadType* type = type_of(field.datatype);
     if (type == nullptr || field.count != 1) continue;
     if (std::uint64_t{field.offset} + type->bytes > message.point_step) {
       throw BadInput(where + ": field '" + field.name + "' at byte " + std::to_string(field.offset) +

@@ -5,11 +5,11 @@
 #include <cstring>
 #include <initializer_list>
 
+#include "scenarios/recordings/whole_seconds.hpp"
+
 namespace tumble::scenarios {
 
 namespace {
-
-constexpr std::int64_t kSecond_ns = 1000000000;
 
 template <std::size_t kCount, class Vector>
 std::array<double, kCount> array_of(const Vector& vector) {

@@ -7,12 +7,13 @@
 #include <limits>
 
 #include "scenarios/errors.hpp"
+#include "scenarios/recordings/whole_seconds.hpp"
 
 namespace tumble::scenarios {
 
 namespace {
 
-constexpr std::int64_t kSaid_ns = 1'000'000, kSecond_ns = 1'000'000'000;
+constexpr std::int64_t kSaid_ns = 1'000'000;
 /// A header that is later than its record by more was written by another clock.
 constexpr std::int64_t kAhead_ns = 10'000'000;
 /// What messages usually wait for each other; beyond it the clocks drift or stamps are no times of measuring.

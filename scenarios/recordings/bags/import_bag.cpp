@@ -23,7 +23,7 @@ namespace {
 constexpr const char* kImu = "sensor_msgs/Imu";
 constexpr const char* kCloud = "sensor_msgs/PointCloud2";
 constexpr const char* kOdometry = "nav_msgs/Odometry";
-constexpr const char* kPose = "geometry_msgs/PoseStamped";
+constexpr const char* kPoseStamped = "geometry_msgs/PoseStamped";
 constexpr const char *kTransforms = "tf2_msgs/TFMessage", *kOldTransforms = "tf/tfMessage";
 constexpr const char* kStaticTopic = "/tf_static";
 constexpr const char* kNoMessage = ": is declared and has no message: left out";
@@ -283,8 +283,9 @@ std::vector<ReferencePose> read_poses(const Bag& bag, const std::string& topic, 
 std::vector<ReferencePose> reference_poses(const Bag& bag, const std::string& topic, StampSource source) {
   const std::string type = bag.topic(topic).type;
   if (type == kOdometry) return read_poses<ros::Odometry>(bag, topic, source);
-  if (type == kPose) return read_poses<ros::PoseStamped>(bag, topic, source);
-  throw BadInput(bag.place + ": topic '" + topic + "' is of type " + type + ", must be " + kOdometry + " or " + kPose);
+  if (type == kPoseStamped) return read_poses<ros::PoseStamped>(bag, topic, source);
+  throw BadInput(bag.place + ": topic '" + topic + "' is of type " + type + ", must be " + kOdometry + " or " +
+                 kPoseStamped);
 }
 
 /// Sensors that never saw the same moment have no common clock, or nothing in common.

@@ -9,17 +9,17 @@
 
 #include "scenarios/errors.hpp"
 #include "scenarios/recordings/bags/bag_storage.hpp"
+#include "scenarios/recordings/bags/ros1_ops.hpp"
 
 namespace tumble::scenarios {
 
 namespace {
 
 constexpr std::string_view kMagic = "#ROSBAG V2.0\n";
-constexpr std::uint32_t kHeaderMax = 1u << 20, kChunkMax = 1u << 30;
-enum Op : std::uint8_t { kMessage = 2, kFile = 3, kIndex = 4, kChunk = 5, kChunkInfo = 6, kConnection = 7 };
+constexpr std::uint32_t kRecordHeaderMax = 1u << 20, kChunkMax = 1u << 30;
 
 /// One record: its header's fields, and where its data lie.
-struct Record {
+struct CheckedRecord {
   std::uint64_t at = 0, data_at = 0;
   std::uint32_t data_bytes = 0;
   std::map<std::string, std::string> fields;
@@ -38,13 +38,13 @@ class Walk {
     if (bytes_ < kMagic.size() || text(0, kMagic.size()) != kMagic)
       fail(0, "does not begin with '#ROSBAG V2.0': no ROS 1 bag of version 2.0");
     std::uint64_t at = kMagic.size();
-    const Record file = record(at, bytes_);
-    if (op(file) != kFile) fail(at, "the first record is no bag header");
+    const CheckedRecord file = record(at, bytes_);
+    if (op(file) != ros1::kFile) fail(at, "the first record is no bag header");
     if (number<std::uint64_t>(file, "index_pos") == 0)
       fail(at, "the bag was not closed: it has no index ('rosbag reindex' makes one)");
     if (number<std::uint64_t>(file, "index_pos") >= bytes_) fail(at, "the index lies beyond the end: truncated?");
     for (at = file.end(); at < bytes_;) {
-      const Record next = record(at, bytes_);
+      const CheckedRecord next = record(at, bytes_);
       step(next);
       at = next.end();
     }
@@ -80,10 +80,10 @@ class Walk {
     return value;
   }
 
-  Record record(std::uint64_t at, std::uint64_t end) {
-    Record out;
+  CheckedRecord record(std::uint64_t at, std::uint64_t end) {
+    CheckedRecord out;
     out.at = at;
-    const std::uint32_t header = length(at, end, "a record's header", kHeaderMax);
+    const std::uint32_t header = length(at, end, "a record's header", kRecordHeaderMax);
     const std::string bytes = text(at + 4, header);
     for (std::size_t place = 0; place < bytes.size();) {
       std::uint32_t size = 0;
@@ -102,7 +102,7 @@ class Walk {
   }
 
   template <class Number>
-  Number number(const Record& record, const char* name) const {
+  Number number(const CheckedRecord& record, const char* name) const {
     const auto found = record.fields.find(name);
     if (found == record.fields.end() || found->second.size() != sizeof(Number)) {
       fail(record.at,
@@ -113,21 +113,21 @@ class Walk {
     return value;
   }
 
-  std::uint8_t op(const Record& record) const { return number<std::uint8_t>(record, "op"); }
+  std::uint8_t op(const CheckedRecord& record) const { return number<std::uint8_t>(record, "op"); }
 
   /// Takes note of a record of the file and checks what it says of others.
-  void step(const Record& record) {
+  void step(const CheckedRecord& record) {
     switch (op(record)) {
-      case kChunk:
+      case ros1::kChunk:
         chunk(record);
         break;
-      case kIndex:
+      case ros1::kIndex:
         index(record);
         break;
-      case kConnection:
+      case ros1::kConnection:
         connection(record);
         break;
-      case kChunkInfo:
+      case ros1::kChunkInfo:
         infos_[record.at] = number<std::uint64_t>(record, "chunk_pos");
         entries(record, 8);
         break;
@@ -136,12 +136,12 @@ class Walk {
     }
   }
 
-  void connection(const Record& record) {
+  void connection(const CheckedRecord& record) {
     connections_.insert(number<std::uint32_t>(record, "conn"));
     if (!record.fields.contains("topic")) fail(record.at, "a connection without topic");
   }
 
-  void chunk(const Record& record) {
+  void chunk(const CheckedRecord& record) {
     const std::uint32_t size = number<std::uint32_t>(record, "size");
     const auto found = record.fields.find("compression");
     const std::string compression = found == record.fields.end() ? "" : found->second;
@@ -158,10 +158,10 @@ class Walk {
     }
     messages_.emplace();
     for (std::uint64_t at = record.data_at; at < record.end();) {
-      const Record inner = this->record(at, record.end());
-      if (op(inner) == kConnection)
+      const CheckedRecord inner = this->record(at, record.end());
+      if (op(inner) == ros1::kConnection)
         connection(inner);
-      else if (op(inner) == kMessage)
+      else if (op(inner) == ros1::kMessage)
         message(inner, at - record.data_at);
       else
         fail(at, "a record of kind " + std::to_string(op(inner)) + " has no place in a chunk");
@@ -169,13 +169,13 @@ class Walk {
     }
   }
 
-  void message(const Record& record, std::uint64_t offset) {
+  void message(const CheckedRecord& record, std::uint64_t offset) {
     if (!connections_.contains(number<std::uint32_t>(record, "conn"))) fail(record.at, "a message of no connection");
     number<std::uint64_t>(record, "time");
     messages_->insert(offset);
   }
 
-  std::uint32_t entries(const Record& record, std::uint32_t each) const {
+  std::uint32_t entries(const CheckedRecord& record, std::uint32_t each) const {
     const std::uint32_t count = number<std::uint32_t>(record, "count");
     if (std::uint64_t{count} * each != record.data_bytes) {
       fail(record.at, "promises " + std::to_string(count) + " entries of " + std::to_string(each) + " bytes in " +
@@ -185,7 +185,7 @@ class Walk {
   }
 
   /// Offsets of messages in the chunk before.
-  void index(const Record& record) {
+  void index(const CheckedRecord& record) {
     constexpr std::uint32_t kEntry = 12, kPlace = 8;
     if (chunks_.empty()) fail(record.at, "an index before any chunk");
     const std::uint32_t count = entries(record, kEntry);

@@ -8,16 +8,16 @@
 
 #include "scenarios/errors.hpp"
 #include "scenarios/recordings/bags/packed.hpp"
+#include "scenarios/recordings/bags/ros1_ops.hpp"
 
 namespace tumble::scenarios {
 
 namespace {
 
 constexpr std::uint64_t kMagicBytes = 13;  // "#ROSBAG V2.0\n"
-enum Op : std::uint8_t { kFile = 3, kChunk = 5, kChunkInfo = 6 };
 
 /// One record. Its header is kept as it stands, so that fields can be changed in their place.
-struct Record {
+struct RawRecord {
   std::uint64_t at = 0;
   std::string header;
   std::uint32_t data_bytes = 0;
@@ -71,7 +71,7 @@ class Records {
     magic_ = text(kMagicBytes);
   }
   const std::string& magic() const { return magic_; }
-  bool next(Record& record) {
+  bool next(RawRecord& record) {
     if (at_ >= bytes_) return false;
     record.at = at_;
     record.header = text(length());
@@ -116,7 +116,7 @@ class Records {
 class Copy {
  public:
   explicit Copy(const std::filesystem::path& path) : path_(path), stream_(path, std::ios::binary) {}
-  std::uint64_t write(const Record& record, const std::string& data) {
+  std::uint64_t write(const RawRecord& record, const std::string& data) {
     const std::uint64_t at = at_;
     put(bytes_of(static_cast<std::uint32_t>(record.header.size())));
     put(record.header);
@@ -142,13 +142,13 @@ class Copy {
   std::uint64_t at_ = 0;
 };
 
-std::string changed_chunk(Record& record, std::string data, const std::function<void(Ros1Chunk&)>& change) {
+std::string changed_chunk(RawRecord& record, std::string data, const std::function<void(Ros1Chunk&)>& change) {
   Ros1Chunk chunk{record.text("compression"), record.number<std::uint32_t>("size"), std::move(data)};
   change(chunk);
   record.header.clear();
   // in the order in which ROS writes them
   append_field(record.header, "compression=" + chunk.compression);
-  append_field(record.header, "op=" + std::string(1, static_cast<char>(kChunk)));
+  append_field(record.header, "op=" + std::string(1, static_cast<char>(ros1::kChunk)));
   append_field(record.header, "size=" + bytes_of(chunk.unpacked_bytes));
   return std::move(chunk.data);
 }
@@ -157,8 +157,8 @@ std::string changed_chunk(Record& record, std::string data, const std::function<
 
 bool has_lz4_chunks(const std::filesystem::path& file) {
   Records records(file);
-  for (Record record; records.next(record); records.skip()) {
-    if (record.op() == kChunk && record.text("compression") == "lz4") return true;
+  for (RawRecord record; records.next(record); records.skip()) {
+    if (record.op() == ros1::kChunk && record.text("compression") == "lz4") return true;
   }
   return false;
 }
@@ -166,8 +166,8 @@ bool has_lz4_chunks(const std::filesystem::path& file) {
 std::uint64_t bytes_unpacked(const std::filesystem::path& file) {
   Records records(file);
   std::uint64_t bytes = std::filesystem::file_size(file);
-  for (Record record; records.next(record); records.skip()) {
-    if (record.op() != kChunk || record.text("compression") != "lz4") continue;
+  for (RawRecord record; records.next(record); records.skip()) {
+    if (record.op() != ros1::kChunk || record.text("compression") != "lz4") continue;
     bytes = bytes - record.data_bytes + record.number<std::uint32_t>("size");
   }
   return bytes;
@@ -179,25 +179,25 @@ void copy_ros1_bag(const std::filesystem::path& from, const std::filesystem::pat
   Copy copy(to);
   copy.put(records.magic());
   std::map<std::uint64_t, std::uint64_t> places;  // of records, before and after
-  std::optional<Record> first;
+  std::optional<RawRecord> first;
   std::uint64_t first_at = 0;
-  for (Record record; records.next(record);) {
+  for (RawRecord record; records.next(record);) {
     const std::uint64_t before = record.at;
     std::string data = records.data();
-    if (record.op() == kChunk) {
+    if (record.op() == ros1::kChunk) {
       try {
         data = changed_chunk(record, std::move(data), change);
       } catch (const BadInput& error) {
         records.fail(before, error.what());
       }
     }
-    if (record.op() == kChunkInfo) {
+    if (record.op() == ros1::kChunkInfo) {
       const auto chunk = places.find(record.number<std::uint64_t>("chunk_pos"));
       if (chunk == places.end()) records.fail(before, "names a chunk that does not stand before it");
       record.set("chunk_pos", chunk->second);
     }
     places[before] = copy.write(record, data);
-    if (record.op() == kFile && !first) first = record, first_at = places[before];
+    if (record.op() == ros1::kFile && !first) first = record, first_at = places[before];
   }
   const auto index = first ? places.find(first->number<std::uint64_t>("index_pos")) : places.end();
   if (index == places.end()) records.fail(kMagicBytes, "the place of the index is no record");

@@ -24,7 +24,7 @@ namespace {
 
 using std::filesystem::path;
 
-[[noreturn]] void fail(const path& place, const std::string& what) {
+[[noreturn]] void fail_at(const path& place, const std::string& what) {
   throw BadInput(place.string() + ": " + what);
 }
 
@@ -87,7 +87,7 @@ class Ros2BagWriter : public BagWriter {
     try {
       call();
     } catch (const std::exception& error) {
-      fail(file_, std::string("cannot be written: ") + error.what());
+      fail_at(file_, std::string("cannot be written: ") + error.what());
     }
   }
 
@@ -160,8 +160,8 @@ std::string packed_by(const YAML::Node& root, const path& metadata) {
   const std::string format = text("compression_format"), mode = text("compression_mode");
   if (format.empty() || mode == "none") return "";
   if (format != "zstd" || (mode != "file" && mode != "message"))
-    fail(metadata, "the bag is compressed by '" + format + "' in mode '" + mode +
-                       "', must be zstd in mode file or message ('ros2 bag convert' makes a plain one)");
+    fail_at(metadata, "the bag is compressed by '" + format + "' in mode '" + mode +
+                          "', must be zstd in mode file or message ('ros2 bag convert' makes a plain one)");
   return mode;
 }
 
@@ -172,13 +172,13 @@ Storage storage_of(const path& bag) {
     return {name.extension() == ".mcap" ? "mcap" : "sqlite3", {bag}, packed ? "file" : ""};
   }
   const path metadata = bag / "metadata.yaml";
-  if (!std::filesystem::is_regular_file(metadata)) fail(bag, "holds no metadata.yaml: no ROS 2 bag");
+  if (!std::filesystem::is_regular_file(metadata)) fail_at(bag, "holds no metadata.yaml: no ROS 2 bag");
   Storage out;
   try {
     const YAML::Node root = YAML::LoadFile(metadata.string())["rosbag2_bagfile_information"];
     out.kind = root["storage_identifier"].as<std::string>();
     if (out.kind != "sqlite3" && out.kind != "mcap")
-      fail(metadata, "the storage is '" + out.kind + "', must be sqlite3 or mcap");
+      fail_at(metadata, "the storage is '" + out.kind + "', must be sqlite3 or mcap");
     out.packed = packed_by(root, metadata);
     for (const YAML::Node& each : root["relative_file_paths"]) {
       const path name = path(each.as<std::string>()).filename();  // nothing leads out of the folder
@@ -187,9 +187,9 @@ Storage storage_of(const path& bag) {
   } catch (const YAML::Exception& error) {
     std::string what = error.what();
     std::replace(what.begin(), what.end(), '\n', ' ');
-    fail(metadata, "no metadata of a ROS 2 bag: " + what);
+    fail_at(metadata, "no metadata of a ROS 2 bag: " + what);
   }
-  if (out.files.empty()) fail(metadata, "relative_file_paths names no file");
+  if (out.files.empty()) fail_at(metadata, "relative_file_paths names no file");
   return out;
 }
 
@@ -197,7 +197,7 @@ class Ros2BagReader : public BagReader {
  public:
   explicit Ros2BagReader(std::vector<path> files) : files_(std::move(files)) {
     for (const path& file : files_) {
-      if (!std::filesystem::is_regular_file(file)) fail(file, "no such file");
+      if (!std::filesystem::is_regular_file(file)) fail_at(file, "no such file");
     }
   }
 
@@ -208,7 +208,7 @@ class Ros2BagReader : public BagReader {
       while (query.executeStep()) {
         const std::string format = query.getColumn(2).getString();
         const BagTopic topic = {query.getColumn(0).getString(), ros1_type(query.getColumn(1).getString())};
-        if (format != "cdr") fail(file, "topic " + topic.name + " is serialized as '" + format + "', must be cdr");
+        if (format != "cdr") fail_at(file, "topic " + topic.name + " is serialized as '" + format + "', must be cdr");
         const auto same = [&](const BagTopic& each) { return each.name == topic.name; };
         if (std::none_of(topics.begin(), topics.end(), same)) topics.push_back(topic);
       }
@@ -243,7 +243,7 @@ class Ros2BagReader : public BagReader {
         SQLite::Database database(file.string(), SQLite::OPEN_READONLY);
         call(file, database);
       } catch (const SQLite::Exception& error) {
-        fail(file, std::string("cannot be read as a ROS 2 bag: ") + error.what());
+        fail_at(file, std::string("cannot be read as a ROS 2 bag: ") + error.what());
       }
     }
   }

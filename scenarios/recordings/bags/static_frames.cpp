@@ -10,7 +10,7 @@ namespace tumble::scenarios {
 
 namespace {
 
-constexpr double kFar_m = 1000.0, kNormTolerance = 0.01;
+constexpr double kFrameFar_m = 1000.0, kFrameNormTolerance = 0.01;
 
 /// ROS 1 wrote "/imu" for what is called "imu" now.
 std::string without_slash(const std::string& frame) {
@@ -25,8 +25,9 @@ void StaticFrames::add(const ros::TransformStamped& transform, const std::string
   const auto p = Eigen::Vector3d::Map(transform.translation.data());
   Eigen::Quaterniond q;
   q.coeffs() = Eigen::Vector4d::Map(transform.rotation_xyzw.data());
-  if (!(p.cwiseAbs().maxCoeff() <= kFar_m) || !p.allFinite()) throw BadInput(what + ": its place must be within 1 km");
-  if (!(std::abs(q.norm() - 1.0) <= kNormTolerance))
+  if (!(p.cwiseAbs().maxCoeff() <= kFrameFar_m) || !p.allFinite())
+    throw BadInput(what + ": its place must be within 1 km");
+  if (!(std::abs(q.norm() - 1.0) <= kFrameNormTolerance))
     throw BadInput(what + ": its quaternion has norm " + std::to_string(q.norm()) + ", must be 1");
   if (parent == child) throw BadInput(what + ": the frame hangs on itself");
   Eigen::Isometry3d T = Eigen::Isometry3d::Identity();

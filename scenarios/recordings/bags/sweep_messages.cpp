@@ -9,14 +9,11 @@
 #include <type_traits>
 
 #include "scenarios/errors.hpp"
+#include "scenarios/recordings/timed_points.hpp"
 
 namespace tumble::scenarios {
 
 namespace {
-
-bool timed(const sim::LidarRecord& lidar) {
-  return lidar.point_times == sim::PointTimes::measured;
-}
 
 /// The sweep's points, in the order in which they are written.
 std::vector<std::size_t> order_of(const sim::LidarRecord& lidar, std::size_t sweep, bool in_time_order) {
@@ -58,12 +55,12 @@ double value_of(const sim::LidarRecord& lidar, std::size_t point, const PointCol
   return 0.0;
 }
 
-struct FieldType {
+struct WrittenType {
   ros::PointField::Type type;
   std::uint32_t bytes;
 };
 
-FieldType field_type(NumberType type) {
+WrittenType field_type(NumberType type) {
   switch (type) {
     case NumberType::uint8:
       return {ros::PointField::uint8, 1};
@@ -102,8 +99,8 @@ ros::PointCloud2 cloud_of(const sim::LidarRecord& lidar, const std::vector<std::
   out.header = header;
   std::vector<PointColumn> written;
   for (const PointColumn& column : columns) {
-    if (column.quantity == PointQuantity::time && !timed(lidar)) continue;
-    const FieldType field = field_type(column.type);
+    if (column.quantity == PointQuantity::time && !has_timed_points(lidar)) continue;
+    const WrittenType field = field_type(column.type);
     out.fields.push_back({column.name, out.point_step, field.type, 1});
     out.point_step += field.bytes;
     written.push_back(column);
@@ -127,7 +124,7 @@ ros::PointCloud2 cloud_of(const sim::LidarRecord& lidar, const std::vector<std::
 ros::LivoxCustomMsg livox_of(const sim::LidarRecord& lidar, const std::vector<std::size_t>& points,
                              std::int64_t start_ns, const ros::Header& header) {
   constexpr double kFull = 255.0;
-  if (!timed(lidar)) {
+  if (!has_timed_points(lidar)) {
     throw BadInput("the points of '" + lidar.name +
                    "' have no times of their own: a CustomMsg has one for each, and a made-up one would pass for "
                    "measured");

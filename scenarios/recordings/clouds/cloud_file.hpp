@@ -20,6 +20,8 @@ struct Cloud {
   const std::vector<double>* find(const std::string& name) const;
 };
 
+inline constexpr std::uint64_t kCloudPointsMax = std::uint64_t{1} << 26;
+
 /// Reads the points of a PLY or PCD file of any encoding (by PCL), of a legacy VTK file written as text (vtk_file.hpp),
 /// or of a KITTI .bin file (float32 x y z intensity); the file's ending tells which. A file without points is a cloud
 /// without points. What the header promises is held against the file's size before anything is allocated. Throws

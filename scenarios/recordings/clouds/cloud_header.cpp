@@ -15,11 +15,10 @@ namespace tumble::scenarios {
 
 namespace {
 
-constexpr std::uint64_t kPointsMax = std::uint64_t{1} << 26;
 /// LZF makes at most 264 bytes of 3.
 constexpr std::uint64_t kLzfMost = 88;
 /// A header longer than this is none.
-constexpr std::size_t kHeaderMax = 65536;
+constexpr std::size_t kCloudHeaderMax = 65536;
 
 /// The lines of a header, with their place.
 class HeaderLines {
@@ -35,7 +34,7 @@ class HeaderLines {
     if (!std::getline(stream_, line) || stream_.eof()) fail("the header does not end: truncated?");
     ++number_;
     bytes_ += line.size() + 1;
-    if (bytes_ > kHeaderMax) fail("the header is longer than " + std::to_string(kHeaderMax) + " bytes");
+    if (bytes_ > kCloudHeaderMax) fail("the header is longer than " + std::to_string(kCloudHeaderMax) + " bytes");
     std::istringstream words(line);
     std::vector<std::string> out;
     for (std::string word; words >> word;) out.push_back(word);
@@ -57,8 +56,8 @@ class HeaderLines {
 
   /// Holds a promise of points against what follows the header, of which a byte makes so many at most.
   void require_room(const CloudHeader& header, std::uint64_t made_of_a_byte = 1) const {
-    if (header.points > kPointsMax) {
-      fail("promises " + std::to_string(header.points) + " points, at most " + std::to_string(kPointsMax) +
+    if (header.points > kCloudPointsMax) {
+      fail("promises " + std::to_string(header.points) + " points, at most " + std::to_string(kCloudPointsMax) +
            " are read from a file");
     }
     // a number written as text has a digit and a blank or line end at least; the last one may lack it
@@ -160,8 +159,8 @@ std::map<std::string, Words> pcd_lines(HeaderLines& lines) {
 std::uint64_t single(const HeaderLines& lines, const std::string& name, const Words& words) {
   if (words.size() != 1) lines.fail(name + " has " + std::to_string(words.size()) + " numbers, must have 1");
   const std::uint64_t value = lines.whole(name, words.front());
-  if (value > kPointsMax) {
-    lines.fail(name + " is " + std::to_string(value) + ", must be at most " + std::to_string(kPointsMax));
+  if (value > kCloudPointsMax) {
+    lines.fail(name + " is " + std::to_string(value) + ", must be at most " + std::to_string(kCloudPointsMax));
   }
   return value;
 }
@@ -200,7 +199,7 @@ CloudHeader read_ply_header(const std::filesystem::path& path) {
       const std::uint64_t count = lines.whole("count of " + words[1], words[2]);
       if (in_points) header.points = count, before_points = false;
       if (!in_points && before_points && count > 0) lines.fail("the points must be the file's first element");
-      if (!in_points && count > kPointsMax) lines.fail("promises " + words[2] + " of " + words[1]);
+      if (!in_points && count > kCloudPointsMax) lines.fail("promises " + words[2] + " of " + words[1]);
     } else if (words[0] == "property") {
       if (in_points) take_property(lines, words, header);
     } else {

@@ -7,6 +7,7 @@
 #include "scenarios/recordings/export_folder.hpp"
 #include "scenarios/recordings/number_text.hpp"
 #include "scenarios/recordings/replace_file.hpp"
+#include "scenarios/recordings/timed_points.hpp"
 
 namespace tumble::scenarios {
 
@@ -36,17 +37,13 @@ void append_bytes(std::string& out, const Number& number) {
   out.append(reinterpret_cast<const char*>(&number), sizeof(number));
 }
 
-bool timed(const sim::LidarRecord& lidar) {
-  return lidar.point_times == sim::PointTimes::measured;
-}
-
 void append_points(std::string& out, const sim::LidarRecord& lidar, std::size_t first, std::size_t end) {
   out.reserve(out.size() + (end - first) * 22);
   for (std::size_t i = first; i < end; ++i) {
     for (const float x : lidar.position_L_m[i]) append_bytes(out, x);
     append_bytes(out, lidar.intensity[i]);
     append_bytes(out, lidar.ring[i]);
-    if (timed(lidar)) append_bytes(out, lidar.offset_ns[i]);
+    if (has_timed_points(lidar)) append_bytes(out, lidar.offset_ns[i]);
   }
 }
 
@@ -63,7 +60,7 @@ void export_sweeps(const sim::Sensors& sensors, const std::filesystem::path& fol
       const std::size_t end = lidar.sweep_first[sweep + 1];
       append_seconds(times, lidar.sweep_start_ns[sweep]);
       times += '\n';
-      std::string bytes = header(end - first, timed(lidar));
+      std::string bytes = header(end - first, has_timed_points(lidar));
       append_points(bytes, lidar, first, end);
       const std::string number = std::to_string(sweep);
       const std::string padding(number.size() < 6 ? 6 - number.size() : 0, '0');

@@ -19,8 +19,8 @@ namespace {
 
 /// So many clouds tell the unit of the times: one may be cut.
 constexpr std::ptrdiff_t kProbe = 10;
-constexpr double kByte = 255.0;
-constexpr double kFar_m = 1e6;
+constexpr double kByteIntensity = 255.0;
+constexpr double kPointFar_m = 1e6;
 constexpr double kBeyond = 2.0;        // ranges of the data sheet
 constexpr double kOverlapMost = 1.05;  // of the time from one sweep to the next, that one lasts
 /// The longest offset that a sweep may hold where its period is not known yet.
@@ -51,7 +51,7 @@ std::vector<std::size_t> hits(const Cloud& cloud, const std::string& where) {
         &z = coordinate(cloud, "z", where);
   std::vector<std::size_t> kept;
   for (std::size_t i = 0; i < cloud.points; ++i) {
-    const bool within = std::abs(x[i]) <= kFar_m && std::abs(y[i]) <= kFar_m && std::abs(z[i]) <= kFar_m;
+    const bool within = std::abs(x[i]) <= kPointFar_m && std::abs(y[i]) <= kPointFar_m && std::abs(z[i]) <= kPointFar_m;
     if (within && (x[i] != 0.0 || y[i] != 0.0 || z[i] != 0.0)) kept.push_back(i);
   }
   return kept;
@@ -209,7 +209,7 @@ void SweepBuilder::take_rings(const Waiting& sweep, const std::vector<std::size_
 
 void SweepBuilder::scale_intensity(std::vector<std::string>& notes) {
   if (brightest_ <= 1.0f) return;
-  const double full = brightest_ <= kByte ? kByte : static_cast<double>(brightest_);
+  const double full = brightest_ <= kByteIntensity ? kByteIntensity : static_cast<double>(brightest_);
   const auto scale = [&](float& each) { each = static_cast<float>(each / full); };
   if (store_) store_->intensity.change(scale);
   std::for_each(record_.intensity.begin(), record_.intensity.end(), scale);

@@ -11,12 +11,11 @@
 #include "scenarios/errors.hpp"
 #include "scenarios/recordings/table_file.hpp"
 #include "scenarios/recordings/upper_median.hpp"
+#include "scenarios/recordings/whole_seconds.hpp"
 
 namespace tumble::scenarios {
 
 namespace {
-
-constexpr std::int64_t kSecond_ns = 1000000000;
 
 bool is_digit(char c) {
   return std::isdigit(static_cast<unsigned char>(c)) != 0;

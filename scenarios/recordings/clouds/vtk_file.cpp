@@ -14,17 +14,15 @@ namespace tumble::scenarios {
 
 namespace {
 
-constexpr std::uint64_t kPointsMax = std::uint64_t{1} << 26;
-
 /// As much of a word as a message has room for.
 std::string shortened(std::string_view word) {
   return std::string(word.substr(0, 40));
 }
 
 /// The words of a text, and the lines on which they stand.
-class Words {
+class VtkWords {
  public:
-  explicit Words(const std::filesystem::path& path) : name_(path.string()) {
+  explicit VtkWords(const std::filesystem::path& path) : name_(path.string()) {
     std::ifstream stream(path, std::ios::binary);
     if (!stream || !std::filesystem::is_regular_file(path)) throw BadInput(name_ + ": no such file");
     text_.assign(std::istreambuf_iterator<char>(stream), std::istreambuf_iterator<char>());
@@ -90,9 +88,9 @@ class Words {
 };
 
 /// Holds so many numbers against what is left of the file, before anything is allocated for them.
-void require_room(const Words& words, std::uint64_t count, std::uint64_t each) {
-  if (count > kPointsMax) {
-    words.fail("promises " + std::to_string(count) + " points, at most " + std::to_string(kPointsMax) +
+void require_room(const VtkWords& words, std::uint64_t count, std::uint64_t each) {
+  if (count > kCloudPointsMax) {
+    words.fail("promises " + std::to_string(count) + " points, at most " + std::to_string(kCloudPointsMax) +
                " are read from a file");
   }
   if (count * each * 2 > words.left() + 1) {
@@ -101,7 +99,7 @@ void require_room(const Words& words, std::uint64_t count, std::uint64_t each) {
   }
 }
 
-void read_points(Words& words, Cloud& cloud) {
+void read_points(VtkWords& words, Cloud& cloud) {
   if (!cloud.names.empty()) words.fail("POINTS stands twice");
   cloud.points = words.whole("the number of points");
   words.need("the points' type");
@@ -113,19 +111,19 @@ void read_points(Words& words, Cloud& cloud) {
   }
 }
 
-void pass_over(Words& words, std::uint64_t count, std::uint64_t each) {
+void pass_over(VtkWords& words, std::uint64_t count, std::uint64_t each) {
   require_room(words, count, each);
   for (std::uint64_t i = 0; i < count * each; ++i) words.number();
 }
 
 /// VERTICES lines numbers: so many numbers follow.
-void pass_vertices(Words& words) {
+void pass_vertices(VtkWords& words) {
   words.whole("the number of vertices");
   pass_over(words, words.whole("the numbers of the vertices"), 1);
 }
 
 /// SCALARS name type [numbers a point], LOOKUP_TABLE name, a line each; then the numbers.
-void read_scalars(Words& words, Cloud& cloud) {
+void read_scalars(VtkWords& words, Cloud& cloud) {
   const std::string name(words.need("the name of scalars"));
   words.need("the scalars' type");
   std::uint64_t each = 1;
@@ -148,7 +146,7 @@ void read_scalars(Words& words, Cloud& cloud) {
 }
 
 /// NORMALS, VECTORS, TENSORS name type, COLOR_SCALARS name numbers.
-void pass_data(Words& words, const Cloud& cloud, std::string_view section) {
+void pass_data(VtkWords& words, const Cloud& cloud, std::string_view section) {
   words.need("a name");
   if (section == "COLOR_SCALARS") {
     const std::uint64_t each = words.whole("the numbers of a colour");
@@ -159,7 +157,7 @@ void pass_data(Words& words, const Cloud& cloud, std::string_view section) {
   pass_over(words, cloud.points, section == "TENSORS" ? 9 : 3);
 }
 
-void read_header(Words& words) {
+void read_header(VtkWords& words) {
   if (!words.line().starts_with("# vtk DataFile Version")) words.fail("begins as no VTK file does");
   words.line();  // a title
   const std::string_view encoding = words.need("ASCII");
@@ -172,7 +170,7 @@ void read_header(Words& words) {
 }  // namespace
 
 Cloud read_vtk(const std::filesystem::path& path) {
-  Words words(path);
+  VtkWords words(path);
   read_header(words);
   Cloud cloud;
   bool of_points = false;

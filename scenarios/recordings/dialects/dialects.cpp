@@ -5,7 +5,7 @@ namespace tumble::scenarios {
 
 namespace {
 
-constexpr double kByte = 255.0;
+constexpr double kIntensityScale = 255.0;
 
 SweepLayout layout_with(const PointColumn& times) {
   using enum PointQuantity;
@@ -13,7 +13,7 @@ SweepLayout layout_with(const PointColumn& times) {
   return {{{"x", x_m, float32},
            {"y", y_m, float32},
            {"z", z_m, float32},
-           {"intensity", intensity, float32, kByte},
+           {"intensity", intensity, float32, kIntensityScale},
            {"ring", ring, uint16},
            times},
           false,

@@ -11,7 +11,7 @@ namespace tumble::scenarios {
 
 namespace {
 
-ReaderNames names(const SensorFacts&) {
+ReaderNames dlio_names(const SensorFacts&) {
   return {"/os_cloud_node/imu", "imu", "/os_cloud_node/points", "lidar", "base_link", ""};
 }
 
@@ -102,7 +102,7 @@ dlio:
                      decimal(facts.lidar->own_body_m));
 }
 
-std::vector<ConfigurationFile> configuration(const SensorFacts& facts, const ReaderNames& names) {
+std::vector<ConfigurationFile> dlio_configuration(const SensorFacts& facts, const ReaderNames& names) {
   return {{"dlio.yaml", sensors_file(facts)}, {"params.yaml", params_file(facts, names)}};
 }
 
@@ -111,9 +111,9 @@ std::vector<ConfigurationFile> configuration(const SensorFacts& facts, const Rea
 Dialect dlio_dialect() {
   const char* repository = "vectr-ucla/direct_lidar_inertial_odometry";
   Dialect out{"dlio", "rosbag1", "recording.bag"};
-  out.names = names;
+  out.names = dlio_names;
   out.sweeps = ouster_layout;
-  out.configuration = configuration;
+  out.configuration = dlio_configuration;
   out.run = "roslaunch direct_lidar_inertial_odometry dlio.launch; rosbag play recording.bag";
   out.notes = {"it averages the IMU while it is still at the start; a recording that does not rest has no level"};
   out.sources = {{repository, "include/dlio/dlio.h", "07bf91ed0e1adb726765cb82a466dca0dccb1e18"},

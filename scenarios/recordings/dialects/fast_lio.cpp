@@ -9,7 +9,7 @@ namespace tumble::scenarios {
 
 namespace {
 
-std::vector<ConfigurationFile> configuration(const SensorFacts& facts, const ReaderNames& names) {
+std::vector<ConfigurationFile> fast_lio_configuration(const SensorFacts& facts, const ReaderNames& names) {
   const ImuFacts& imu = *facts.imu;
   const LidarFacts& lidar = *facts.lidar;
   const Eigen::Isometry3d T_IL = facts.T_IL();
@@ -63,7 +63,7 @@ Dialect fast_lio_dialect() {
   Dialect out{"fast-lio", "rosbag1", "recording.bag"};
   out.names = fast_lio_names;
   out.sweeps = fast_lio_layout;
-  out.configuration = configuration;
+  out.configuration = fast_lio_configuration;
   out.run = "roslaunch fast_lio mapping_velodyne.launch (mapping_avia.launch of a Livox); rosbag play recording.bag";
   out.notes = {"it knows no rail: what the gyro clips is taken for a reading"};
   out.sources = {{"hku-mars/FAST_LIO", "src/preprocess.h", "19f2212d16c4ec77e160fe81c3af0d3ea931196a"},

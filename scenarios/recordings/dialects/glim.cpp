@@ -8,7 +8,7 @@ namespace tumble::scenarios {
 
 namespace {
 
-ReaderNames names(const SensorFacts&) {
+ReaderNames glim_names(const SensorFacts&) {
   return {"/os_cloud_node/imu", "imu", "/os_cloud_node/points", "lidar", "base_link", ""};
 }
 
@@ -17,7 +17,7 @@ double density(double stated, double authors) {
   return stated > 0.0 ? stated : authors;
 }
 
-std::vector<ConfigurationFile> configuration(const SensorFacts& facts, const ReaderNames& names) {
+std::vector<ConfigurationFile> glim_configuration(const SensorFacts& facts, const ReaderNames& names) {
   const Eigen::Isometry3d T_LI = facts.T_IL().inverse(Eigen::Isometry);
   const Eigen::Quaterniond q = Eigen::Quaterniond(T_LI.linear()).normalized();
   const Eigen::Vector3d p = T_LI.translation();
@@ -40,9 +40,9 @@ std::vector<ConfigurationFile> configuration(const SensorFacts& facts, const Rea
 
 Dialect glim_dialect() {
   Dialect out{"glim", "rosbag2", "bag"};
-  out.names = names;
+  out.names = glim_names;
   out.sweeps = ouster_layout;
-  out.configuration = configuration;
+  out.configuration = glim_configuration;
   out.run =
       "these two files over a copy of glim/config; ros2 run glim_ros glim_rosbag bag --ros-args -p config_path:=COPY";
   out.notes = {"imu_acc_noise and imu_gyro_noise are the sheet's densities; its authors' 0.05 and 0.02 allow for more"};

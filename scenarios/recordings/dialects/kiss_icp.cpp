@@ -9,11 +9,11 @@ namespace tumble::scenarios {
 
 namespace {
 
-ReaderNames names(const SensorFacts&) {
+ReaderNames kiss_icp_names(const SensorFacts&) {
   return {"/imu", "imu", "/lidar/points", "lidar", "base_link", ""};
 }
 
-std::vector<ConfigurationFile> configuration(const SensorFacts& facts, const ReaderNames&) {
+std::vector<ConfigurationFile> kiss_icp_configuration(const SensorFacts& facts, const ReaderNames&) {
   const std::string text = fmt::format(R"(# what stands not here is as the authors have it
 data:
   deskew: {}
@@ -30,9 +30,9 @@ Dialect kiss_icp_dialect() {
   // MCAP its fields of points are not found with those of mcap-ros2-support 0.5.7 and 0.6.0.
   Dialect out{"kiss-icp", "rosbag1", "recording.bag"};
   out.needs_imu = out.needs_times = false;
-  out.names = names;
+  out.names = kiss_icp_names;
   out.sweeps = ouster_layout;
-  out.configuration = configuration;
+  out.configuration = kiss_icp_configuration;
   out.run = "kiss_icp_pipeline --topic /lidar/points --config kiss_icp.yaml recording.bag";
   out.notes = {
       "pip install kiss-icp pyyaml rosbags: it reads its configuration by PyYAML and bags by rosbags, and asks for "

@@ -9,16 +9,16 @@ namespace tumble::scenarios {
 
 namespace {
 
-ReaderNames names(const SensorFacts&) {
+ReaderNames lio_sam_names(const SensorFacts&) {
   return {"/imu_raw", "imu", "/points_raw", "lidar", "base_link", ""};
 }
 
 /// The sheet's density, or the authors' where none is stated.
-std::string density(double stated, const char* authors) {
+std::string density_text(double stated, const char* authors) {
   return stated > 0.0 ? decimal(stated) : authors;
 }
 
-std::vector<ConfigurationFile> configuration(const SensorFacts& facts, const ReaderNames& names) {
+std::vector<ConfigurationFile> lio_sam_configuration(const SensorFacts& facts, const ReaderNames& names) {
   const ImuFacts& imu = *facts.imu;
   const LidarFacts& lidar = *facts.lidar;
   const Eigen::Isometry3d T_LI = facts.T_IL().inverse(Eigen::Isometry);
@@ -84,8 +84,8 @@ lio_sam:
       fmt::arg("points", names.points_topic), fmt::arg("imu", names.imu_topic), fmt::arg("frame", names.lidar_frame),
       fmt::arg("rings", lidar.rings), fmt::arg("columns", lidar.columns), fmt::arg("near", decimal(lidar.own_body_m)),
       fmt::arg("far", decimal(whole_metres(lidar.farthest_m))),
-      fmt::arg("acc", density(imu.accel_noise_m_s2_sqrt_hz, "3.9939570888238808e-03")),
-      fmt::arg("gyr", density(imu.gyro_noise_rad_s_sqrt_hz, "1.5636343949698187e-03")),
+      fmt::arg("acc", density_text(imu.accel_noise_m_s2_sqrt_hz, "3.9939570888238808e-03")),
+      fmt::arg("gyr", density_text(imu.gyro_noise_rad_s_sqrt_hz, "1.5636343949698187e-03")),
       fmt::arg("gravity", decimal(facts.gravity_m_s2)), fmt::arg("T", translation_of(T_LI)), fmt::arg("R", R));
   return {{"params.yaml", text}};
 }
@@ -95,9 +95,9 @@ lio_sam:
 Dialect lio_sam_dialect() {
   Dialect out{"lio-sam", "rosbag1", "recording.bag"};
   out.needs_rings = true;
-  out.names = names;
+  out.names = lio_sam_names;
   out.sweeps = velodyne_layout;
-  out.configuration = configuration;
+  out.configuration = lio_sam_configuration;
   out.run = "roslaunch lio_sam run.launch; rosbag play recording.bag";
   out.notes = {
       "it is made for an IMU with an attitude; these readings have none (identity, covariance -1): it starts as if the "

@@ -9,7 +9,7 @@ namespace tumble::scenarios {
 
 namespace {
 
-ReaderNames names(const SensorFacts&) {
+ReaderNames norlab_names(const SensorFacts&) {
   return {"/imu/data", "imu", "/points_in", "lidar", "base_link", "odom"};
 }
 
@@ -92,7 +92,7 @@ post:
                      fmt::arg("near", decimal(facts.lidar->own_body_m)));
 }
 
-std::vector<ConfigurationFile> configuration(const SensorFacts& facts, const ReaderNames& names) {
+std::vector<ConfigurationFile> norlab_configuration(const SensorFacts& facts, const ReaderNames& names) {
   return {{"mapper_node.yaml", node_file(names)}, {"mapper.yaml", mapper_file(facts)}};
 }
 
@@ -102,9 +102,9 @@ Dialect norlab_dialect() {
   const char* repository = "norlab-ulaval/norlab_icp_mapper_ros";
   Dialect out{"norlab", "rosbag2", "bag"};
   out.needs_imu = out.needs_times = false;
-  out.names = names;
+  out.names = norlab_names;
   out.sweeps = ouster_layout;
-  out.configuration = configuration;
+  out.configuration = norlab_configuration;
   out.run = "ros2 run norlab_icp_mapper_ros mapper_node --ros-args --params-file mapper_node.yaml; ros2 bag play bag";
   out.notes = {
       "it asks for the lidar in odom at each cloud: base_link stands still there in /tf_static, so that the last pose "

@@ -16,7 +16,7 @@ double rail(double stated, double largest) {
   return std::max(stated, largest);
 }
 
-std::vector<ConfigurationFile> configuration(const SensorFacts& facts, const ReaderNames& names) {
+std::vector<ConfigurationFile> point_lio_configuration(const SensorFacts& facts, const ReaderNames& names) {
   const ImuFacts& imu = *facts.imu;
   const LidarFacts& lidar = *facts.lidar;
   const Eigen::Isometry3d T_IL = facts.T_IL();
@@ -94,7 +94,7 @@ Dialect point_lio_dialect() {
   Dialect out{"point-lio", "rosbag1", "recording.bag"};
   out.names = fast_lio_names;
   out.sweeps = fast_lio_layout;
-  out.configuration = configuration;
+  out.configuration = point_lio_configuration;
   out.run = "roslaunch point_lio mapping_velody16.launch (mapping_avia.launch of a Livox); rosbag play recording.bag";
   out.notes = {
       "check_satu is on by default: an axis at 0.99 of satu_gyro or satu_acc or above is left out of the update"};

@@ -9,11 +9,11 @@ namespace tumble::scenarios {
 
 namespace {
 
-ReaderNames names(const SensorFacts&) {
+ReaderNames rko_lio_names(const SensorFacts&) {
   return {"/imu", "imu", "/lidar/points", "lidar", "base_link", ""};
 }
 
-std::vector<ConfigurationFile> configuration(const SensorFacts& facts, const ReaderNames&) {
+std::vector<ConfigurationFile> rko_lio_configuration(const SensorFacts& facts, const ReaderNames&) {
   const std::string text = fmt::format(R"(# what stands not here is as the authors have it
 deskew: true
 max_range: {}   # m, farthest return
@@ -34,9 +34,9 @@ extrinsic_lidar2base_quat_xyzw_xyz: {}
 
 Dialect rko_lio_dialect() {
   Dialect out{"rko-lio", "rosbag2", "bag"};
-  out.names = names;
+  out.names = rko_lio_names;
   out.sweeps = ouster_layout;
-  out.configuration = configuration;
+  out.configuration = rko_lio_configuration;
   out.run = "rko_lio -c rko_lio.yaml --imu /imu --lidar /lidar/points bag";
   out.notes = {"its noise is not asked for; its poses are those of base_link"};
   out.sources = {

@@ -72,6 +72,10 @@ bool CsvText::next(CsvLine& line) {
   return true;
 }
 
+void fail(const CsvLine& line, const std::string& what) {
+  throw BadInput(line.where + ": " + what);
+}
+
 double csv_number(const CsvLine& line, std::size_t index, const std::string& column) {
   const std::string_view text = line.fields[index];
   double value = 0.0;

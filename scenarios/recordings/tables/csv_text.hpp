@@ -34,6 +34,9 @@ class CsvText {
   int number_ = 0;
 };
 
+/// Throws BadInput: where the line stands, and what is wrong with it.
+[[noreturn]] void fail(const CsvLine& line, const std::string& what);
+
 /// A finite number. Throws BadInput with the place and `column`, the name or number of the column.
 double csv_number(const CsvLine& line, std::size_t index, const std::string& column);
 

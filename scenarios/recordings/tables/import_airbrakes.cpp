@@ -18,12 +18,11 @@ namespace tumble::scenarios {
 
 namespace {
 
-constexpr const char* kAttribution =
+constexpr const char* kAirbrakesAttribution =
     "AirbrakesV2, NCSU High-Powered Rocketry Club (github.com/NCSU-High-Powered-Rocketry-Club/AirbrakesV2), MIT; ";
-constexpr double kStampMax_s = 1e9;
-constexpr double kTeslaPerMicrotesla = 1e-6;
+constexpr double kAirbrakesStampMax_s = 1e9;
 /// No estimator bridges more.
-constexpr std::int64_t kGap_ns = 1'000'000'000;
+constexpr std::int64_t kBridgedGap_ns = 1'000'000'000;
 
 using Columns3 = std::array<std::size_t, 3>;
 
@@ -56,7 +55,7 @@ void keep_longest_segment(sim::ImuRecord& imu, std::vector<std::string>& notes) 
   const std::size_t count = imu.time_ns.size();
   std::size_t first = 0, end = 0, gaps = 0;
   for (std::size_t begin = 0, k = 1; k <= count; ++k) {
-    if (k < count && imu.time_ns[k] - imu.time_ns[k - 1] <= kGap_ns) continue;
+    if (k < count && imu.time_ns[k] - imu.time_ns[k - 1] <= kBridgedGap_ns) continue;
     if (k - begin > end - first) first = begin, end = k;
     gaps += k < count ? 1 : 0;
     begin = k;
@@ -99,9 +98,9 @@ Imported import_airbrakes(const std::filesystem::path& path) {
                      std::to_string(count) + "; must be equal");
     }
     const double time_s = csv_number(line, stamp, "timestamp_seconds");
-    if (!(time_s >= 0.0 && time_s <= kStampMax_s)) {
-      throw BadInput(
-          fmt::format("{}: timestamp_seconds is {}, must be within 0 and {}", line.where, time_s, kStampMax_s));
+    if (!(time_s >= 0.0 && time_s <= kAirbrakesStampMax_s)) {
+      throw BadInput(fmt::format("{}: timestamp_seconds is {}, must be within 0 and {}", line.where, time_s,
+                                 kAirbrakesStampMax_s));
     }
     const std::int64_t time_ns = std::llround(time_s * 1e9);
     if (!imu.time_ns.empty() && time_ns == imu.time_ns.back()) {
@@ -122,7 +121,7 @@ Imported import_airbrakes(const std::filesystem::path& path) {
        {require_plausible_rates(path.string(), imu, GyroUnit::deg_s), accel_rail_text(imu.accel_m_s2)}) {
     if (!note.empty()) out.notes.push_back(note);
   }
-  out.info.attribution = kAttribution + path.filename().string();
+  out.info.attribution = kAirbrakesAttribution + path.filename().string();
   out.info.origin_ns = first_ns;
   out.sensors.imus.push_back(std::move(imu));
   const std::string problem = find_problem(out.sensors);

@@ -4,10 +4,12 @@
 #include <limits>
 
 #include "scenarios/errors.hpp"
+#include "scenarios/not_finite.hpp"
 #include "scenarios/recordings/hdf5_file.hpp"
 #include "scenarios/recordings/import.hpp"
 #include "scenarios/recordings/recording_check.hpp"
 #include "scenarios/recordings/recording_file.hpp"
+#include "scenarios/recordings/tables/imu_readings.hpp"
 #include "scenarios/recordings/trajectories/reference.hpp"
 #include "scenarios/recordings/trajectories/reference_rate.hpp"
 
@@ -15,16 +17,13 @@ namespace tumble::scenarios {
 
 namespace {
 
-constexpr const char* kAttribution =
+constexpr const char* kBroadAttribution =
     "D. Laidig, M. Caruso, A. Cereatti, T. Seel: BROAD - A Benchmark for Robust Inertial Orientation Estimation, "
     "Data 2021, 6(7), 72; CC BY 4.0; trial ";
 
-constexpr double kTeslaPerMicrotesla = 1e-6;
 /// Half the span over which the reference is differentiated: 70 ms, so that its noise at rest stays below the bounds by
 /// which scores tell rest from motion (measured: 0.022 rad/s at half of this); fast turns are blurred.
-constexpr std::size_t kReach = 20;
-
-constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
+constexpr std::size_t kSlopeReach = 20;
 
 sim::ImuRecord read_imu(const hdf5::Group& root, double rate_hz) {
   sim::ImuRecord imu;
@@ -83,7 +82,7 @@ std::optional<sim::Truth> read_reference(const hdf5::Group& root, const sim::Imu
       root.fail(name, "has " + std::to_string(rows) + " rows, imu_gyr has " + std::to_string(imu.time_ns.size()));
     }
   }
-  differentiate(truth, kReach);
+  differentiate(truth, kSlopeReach);
   sim::ImuTruth own;
   own.name = imu.name;
   own.rate_rad_s = reference_rates(known_poses(truth, imu), imu.time_ns);
@@ -101,7 +100,7 @@ Imported import_broad(const std::filesystem::path& path) {
   const double rate_hz = root.double_attribute("sampling_rate");
   if (!(rate_hz >= 1.0 && rate_hz <= 1e5)) root.fail("sampling_rate", "must be within 1 and 100000 Hz");
   Imported out;
-  out.info.attribution = kAttribution + path.stem().string();
+  out.info.attribution = kBroadAttribution + path.stem().string();
   out.sensors.imus.push_back(read_imu(root, rate_hz));
   out.reference = read_reference(root, out.sensors.imus.front());
   std::string problem = find_problem(out.sensors);

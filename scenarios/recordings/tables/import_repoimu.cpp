@@ -9,6 +9,7 @@
 #include <string>
 
 #include "scenarios/errors.hpp"
+#include "scenarios/not_finite.hpp"
 #include "scenarios/recordings/import.hpp"
 #include "scenarios/recordings/recording_check.hpp"
 #include "scenarios/recordings/tables/csv_text.hpp"
@@ -23,19 +24,18 @@ namespace tumble::scenarios {
 
 namespace {
 
-constexpr const char* kAttribution =
+constexpr const char* kRepoimuAttribution =
     "RepoIMU: A. Szczesna, P. Skurowski, P. Pruszowski, D. Peszor, M. Paszkuta, K. Wojciechowski: Reference Data Set "
     "for Accuracy Evaluation of Orientation Estimation Algorithms for Inertial Motion Capture Systems, ICCVG 2016; ";
 
-constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
-constexpr double kBadNormShareMax = 0.2, kNormTolerance = 1e-2;
-constexpr double kStampMax_s = 86400.0;
+constexpr double kBadNormShareMax = 0.2;
+constexpr double kRepoimuStampMax_s = 86400.0;
 /// Rows on either side that tell how finely stamps are printed around a row.
 constexpr std::size_t kDigitsReach = 50;
 constexpr double kCoarse = 0.02;  // of a step: printed more coarsely than this is worth a remark
 
 /// The groups of columns, and where each column stands.
-struct Columns {
+struct RepoimuColumns {
   std::size_t time = 0;
   std::array<std::size_t, 4> attitude{};  ///< w x y z
   std::array<std::size_t, 3> force{}, rate{};
@@ -50,10 +50,6 @@ struct Log {
   std::size_t decimal_commas = 0;
   std::vector<std::string> where;
 };
-
-[[noreturn]] void fail(const CsvLine& line, const std::string& what) {
-  throw BadInput(line.where + ": " + what);
-}
 
 /// "Vicon Orientation/W": the group's name stands above its first column.
 std::vector<std::string> column_names(const CsvLine& groups, const CsvLine& names) {
@@ -70,9 +66,9 @@ std::vector<std::string> column_names(const CsvLine& groups, const CsvLine& name
   return full;
 }
 
-Columns columns_of(const CsvLine& groups, const CsvLine& second) {
+RepoimuColumns columns_of(const CsvLine& groups, const CsvLine& second) {
   std::vector<std::string> names = column_names(groups, second);
-  Columns columns;
+  RepoimuColumns columns;
   columns.count = names.size();
   columns.open_ended = groups.fields.back().empty() && second.fields.back().empty();
   if (columns.open_ended) names.pop_back();
@@ -98,9 +94,9 @@ Columns columns_of(const CsvLine& groups, const CsvLine& second) {
 }
 
 /// A published file holds a value with a decimal comma among thousands with points; between ';' it is no separator.
-class Numbers {
+class DecimalNumbers {
  public:
-  Numbers(const CsvLine& line, std::size_t& commas) : line_(line), commas_(commas) {}
+  DecimalNumbers(const CsvLine& line, std::size_t& commas) : line_(line), commas_(commas) {}
   double at(std::size_t column, const char* name) {
     const std::string_view text = line_.fields[column];
     const std::size_t comma = text.find(',');
@@ -152,7 +148,7 @@ Log read_log(const std::filesystem::path& path) {
   CsvLine groups, line;
   text.next(groups);
   if (!text.next(line)) throw BadInput(path.string() + ": ends in its header");
-  const Columns columns = columns_of(groups, line);
+  const RepoimuColumns columns = columns_of(groups, line);
   Log log;
   std::vector<int> digits;
   while (text.next(line)) {
@@ -162,10 +158,10 @@ Log read_log(const std::filesystem::path& path) {
       fail(line, "has " + std::to_string(found) + " columns, must have " +
                      std::to_string(columns.count - (columns.open_ended ? 1 : 0)));
     }
-    Numbers numbers(line, log.decimal_commas);
+    DecimalNumbers numbers(line, log.decimal_commas);
     const double time_s = numbers.at(columns.time, "Time");
-    if (!(time_s >= 0.0 && time_s <= kStampMax_s))
-      fail(line, fmt::format("Time is {} s, must be within 0 and {}", time_s, kStampMax_s));
+    if (!(time_s >= 0.0 && time_s <= kRepoimuStampMax_s))
+      fail(line, fmt::format("Time is {} s, must be within 0 and {}", time_s, kRepoimuStampMax_s));
     const std::int64_t time_ns = std::llround(time_s * 1e9);
     if (!log.readings.time_ns.empty() && time_ns < log.readings.time_ns.back()) {
       fail(line, fmt::format("Time goes back: {:.9g} s after {:.9g} s", time_s,
@@ -220,7 +216,7 @@ void steady(Log& log, std::vector<std::string>& notes) {
 void require_attitudes(const std::filesystem::path& path, const Log& log) {
   std::size_t bad = 0, first = 0;
   for (std::size_t k = 0; k < log.poses.size(); ++k) {
-    if (!(std::abs(log.poses[k].q_WA.norm() - 1.0) > kNormTolerance)) continue;
+    if (!(std::abs(log.poses[k].q_WA.norm() - 1.0) > kReferenceNormTolerance)) continue;
     if (bad++ == 0) first = k;
   }
   if (static_cast<double>(bad) <= kBadNormShareMax * static_cast<double>(log.poses.size())) return;
@@ -312,7 +308,7 @@ Imported import_repoimu(const std::filesystem::path& path, bool align) {
   if (log.decimal_commas > 0)
     out.notes.push_back(fmt::format("{} numbers with a decimal comma, read as such", log.decimal_commas));
   out.notes.push_back("the magnetometer's columns have no unit: left out");
-  out.info.attribution = kAttribution + path.filename().string();
+  out.info.attribution = kRepoimuAttribution + path.filename().string();
   out.sensors.imus.push_back(std::move(imu));
   add_reference(path, log, align, out);
   std::string problem = find_problem(out.sensors);

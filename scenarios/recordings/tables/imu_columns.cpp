@@ -9,22 +9,19 @@
 
 #include "scenarios/draw/strict_yaml.hpp"
 #include "scenarios/errors.hpp"
+#include "scenarios/recordings/tables/csv_text.hpp"
 #include "scenarios/recordings/tables/logger_columns.hpp"
 #include "scenarios/recordings/upper_median.hpp"
+#include "scenarios/recordings/whole_seconds.hpp"
 
 namespace tumble::scenarios {
 
 namespace {
 
-constexpr std::int64_t kSecond_ns = 1000000000;
-constexpr std::int64_t kLatest_ns = 9'000'000'000 * kSecond_ns;  // the year 2255
+constexpr std::int64_t kLatest_ns = kSecondsMax * kSecond_ns;
 
-/// Columns that a header-less sensor_msgs/Imu must have.
+/// RequiredColumns that a header-less sensor_msgs/Imu must have.
 constexpr std::size_t kColumnsByPlace = 15;
-
-[[noreturn]] void fail(const CsvLine& line, const std::string& what) {
-  throw BadInput(line.where + ": " + what);
-}
 
 const std::array<std::string, 3> kAxes = {"x", "y", "z"};
 
@@ -57,9 +54,9 @@ std::optional<std::size_t> find_any(const CsvLine& header, const std::vector<std
 }
 
 /// Collects the columns of a header that must all be there.
-class Columns {
+class RequiredColumns {
  public:
-  explicit Columns(const CsvLine& header) : header_(header) {}
+  explicit RequiredColumns(const CsvLine& header) : header_(header) {}
   void take(const std::optional<std::size_t>& place, const std::string& name, std::size_t& column) {
     if (place)
       column = *place, ++found_;
@@ -82,7 +79,7 @@ class Columns {
 /// ".../header/stamp" and so on, as tools that flatten messages write them.
 std::optional<ImuColumns> flattened(const CsvLine& header) {
   ImuColumns layout;
-  Columns columns(header);
+  RequiredColumns columns(header);
   columns.take(find_ending(header, "header/stamp"), "header/stamp", layout.stamp);
   for (std::size_t axis = 0; axis < 3; ++axis) {
     const std::string rate = "angular_velocity/" + kAxes[axis], force = "linear_acceleration/" + kAxes[axis];
@@ -96,7 +93,7 @@ std::optional<ImuColumns> flattened(const CsvLine& header) {
 /// "wx_rad_s" or "wx", "fx_m_s2", "fx" or "ax", "stamp_s", "sec", "secs" or "s" with "stamp_ns" and so on.
 std::optional<ImuColumns> named(const CsvLine& header) {
   ImuColumns layout;
-  Columns columns(header);
+  RequiredColumns columns(header);
   columns.take(find_any(header, {"stamp_s", "sec", "secs", "s"}), "stamp_s", layout.stamp);
   columns.take(find_any(header, {"stamp_ns", "nsec", "nsecs", "ns"}), "stamp_ns", layout.stamp_ns);
   for (std::size_t i = 0; i < 3; ++i) {

@@ -10,12 +10,12 @@
 #include "scenarios/recordings/clouds/sweep_stamps.hpp"
 #include "scenarios/recordings/rounded_stamps.hpp"
 #include "scenarios/recordings/upper_median.hpp"
+#include "scenarios/standard_gravity.hpp"
 
 namespace tumble::scenarios {
 
 namespace {
 
-constexpr double kG_m_s2 = 9.80665;
 /// At rest and while rolling or carried the median is near g; in g, mg or raw counts it is not.
 constexpr double kLeastMedian_m_s2 = 3.0, kLargestMedian_m_s2 = 30.0;
 
@@ -32,8 +32,8 @@ bool near_factor(double ratio, double factor) {
 /// The unit that would make the median gravity's size; of counts nobody knows the scale.
 const char* likely_force_unit(double median, AccelUnit read_as) {
   constexpr double kThousand = 1000.0;
-  const double numbers = read_as == AccelUnit::g ? median / kG_m_s2 : median;
-  if (near_factor(numbers, kG_m_s2)) return "m/s^2";
+  const double numbers = read_as == AccelUnit::g ? median / kStandardGravity_m_s2 : median;
+  if (near_factor(numbers, kStandardGravity_m_s2)) return "m/s^2";
   if (near_factor(numbers, 1.0)) return "g";
   return near_factor(numbers, kThousand) ? "mg" : "raw counts of the sensor";
 }
@@ -107,13 +107,15 @@ GravityTurn gravity_turn(const sim::ImuRecord& imu, TurnWindows windows) {
   GravityTurn turn;
   double said2 = 0.0, seen2 = 0.0, both = 0.0;
   const std::size_t count = imu.time_ns.size();
-  const auto near = [&](std::size_t k) { return std::abs(imu.accel_m_s2[k].norm() / kG_m_s2 - 1.0) < kNearGravity; };
+  const auto near = [&](std::size_t k) {
+    return std::abs(imu.accel_m_s2[k].norm() / kStandardGravity_m_s2 - 1.0) < kNearGravity;
+  };
   for (std::size_t begin = 0; begin + 4 < count;) {
     std::size_t end = begin;
     Eigen::Vector3d angle = Eigen::Vector3d::Zero();
     const auto turned = [&] {
       return windows == TurnWindows::brisk && end >= begin + 4 &&
-             (imu.accel_m_s2[end] - imu.accel_m_s2[begin]).norm() > kBriskTurn * kG_m_s2;
+             (imu.accel_m_s2[end] - imu.accel_m_s2[begin]).norm() > kBriskTurn * kStandardGravity_m_s2;
     };
     while (end + 1 < count && near(end) && !turned() &&
            1e-9 * static_cast<double>(imu.time_ns[end] - imu.time_ns[begin]) < kTurnWindow_s) {
@@ -133,7 +135,7 @@ GravityTurn gravity_turn(const sim::ImuRecord& imu, TurnWindows windows) {
       const Eigen::Vector3d seen = (last - first) / static_cast<double>(quarter);
       const double share = 1.0 - static_cast<double>(quarter - 1) / static_cast<double>(end - begin);
       const Eigen::Vector3d said = -share * angle.cross(middle / static_cast<double>(end - begin + 1));
-      if (seen.norm() > kLeastTurn * kG_m_s2 && seen.norm() < kMostTurn * kG_m_s2) {
+      if (seen.norm() > kLeastTurn * kStandardGravity_m_s2 && seen.norm() < kMostTurn * kStandardGravity_m_s2) {
         ++turn.windows;
         both += said.dot(seen), said2 += said.squaredNorm(), seen2 += seen.squaredNorm();
       }
@@ -222,7 +224,7 @@ std::string even_out_stamps(sim::ImuRecord& imu) {
 }
 
 double scale_of(AccelUnit unit) {
-  return unit == AccelUnit::g ? kG_m_s2 : 1.0;
+  return unit == AccelUnit::g ? kStandardGravity_m_s2 : 1.0;
 }
 
 double scale_of(GyroUnit unit) {

@@ -47,6 +47,9 @@ GravityTurn gravity_turn(const sim::ImuRecord& imu, TurnWindows windows = TurnWi
 /// is stated).
 std::string require_plausible_rates(const std::string& where, const sim::ImuRecord& imu, GyroUnit unit);
 
+/// What magnetometers are read in.
+inline constexpr double kTeslaPerMicrotesla = 1e-6;
+
 /// m/s^2 and rad/s of one unit.
 double scale_of(AccelUnit unit);
 double scale_of(GyroUnit unit);

@@ -87,9 +87,9 @@ std::optional<std::size_t> axis_of(const std::vector<std::string_view>& names, s
 }
 
 /// Takes the columns of one quantity out of a header.
-class Reader {
+class HeaderReader {
  public:
-  explicit Reader(const CsvLine& header) : header_(header), taken_(header.fields.size(), false) {}
+  explicit HeaderReader(const CsvLine& header) : header_(header), taken_(header.fields.size(), false) {}
 
   std::optional<int> time(std::size_t& column) {
     const auto is_time = [](std::string_view quantity) { return is_one_of(kTimes, quantity); };
@@ -172,7 +172,7 @@ class Reader {
 std::optional<ImuColumns> logger_columns(const CsvLine& header) {
   ImuColumns columns;
   columns.stamp_form = StampForm::decimal;
-  Reader reader(header);
+  HeaderReader reader(header);
   columns.gyro_unit = reader.triad(kRates, kRateUnits, "gyro", columns.rate);
   columns.accel_unit = reader.triad(kForces, kForceUnits, "accel", columns.force);
   const std::size_t readings = reader.taken();

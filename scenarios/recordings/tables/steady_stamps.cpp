@@ -10,7 +10,7 @@ namespace tumble::scenarios {
 
 namespace {
 
-constexpr std::size_t kReach = 10;
+constexpr std::size_t kLineReach = 10;
 constexpr double kGapSteps = 1.3;
 /// Below this a line through a raster differs from it by rounding alone.
 constexpr std::int64_t kSame_ns = 1000;
@@ -42,9 +42,9 @@ std::vector<std::int64_t> steady_stamps(std::span<const std::int64_t> stamps_ns,
   std::size_t piece = 0;  // where the piece without a gap begins
   for (std::size_t k = 0; k < stamps_ns.size(); ++k) {
     if (k > 0 && gap_before(k)) piece = k;
-    const std::size_t first = std::max(piece, k > kReach ? k - kReach : 0);
+    const std::size_t first = std::max(piece, k > kLineReach ? k - kLineReach : 0);
     std::size_t last = k;
-    while (last + 1 < stamps_ns.size() && last < k + kReach && !gap_before(last + 1)) ++last;
+    while (last + 1 < stamps_ns.size() && last < k + kLineReach && !gap_before(last + 1)) ++last;
     const auto offset = std::llround(line_offset_ns(stamps_ns, bounds, first, last, k));
     if (std::abs(offset) > kSame_ns)
       steady[k] += std::clamp<std::int64_t>(offset, -bounds[k].before_ns, bounds[k].after_ns);

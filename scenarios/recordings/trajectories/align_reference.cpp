@@ -10,19 +10,19 @@
 
 #include "scenarios/recordings/trajectories/reference_rate.hpp"
 #include "scenarios/recordings/upper_median.hpp"
+#include "scenarios/standard_gravity.hpp"
 #include "tumble/common/so3.hpp"
 
 namespace tumble::scenarios {
 
 namespace {
 
-constexpr double kG_m_s2 = 9.80665;
 constexpr double kFreeShare = 0.9;
 constexpr double kTurning_rad_s = 0.5;
 constexpr std::size_t kLeastSamples = 200;
 constexpr int kSearch_ms = 100;
 constexpr double kSlopeStep_s = 4e-3;
-constexpr int kParts = 8;
+constexpr int kAlignmentParts = 8;
 constexpr int kRounds = 20;
 /// Standard deviations of the pairs, and how many samples in a row err alike.
 constexpr double kRateSigma_rad_s = 0.15, kForceSigma_m_s2 = 1.0;
@@ -31,7 +31,7 @@ constexpr double kRateRun = 5.0, kForceRun = 25.0;
 using Vectors = std::vector<Eigen::Vector3d>;
 
 /// A sample at which both speak.
-struct Pair {
+struct SamplePair {
   std::int64_t time_ns = 0;
   Eigen::Vector3d w_I, f_I;
   Eigen::Vector3d w_V = Eigen::Vector3d::Zero();  ///< at the delay in force
@@ -39,10 +39,10 @@ struct Pair {
   double speed_rad_s = 0.0;
 };
 
-std::vector<Pair> all_samples(const sim::ImuRecord& imu) {
-  std::vector<Pair> pairs;
+std::vector<SamplePair> all_samples(const sim::ImuRecord& imu) {
+  std::vector<SamplePair> pairs;
   for (std::size_t k = 0; k < imu.time_ns.size(); ++k) {
-    Pair pair;
+    SamplePair pair;
     pair.time_ns = imu.time_ns[k], pair.w_I = imu.gyro_rad_s[k], pair.f_I = imu.accel_m_s2[k];
     pair.speed_rad_s = pair.w_I.norm();
     pairs.push_back(pair);
@@ -50,24 +50,25 @@ std::vector<Pair> all_samples(const sim::ImuRecord& imu) {
   return pairs;
 }
 
-std::vector<Pair> free_samples(std::vector<Pair> pairs) {
+std::vector<SamplePair> free_samples(std::vector<SamplePair> pairs) {
   Eigen::Vector3d extreme = Eigen::Vector3d::Zero();
-  for (const Pair& pair : pairs) extreme = extreme.cwiseMax(pair.w_I.cwiseAbs());
-  std::erase_if(pairs, [&](const Pair& pair) {
+  for (const SamplePair& pair : pairs) extreme = extreme.cwiseMax(pair.w_I.cwiseAbs());
+  std::erase_if(pairs, [&](const SamplePair& pair) {
     return pair.speed_rad_s < kTurning_rad_s || (pair.w_I.cwiseAbs().array() > kFreeShare * extreme.array()).any();
   });
   return pairs;
 }
 
-std::vector<double> speeds_at(const std::vector<ReferencePose>& poses, const std::vector<Pair>& pairs, double delay_s) {
+std::vector<double> speeds_at(const std::vector<ReferencePose>& poses, const std::vector<SamplePair>& pairs,
+                              double delay_s) {
   std::vector<std::int64_t> times;
-  for (const Pair& pair : pairs) times.push_back(pair.time_ns + std::llround(delay_s * 1e9));
+  for (const SamplePair& pair : pairs) times.push_back(pair.time_ns + std::llround(delay_s * 1e9));
   std::vector<double> speeds;
   for (const Eigen::Vector3d& w : reference_rates(poses, times)) speeds.push_back(w.norm());
   return speeds;
 }
 
-double correlation(const std::vector<Pair>& pairs, const std::vector<double>& speeds) {
+double correlation(const std::vector<SamplePair>& pairs, const std::vector<double>& speeds) {
   double n = 0, a = 0, b = 0, aa = 0, bb = 0, ab = 0;
   for (std::size_t k = 0; k < pairs.size(); ++k) {
     const double x = pairs[k].speed_rad_s, y = speeds[k];
@@ -80,8 +81,8 @@ double correlation(const std::vector<Pair>& pairs, const std::vector<double>& sp
 
 /// One Gauss-Newton step of the delay on |w| of the samples [first, end); speeds a little earlier and later give
 /// the slope.
-double delay_step(const std::vector<Pair>& pairs, const std::array<std::vector<double>, 3>& speeds, std::size_t first,
-                  std::size_t end) {
+double delay_step(const std::vector<SamplePair>& pairs, const std::array<std::vector<double>, 3>& speeds,
+                  std::size_t first, std::size_t end) {
   std::vector<double> sizes;
   for (std::size_t k = first; k < end; ++k) {
     const double error = pairs[k].speed_rad_s - speeds[1][k];
@@ -99,7 +100,7 @@ double delay_step(const std::vector<Pair>& pairs, const std::array<std::vector<d
 }
 
 std::array<std::vector<double>, 3> speeds_around(const std::vector<ReferencePose>& poses,
-                                                 const std::vector<Pair>& pairs, double delay_s) {
+                                                 const std::vector<SamplePair>& pairs, double delay_s) {
   return {speeds_at(poses, pairs, delay_s - kSlopeStep_s), speeds_at(poses, pairs, delay_s),
           speeds_at(poses, pairs, delay_s + kSlopeStep_s)};
 }
@@ -114,10 +115,10 @@ double deviation_of_mean(const std::vector<double>& values) {
 
 /// Bounds of part i of n samples.
 std::array<std::size_t, 2> part(std::size_t i, std::size_t n) {
-  return {i * n / kParts, (i + 1) * n / kParts};
+  return {i * n / kAlignmentParts, (i + 1) * n / kAlignmentParts};
 }
 
-void estimate_delay(const std::vector<ReferencePose>& poses, const std::vector<Pair>& pairs,
+void estimate_delay(const std::vector<ReferencePose>& poses, const std::vector<SamplePair>& pairs,
                     ReferenceAlignment& alignment) {
   double best = -1.0;
   for (int ms = -kSearch_ms; ms <= kSearch_ms; ms += 5) {
@@ -131,7 +132,7 @@ void estimate_delay(const std::vector<ReferencePose>& poses, const std::vector<P
   }
   speeds = speeds_around(poses, pairs, alignment.delay_s);
   std::vector<double> steps;
-  for (std::size_t i = 0; i < kParts; ++i) {
+  for (std::size_t i = 0; i < kAlignmentParts; ++i) {
     const auto [first, end] = part(i, pairs.size());
     steps.push_back(delay_step(pairs, speeds, first, end));
   }
@@ -139,11 +140,11 @@ void estimate_delay(const std::vector<ReferencePose>& poses, const std::vector<P
 }
 
 /// What the reference says at the delay; pairs about which it says nothing go.
-void pair_up(const std::vector<ReferencePose>& poses, double delay_s, std::vector<Pair>& pairs) {
+void pair_up(const std::vector<ReferencePose>& poses, double delay_s, std::vector<SamplePair>& pairs) {
   std::vector<std::int64_t> times;
-  for (const Pair& pair : pairs) times.push_back(pair.time_ns + std::llround(delay_s * 1e9));
+  for (const SamplePair& pair : pairs) times.push_back(pair.time_ns + std::llround(delay_s * 1e9));
   const Vectors rates = reference_rates(poses, times);
-  std::vector<Pair> kept;
+  std::vector<SamplePair> kept;
   std::size_t next = 0;
   for (std::size_t k = 0; k < pairs.size(); ++k) {
     if (!rates[k].allFinite()) continue;
@@ -160,9 +161,9 @@ void pair_up(const std::vector<ReferencePose>& poses, double delay_s, std::vecto
 
 /// Gravity (up) in the reference's world, given the rotation: of all samples alike, since what the body gains in speed
 /// it loses again.
-Eigen::Vector3d up_in_world(const std::vector<Pair>& all, const Eigen::Quaterniond& q_IV) {
+Eigen::Vector3d up_in_world(const std::vector<SamplePair>& all, const Eigen::Quaterniond& q_IV) {
   Eigen::Vector3d sum = Eigen::Vector3d::Zero();
-  for (const Pair& pair : all) sum += pair.q_V * (q_IV.conjugate() * pair.f_I);
+  for (const SamplePair& pair : all) sum += pair.q_V * (q_IV.conjugate() * pair.f_I);
   return sum.normalized();
 }
 
@@ -181,20 +182,21 @@ Eigen::Quaterniond closest_rotation(const Eigen::Matrix3d& B) {
 }
 
 /// The rotation, given gravity, of samples [first, end).
-Eigen::Quaterniond rotation(const std::vector<Pair>& pairs, std::size_t first, std::size_t end,
+Eigen::Quaterniond rotation(const std::vector<SamplePair>& pairs, std::size_t first, std::size_t end,
                             const Eigen::Vector3d& up) {
   Eigen::Matrix3d B = Eigen::Matrix3d::Zero();
   for (std::size_t k = first; k < end; ++k) {
-    const Pair& pair = pairs[k];
-    const double departure = pair.f_I.norm() - kG_m_s2;
+    const SamplePair& pair = pairs[k];
+    const double departure = pair.f_I.norm() - kStandardGravity_m_s2;
     B += pair.w_I * pair.w_V.transpose() / (kRateSigma_rad_s * kRateSigma_rad_s * kRateRun);
-    B += pair.f_I * (kG_m_s2 * (pair.q_V.conjugate() * up)).transpose() /
+    B += pair.f_I * (kStandardGravity_m_s2 * (pair.q_V.conjugate() * up)).transpose() /
          ((kForceSigma_m_s2 * kForceSigma_m_s2 + departure * departure) * kForceRun);
   }
   return closest_rotation(B);
 }
 
-void estimate_rotation(const std::vector<Pair>& all, const std::vector<Pair>& pairs, ReferenceAlignment& alignment) {
+void estimate_rotation(const std::vector<SamplePair>& all, const std::vector<SamplePair>& pairs,
+                       ReferenceAlignment& alignment) {
   Eigen::Vector3d up = up_in_world(all, alignment.q_IV);
   for (int round = 0; round < kRounds; ++round) {
     alignment.q_IV = rotation(pairs, 0, pairs.size(), up);
@@ -202,7 +204,7 @@ void estimate_rotation(const std::vector<Pair>& all, const std::vector<Pair>& pa
   }
   alignment.q_WV = so3::shortest_arc(up, Eigen::Vector3d::UnitZ());
   std::array<std::vector<double>, 3> departures;
-  for (std::size_t i = 0; i < kParts; ++i) {
+  for (std::size_t i = 0; i < kAlignmentParts; ++i) {
     const auto [first, end] = part(i, pairs.size());
     const Eigen::AngleAxisd turn(rotation(pairs, first, end, up) * alignment.q_IV.conjugate());
     for (int j = 0; j < 3; ++j) departures[static_cast<std::size_t>(j)].push_back(turn.angle() * turn.axis()[j]);
@@ -218,7 +220,7 @@ double degrees(double rad) {
 
 ReferenceAlignment align_reference(const std::vector<ReferencePose>& poses, const sim::ImuRecord& imu) {
   ReferenceAlignment alignment;
-  std::vector<Pair> all = all_samples(imu), pairs = free_samples(all);
+  std::vector<SamplePair> all = all_samples(imu), pairs = free_samples(all);
   if (poses.size() < kLeastSamples || pairs.size() < kLeastSamples) return alignment;
   estimate_delay(poses, pairs, alignment);
   pair_up(poses, alignment.delay_s, pairs);

@@ -8,6 +8,7 @@
 #include "scenarios/errors.hpp"
 #include "scenarios/recordings/table_file.hpp"
 #include "scenarios/recordings/trajectories/reference.hpp"
+#include "scenarios/recordings/whole_seconds.hpp"
 
 namespace tumble::scenarios {
 
@@ -16,10 +17,9 @@ namespace {
 constexpr const char* kFirst = "header.stamp.sec";
 /// A header of all columns that drivers write has some 2 kB.
 constexpr std::size_t kHeaderMax_bytes = 64 * 1024;
-constexpr std::int64_t kSecond_ns = 1000000000, kSecondsMax = 9000000000;
 
 /// The columns that are read, in this order.
-constexpr std::array<const char*, 9> kColumns = {
+constexpr std::array<const char*, 9> kOdometryColumns = {
     kFirst,
     "header.stamp.nanosec",
     "pose.pose.position.x",
@@ -32,7 +32,7 @@ constexpr std::array<const char*, 9> kColumns = {
 };
 
 /// Of a longer line one byte more than a header may have: a file without line ends is not read whole for it.
-std::string first_line(const std::filesystem::path& file) {
+std::string header_line(const std::filesystem::path& file) {
   std::ifstream stream(file, std::ios::binary);
   std::string line(kHeaderMax_bytes + 2, '\0');
   if (std::filesystem::is_regular_file(file)) stream.getline(line.data(), static_cast<std::streamsize>(line.size()));
@@ -52,17 +52,17 @@ std::vector<std::string> names_in(const std::string& header) {
   return names;
 }
 
-/// Where each of kColumns stands.
-std::array<std::size_t, kColumns.size()> places_in(const std::filesystem::path& file,
-                                                   const std::vector<std::string>& names) {
-  std::array<std::size_t, kColumns.size()> places{};
-  for (std::size_t k = 0; k < kColumns.size(); ++k) {
-    const auto count = std::count(names.begin(), names.end(), kColumns[k]);
+/// Where each of kOdometryColumns stands.
+std::array<std::size_t, kOdometryColumns.size()> places_in(const std::filesystem::path& file,
+                                                           const std::vector<std::string>& names) {
+  std::array<std::size_t, kOdometryColumns.size()> places{};
+  for (std::size_t k = 0; k < kOdometryColumns.size(); ++k) {
+    const auto count = std::count(names.begin(), names.end(), kOdometryColumns[k]);
     if (count != 1) {
-      throw BadInput(file.string() + ":1: column " + kColumns[k] + " stands " + std::to_string(count) +
+      throw BadInput(file.string() + ":1: column " + kOdometryColumns[k] + " stands " + std::to_string(count) +
                      " times in the header, must once");
     }
-    places[k] = static_cast<std::size_t>(std::find(names.begin(), names.end(), kColumns[k]) - names.begin());
+    places[k] = static_cast<std::size_t>(std::find(names.begin(), names.end(), kOdometryColumns[k]) - names.begin());
   }
   return places;
 }
@@ -70,11 +70,11 @@ std::array<std::size_t, kColumns.size()> places_in(const std::filesystem::path& 
 }  // namespace
 
 bool is_odometry(const std::filesystem::path& file) {
-  return first_line(file).starts_with(std::string(kFirst) + ",");
+  return header_line(file).starts_with(std::string(kFirst) + ",");
 }
 
 std::vector<ReferencePose> read_odometry_poses(const std::filesystem::path& file) {
-  const std::string header = first_line(file);
+  const std::string header = header_line(file);
   if (header.size() > kHeaderMax_bytes) {
     throw BadInput(file.string() + ":1: the header has more than " + std::to_string(kHeaderMax_bytes) + " bytes");
   }

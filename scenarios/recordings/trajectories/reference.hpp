@@ -20,6 +20,9 @@ struct ReferencePose {
   Eigen::Quaterniond q_WA = Eigen::Quaterniond::Identity();
 };
 
+/// How far the norm of a reference\'s quaternion may be from 1.
+inline constexpr double kReferenceNormTolerance = 1e-2;
+
 /// What is wrong with a pose that follows another one (or none): not finite, a quaternion whose norm is off by more
 /// than a percent, a stamp that does not rise; "" when nothing is. A quaternion that passes is made of unit length.
 std::string problem_of(ReferencePose& pose, const ReferencePose* before);
@@ -56,6 +59,9 @@ std::size_t count_kitti_poses(const std::filesystem::path& file);
 /// apart than 2.5 times the median step position is linear and attitude a slerp, elsewhere they are unknown. Ends with
 /// the poses, or at `end_ns` where that is earlier. Throws BadInput when that holds no known pose, or more than a day.
 sim::Truth reference_truth(const std::vector<ReferencePose>& poses, std::int64_t end_ns);
+
+/// Axis times angle of a turn, the shorter way.
+Eigen::Vector3d rotation_vector(const Eigen::Quaterniond& q);
 
 /// Fills velocity and rate by central differences over `reach` samples before and after; unknown where one of them is.
 void differentiate(sim::Truth& truth, std::size_t reach);

@@ -13,7 +13,6 @@ namespace tumble::scenarios {
 
 namespace {
 
-constexpr double kNormTolerance = 1e-2;
 constexpr double kLeap_rad_s = 10.0;
 constexpr std::size_t kNear = 3, kFar = 6;  // steps
 constexpr std::size_t kMargin = 3;          // samples
@@ -74,7 +73,7 @@ void leave_out_unsound(std::vector<ReferencePose>& poses, GlitchReport& report) 
   std::vector<bool> out(poses.size());
   for (std::size_t k = 0; k < poses.size(); ++k) {
     const double norm = poses[k].q_WA.norm();
-    const bool finite = std::isfinite(norm), sound = finite && std::abs(norm - 1.0) <= kNormTolerance;
+    const bool finite = std::isfinite(norm), sound = finite && std::abs(norm - 1.0) <= kReferenceNormTolerance;
     out[k] = !sound;
     report.unknown += finite ? 0 : 1;
     report.bad_norm += finite && !sound ? 1 : 0;

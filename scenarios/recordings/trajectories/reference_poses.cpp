@@ -14,7 +14,6 @@ namespace tumble::scenarios {
 
 namespace {
 
-constexpr double kNormTolerance = 1e-2;
 /// KITTI's matrices are written with seven digits.
 constexpr double kRotationTolerance = 1e-3;
 
@@ -56,7 +55,7 @@ Eigen::Matrix<double, 3, 4> kitti_matrix(const Table& table, const Table::Row& r
 std::string problem_of(ReferencePose& pose, const ReferencePose* before) {
   if (!pose.p_WA_m.allFinite() || !pose.q_WA.coeffs().allFinite()) return "the pose is not finite";
   const double norm = pose.q_WA.norm();
-  if (!(std::abs(norm - 1.0) <= kNormTolerance))
+  if (!(std::abs(norm - 1.0) <= kReferenceNormTolerance))
     return "quaternion of norm " + std::to_string(norm) + ", must be 1 within a percent";
   // what is of unit length to the last bits stays as it is
   if (std::abs(norm - 1.0) > 1e-12) pose.q_WA.normalize();

@@ -14,13 +14,6 @@ namespace {
 
 constexpr std::size_t kLeastPoses = 3;
 
-Eigen::Vector3d rotation_vector(const Eigen::Quaterniond& q) {
-  const Eigen::AngleAxisd turn(q);
-  // the shorter way
-  const double angle = turn.angle() > M_PI ? turn.angle() - 2.0 * M_PI : turn.angle();
-  return angle * turn.axis();
-}
-
 /// The slope at the instant of the parabola through poses first to last.
 Eigen::Vector3d slope_rad_s(const std::vector<ReferencePose>& poses, std::size_t first, std::size_t last,
                             std::int64_t time_ns) {

@@ -5,6 +5,7 @@
 #include <string>
 
 #include "scenarios/errors.hpp"
+#include "scenarios/not_finite.hpp"
 #include "scenarios/recordings/clouds/sweep_stamps.hpp"
 #include "scenarios/recordings/trajectories/reference.hpp"
 
@@ -12,10 +13,9 @@ namespace tumble::scenarios {
 
 namespace {
 
-constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 constexpr std::int64_t kStepMin_ns = 100000, kStepUsual_ns = 1000000;
 constexpr std::int64_t kSamplesMax = 2000000;
-constexpr std::int64_t kLongest_ns = 86400ll * 1000000000;
+constexpr std::int64_t kLongestReference_ns = 86400ll * 1000000000;
 /// Reach of the differences: as of the trials of BROAD, so that noise at rest stays below the bounds of rest.
 constexpr std::int64_t kReach_ns = 70000000;
 
@@ -64,12 +64,12 @@ class Interpolation {
   std::size_t next_ = 0;
 };
 
+}  // namespace
+
 Eigen::Vector3d rotation_vector(const Eigen::Quaterniond& q) {
   const Eigen::AngleAxisd turn(q);
   return turn.angle() * turn.axis();
 }
-
-}  // namespace
 
 sim::Truth reference_truth(const std::vector<ReferencePose>& poses, std::int64_t end_ns) {
   if (poses.empty()) throw BadInput("the reference holds no pose");
@@ -79,7 +79,7 @@ sim::Truth reference_truth(const std::vector<ReferencePose>& poses, std::int64_t
                    std::to_string(poses.back().time_ns) + " ns of the recording, which lasts " +
                    std::to_string(end_ns) + " ns: another clock?");
   }
-  if (last_ns > kLongest_ns) {
+  if (last_ns > kLongestReference_ns) {
     throw BadInput("the reference lasts " + std::to_string(last_ns) + " ns, must be at most a day");
   }
   const std::vector<std::int64_t> times = times_of(poses);

@@ -1,0 +1,13 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <cstdint>
+
+/// Time stamps that come as whole seconds and nanoseconds.
+namespace tumble::scenarios {
+
+inline constexpr std::int64_t kSecond_ns = 1'000'000'000;
+/// Of a time stamp: nanoseconds must fit (the year 2255).
+inline constexpr std::int64_t kSecondsMax = 9'000'000'000;
+
+}  // namespace tumble::scenarios
