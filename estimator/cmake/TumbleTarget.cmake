@@ -38,6 +38,9 @@ function(tumble_target target)
   set_target_properties(${target} PROPERTIES CXX_EXTENSIONS OFF POSITION_INDEPENDENT_CODE ON)
   if(TUMBLE_UNITY)  # what sources instantiate alike is instantiated once: no two of a target give one name to two things
     set_target_properties(${target} PROPERTIES UNITY_BUILD ON UNITY_BUILD_BATCH_SIZE 8)
+    if(arg_LIGHT)
+      set_target_properties(${target} PROPERTIES UNITY_BUILD_BATCH_SIZE 16)
+    endif()
     # what is private to a source looks to GCC as if it stood in a header
     target_compile_options(${target} PRIVATE $<$<CXX_COMPILER_ID:GNU>:-Wno-subobject-linkage>)
   endif()

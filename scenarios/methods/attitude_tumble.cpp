@@ -90,14 +90,6 @@ Estimate run_attitude_tumble(const sim::Sensors& sensors, const sim::Values& par
   return sensors.sphere_radius_m > 0.0 ? run_sphere(sensors, parameters) : run_rig(sensors, parameters);
 }
 
-namespace {
-
-Estimate run_attitude_tumble(const sim::Sensors& sensors, const sim::Values& parameters, const OracleInput&) {
-  return run_attitude_tumble(sensors, parameters);
-}
-
-}  // namespace
-
 Method attitude_tumble() {
   MethodInfo info;
   info.name = "tumble";
@@ -107,7 +99,8 @@ Method attitude_tumble() {
       "rail hid are those of rate/tumble.";
   info.ours = true;
   info.settings = {&attitude_tumble_settings()};
-  return make_method(std::move(info), run_attitude_tumble);
+  return make_method(std::move(info), [](const sim::Sensors& sensors, const sim::Values& parameters,
+                                         const OracleInput&) { return run_attitude_tumble(sensors, parameters); });
 }
 
 }  // namespace tumble::scenarios

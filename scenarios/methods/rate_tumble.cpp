@@ -104,10 +104,6 @@ constexpr double kTrust = 4.0;
 // What the slopes of a gyro's elements change from run to run: a wand's rail was seen at 0.017 to 0.021 in six of them.
 constexpr double kElementDrift = 2e-3;
 
-Estimate run_rate_tumble(const sim::Sensors& sensors, const sim::Values& parameters, const OracleInput&) {
-  return run_rate_tumble(sensors, parameters, nullptr, nullptr);
-}
-
 }  // namespace
 
 const std::vector<std::string>& stated_densities() {
@@ -221,7 +217,10 @@ Method rate_tumble() {
   info.settings = {&rate_tumble_settings()};
   info.robots = {"rig", "pendulum"};
   info.learns_rig = true;
-  return make_method(std::move(info), run_rate_tumble);
+  return make_method(std::move(info),
+                     [](const sim::Sensors& sensors, const sim::Values& parameters, const OracleInput&) {
+                       return run_rate_tumble(sensors, parameters, nullptr, nullptr);
+                     });
 }
 
 }  // namespace tumble::scenarios

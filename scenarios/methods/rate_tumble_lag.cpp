@@ -72,10 +72,6 @@ LearntRig learnt_by(const RateStream& stream, const RateStream::Params& params, 
   return rig;
 }
 
-Estimate run_rate_tumble_lag(const sim::Sensors& sensors, const sim::Values& parameters, const OracleInput&) {
-  return run_rate_tumble_lag(sensors, parameters, nullptr, nullptr);
-}
-
 }  // namespace
 
 Estimate run_rate_tumble_lag(const sim::Sensors& sensors, const sim::Values& parameters, const LearntRig* given,
@@ -142,7 +138,10 @@ Method rate_tumble_lag() {
   info.settings = {&rate_tumble_lag_settings()};
   info.robots = {"rig", "pendulum"};
   info.learns_rig = true;
-  return make_method(std::move(info), run_rate_tumble_lag);
+  return make_method(std::move(info),
+                     [](const sim::Sensors& sensors, const sim::Values& parameters, const OracleInput&) {
+                       return run_rate_tumble_lag(sensors, parameters, nullptr, nullptr);
+                     });
 }
 
 }  // namespace tumble::scenarios

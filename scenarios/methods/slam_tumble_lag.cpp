@@ -181,7 +181,7 @@ Method slam_tumble_lag() {
        .ours = true,
        .settings = {&slam_tumble_lag_settings()}},
       [](const sim::Sensors& sensors, const sim::Values& parameters, const OracleInput&) {
-        return run(sensors, parameters, Word::last);
+        return run_slam_tumble_lag(sensors, parameters, Word::last);
       });
 }
 
@@ -191,7 +191,7 @@ Method slam_tumble_live() {
                    .ours = true,
                    .settings = {&slam_tumble_lag_settings()}},
                   [](const sim::Sensors& sensors, const sim::Values& parameters, const OracleInput&) {
-                    return run(sensors, parameters, Word::live);
+                    return run_slam_tumble_lag(sensors, parameters, Word::live);
                   });
 }
 
