@@ -177,8 +177,8 @@ Listing list_methods(const std::string& only) {
       const sim::Parameter& p = info.parameters[k];
       const bool first = k < info.parameters_first;
       (first ? parameters : further)
-          .add_row({name, std::string(p.name), number_text(p.default_value), bounds_of_parameter(p), std::string(p.unit),
-                    std::string(p.doc)});
+          .add_row({name, std::string(p.name), number_text(p.default_value), bounds_of_parameter(p),
+                    std::string(p.unit), std::string(p.doc)});
       entry["parameters"].push_back(parameter_json(p));
       entry["parameters"].back()["first"] = first;
     }
@@ -207,8 +207,8 @@ Listing list_sensors(const scenarios::DataRoot& data, const std::string& only) {
     for (const auto& number : sheet.entries) {
       const auto p = std::find_if(known.begin(), known.end(),
                                   [&](const sim::Parameter& each) { return each.name == number.name; });
-      numbers.add_row(
-          {number.name, number_text(number.value), number.unit, p == known.end() ? "" : bounds_of_parameter(*p), number.source});
+      numbers.add_row({number.name, number_text(number.value), number.unit,
+                       p == known.end() ? "" : bounds_of_parameter(*p), number.source});
       json row = {{"name", number.name}, {"value", number.value}, {"unit", number.unit}, {"source", number.source}};
       if (p != known.end())
         row.update({{"default", p->default_value}, {"low", p->low}, {"high", p->high}, {"doc", p->doc}});
