@@ -71,7 +71,7 @@ sim::SensorSpec tilted(const DataSheet& sheet, const TiltedRailSetup& setup) {
 }
 
 /// One triad's readings with what the elements were.
-struct Triad {
+struct SensedTriad {
   const std::vector<Vector3d>&readings, &unclipped;
   Matrix3d axes;
   Vector3d offset;
@@ -85,7 +85,7 @@ Matrix3d matrix(const std::vector<Vector3d>& rows) {
 }
 
 /// The sign of the rail that element `j` alone is at during the whole of sample k; 0: none.
-int side(const Triad& triad, std::size_t k, int j) {
+int side(const SensedTriad& triad, std::size_t k, int j) {
   constexpr double kMargin = 0.08;  // of the rail: more than the signal moves from sample to sample
   int sign = 0;
   for (std::size_t i = k - 1; i <= k + 1; ++i) {
@@ -106,7 +106,7 @@ struct PlaneErrors {
 };
 
 /// Rows of one element's fit: the reading along its axis from the two beside, the side and 1.
-void fit_element(const Triad& triad, int j, double believed_tilt, PlaneErrors& errors) {
+void fit_element(const SensedTriad& triad, int j, double believed_tilt, PlaneErrors& errors) {
   const int first = (j + 1) % 3, second = (j + 2) % 3;
   std::vector<std::size_t> clipped;
   std::array<int, 2> count = {0, 0};
@@ -148,10 +148,10 @@ std::vector<CertificateEntry> certify_tilted_rail(const CertificateInput& input,
     sim::ImuTruth truth;
     sim::simulate_imu(motion, sensor, Eigen::Isometry3d::Identity(), kStandardGravity_m_s2,
                       static_cast<std::uint64_t>(device), record, truth);
-    const Triad rates{record.gyro_rad_s, truth.gyro_unclipped_rad_s, matrix(truth.gyro_elements),
-                      truth.gyro_element_offset_rad_s, gyro_rail};
-    const Triad forces{record.accel_m_s2, truth.accel_unclipped_m_s2, matrix(truth.accel_elements),
-                       truth.accel_element_offset_m_s2, accel_rail};
+    const SensedTriad rates{record.gyro_rad_s, truth.gyro_unclipped_rad_s, matrix(truth.gyro_elements),
+                            truth.gyro_element_offset_rad_s, gyro_rail};
+    const SensedTriad forces{record.accel_m_s2, truth.accel_unclipped_m_s2, matrix(truth.accel_elements),
+                             truth.accel_element_offset_m_s2, accel_rail};
     for (int j = 0; j < 3; ++j) {
       fit_element(rates, j, setup.believed_tilt, gyro);
       fit_element(forces, j, setup.believed_tilt, accel);

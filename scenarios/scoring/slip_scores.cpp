@@ -109,18 +109,18 @@ bool half_covered(const SlipSpan& span, const std::vector<SlipSpan>& by, std::in
          kHalf * static_cast<double>(span.end_ns - span.begin_ns);
 }
 
-struct Comparison {
+struct MatchedEvents {
   std::vector<SlipSpan> events;  ///< true ones that count
   std::vector<SlipSpan> claimed;
   std::vector<SlipSpan> right;  ///< claimed ones that are right
 };
 
-std::optional<Comparison> compare(const ScoredEstimate& scored) {
+std::optional<MatchedEvents> match_events(const ScoredEstimate& scored) {
   const sim::Truth& truth = scored.truth();
   // a reference knows poses alone
   if (scored.estimate().contacts.empty() || truth.label.empty()) return std::nullopt;
   const std::vector<SlipSpan> all = true_spans(truth);
-  Comparison out;
+  MatchedEvents out;
   for (const SlipSpan& span : all) {
     if (counts(span, truth)) out.events.push_back(span);
   }
@@ -132,7 +132,7 @@ std::optional<Comparison> compare(const ScoredEstimate& scored) {
 }
 
 bool precision(const ScoredEstimate& scored, double& value) {
-  const auto& found = scored.once(compare);
+  const auto& found = scored.once(match_events);
   if (!found) return false;
   value = found->claimed.empty()
               ? 1.0
@@ -141,7 +141,7 @@ bool precision(const ScoredEstimate& scored, double& value) {
 }
 
 bool recall(const ScoredEstimate& scored, double& value) {
-  const auto& found = scored.once(compare);
+  const auto& found = scored.once(match_events);
   if (!found || found->events.empty()) return false;
   const auto count = std::count_if(found->events.begin(), found->events.end(),
                                    [&](const SlipSpan& event) { return half_covered(event, found->right, 0); });
@@ -150,7 +150,7 @@ bool recall(const ScoredEstimate& scored, double& value) {
 }
 
 bool delay(const ScoredEstimate& scored, double& value) {
-  const auto& found = scored.once(compare);
+  const auto& found = scored.once(match_events);
   if (!found) return false;
   std::vector<double> delays_s;
   for (const SlipSpan& event : found->events) {

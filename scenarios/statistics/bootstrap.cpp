@@ -28,7 +28,7 @@ double middle_of(double below, double above) {
 }
 
 /// Median of a sorted sample.
-double median_of(std::span<const double> sorted) {
+double sorted_median(std::span<const double> sorted) {
   const std::size_t n = sorted.size();
   return middle_of(sorted[(n - 1) / 2], sorted[n / 2]);
 }
@@ -83,7 +83,7 @@ Interval MedianBootstrap::interval(std::span<const double> values, double risk) 
   if (std::any_of(sorted.begin(), sorted.end(), [](double v) { return std::isnan(v); }))
     throw BadInput("bootstrap: a value is NaN");
   std::sort(sorted.begin(), sorted.end());
-  const double median = median_of(sorted);
+  const double median = sorted_median(sorted);
   if (size_ < kValuesMin) return {median, -kInfinity, kInfinity};
 
   std::vector<double> medians;

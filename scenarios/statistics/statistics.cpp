@@ -24,8 +24,8 @@ std::vector<double> numbers_of(std::span<const double> values) {
 }
 
 /// Where a share of so many ranked values lies: between two neighbours, or at one.
-struct Place {
-  Place(double share, std::size_t count) {
+struct RankPlace {
+  RankPlace(double share, std::size_t count) {
     const double place = share * static_cast<double>(count - 1);
     below = static_cast<std::size_t>(place);
     above = std::min(below + 1, count - 1);
@@ -47,7 +47,7 @@ double quantile(std::span<const double> values, double share) {
   std::vector<double> numbers = numbers_of(values);
   if (numbers.empty()) return kNaN;
   // two ranks are all that is asked: a report asks it of millions of values
-  const Place place(share, numbers.size());
+  const RankPlace place(share, numbers.size());
   const auto below = numbers.begin() + static_cast<std::ptrdiff_t>(place.below);
   std::nth_element(numbers.begin(), below, numbers.end());
   const double above = place.above == place.below ? *below : *std::min_element(below + 1, numbers.end());
@@ -102,7 +102,7 @@ Interval median_interval(std::span<const double> values) {
   Interval interval{kNaN, -kInfinity, kInfinity};
   if (numbers.empty()) return interval;
   // four ranks are all that is asked, as above
-  const Place middle(0.5, numbers.size());
+  const RankPlace middle(0.5, numbers.size());
   const auto begin = numbers.begin(), below = begin + static_cast<std::ptrdiff_t>(middle.below);
   std::nth_element(begin, below, numbers.end());
   const auto above = middle.above == middle.below ? below : std::min_element(below + 1, numbers.end());

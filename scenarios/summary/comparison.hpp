@@ -41,6 +41,11 @@ struct Contest {
   std::string method, against;
 };
 
+/// Whether both are of one section of the results, and against the same method.
+inline bool one_section(const Contest& a, const Contest& b) {
+  return a.scenario == b.scenario && a.kind == b.kind && a.against == b.against;
+}
+
 /// One metric over the draws of which both have a value, a failed run ranking as the worst (`worst_value`); where both
 /// failed, and where they are equal, neither is better.
 struct MetricComparison {

@@ -15,7 +15,7 @@ namespace tumble::scenarios {
 
 namespace {
 
-void require_known(const std::string& what, std::span<const std::string> names, const std::set<std::string>& known) {
+void require_named(const std::string& what, std::span<const std::string> names, const std::set<std::string>& known) {
   for (const std::string& name : names) {
     if (known.contains(name)) continue;
     const std::string near = sim::nearest_name(name, std::vector<std::string>(known.begin(), known.end()));
@@ -98,8 +98,8 @@ void require_held(const Summary& summary, std::span<const std::string> methods, 
       known_methods.insert(full_name(section.kind, method.method));
     }
   }
-  require_known("method", methods, known_methods);
-  require_known("metric", metrics, known_metrics);
+  require_named("method", methods, known_methods);
+  require_named("metric", metrics, known_metrics);
 }
 
 Summary at_most_draws(const Summary& summary, std::size_t most) {

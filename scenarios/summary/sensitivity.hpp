@@ -16,6 +16,9 @@
 /// What breaks a method: each score against each number that its draws differ in (docs/maths/statistics.md).
 namespace tumble::scenarios {
 
+/// Below it a corrected chance does not explain an influence.
+inline constexpr double kInfluenceRisk = 0.05;
+
 /// Numbers of the draws of a scenario, by what they are called; each by rising seed.
 using NumbersOfDraws = std::map<std::string, std::vector<RankedValue>>;
 

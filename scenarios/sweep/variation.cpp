@@ -60,7 +60,7 @@ std::pair<std::string, std::string> method_and_parameter(const std::string& key)
   return {key.substr(0, dot), dot == std::string::npos ? "" : key.substr(dot + 1)};
 }
 
-void require_within(const std::string& key, const sim::Parameter& parameter, double value) {
+void require_settable(const std::string& key, const sim::Parameter& parameter, double value) {
   if (value >= parameter.low && value <= parameter.high) return;
   std::ostringstream text;
   text << "'" << key << "' is " << value << " " << parameter.unit << ", must be within [" << parameter.low << ", "
@@ -79,14 +79,14 @@ void check_parameter(const std::string& key, std::span<const double> values) {
   const auto is_whole = [&](const SettingsTable* stage) { return stage->is_whole(parameter->name); };
   const bool whole = std::any_of(method.info.settings.begin(), method.info.settings.end(), is_whole);
   for (const double value : values) {
-    require_within(key, *parameter, value);
+    require_settable(key, *parameter, value);
     if (whole && value != std::floor(value)) throw BadInput("'" + key + "' must be a whole number");
   }
 }
 
 void check_given(const std::string& key, std::span<const double> values, const Scenario& scenario) {
   const GivenError& error = given_error(key);
-  for (const double value : values) require_within(key, error.parameter, value);
+  for (const double value : values) require_settable(key, error.parameter, value);
   if (scenario.sensors.empty() || scenario.sensors.front().kind != "imu") {
     throw BadInput("'" + key + "': the first sensor of scenario " + scenario.name + " is no IMU");
   }

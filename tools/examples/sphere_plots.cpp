@@ -22,7 +22,7 @@ constexpr std::int64_t kSpeedHalf_ns = 25'000'000;
 constexpr std::size_t kPointsMax = 700;
 constexpr std::int64_t kBridge_ns = 20'000'000;  // spells closer than this are shaded as one
 
-double rounded(double value) {
+double five_decimals(double value) {
   return std::round(value * 1e5) / 1e5;
 }
 
@@ -35,7 +35,7 @@ PlotLine line_of(const std::string& name, int colour, double width) {
 }
 
 /// A path of the truth or of a method.
-struct Shown {
+struct ShownPath {
   std::string name;
   int colour;
   double width;
@@ -44,9 +44,9 @@ struct Shown {
 
 /// The truth, and of the methods of kind position that need no truth the first of each origin (MethodInfo::source):
 /// more would hide each other. Each as far as it stays near the truth.
-std::vector<Shown> shown_paths(const scenarios::RunResult& run) {
+std::vector<ShownPath> shown_paths(const scenarios::RunResult& run) {
   const sim::Recording& recording = run.recording;
-  std::vector<Shown> all = {{"truth", kTruthColour, 3.5, true_path(recording.sensors, recording.truth, 4)}};
+  std::vector<ShownPath> all = {{"truth", kTruthColour, 3.5, true_path(recording.sensors, recording.truth, 4)}};
   std::set<std::string> origins;
   int colour = 0;
   for (std::size_t i = 0; i < run.methods.size(); ++i) {
@@ -68,7 +68,7 @@ std::vector<std::pair<double, double>> slip_spells(const sim::Truth& truth) {
   std::vector<std::pair<double, double>> spells;
   std::int64_t begin_ns = -1, end_ns = -1;
   const auto close = [&] {
-    if (begin_ns >= 0) spells.emplace_back(rounded(seconds(begin_ns)), rounded(seconds(end_ns)));
+    if (begin_ns >= 0) spells.emplace_back(five_decimals(seconds(begin_ns)), five_decimals(seconds(end_ns)));
     begin_ns = -1;
   };
   for (std::size_t k = 0; k < truth.label.size(); ++k) {
@@ -132,9 +132,9 @@ void add_tilt(const std::vector<AttitudeState>& attitudes, const Span& span, Plo
   mean.normalize();
   const Eigen::Vector3d across = liveliest(up, mean);
   for (const auto& [time_ns, direction] : up) {
-    line.x.push_back(rounded(seconds(time_ns)));
+    line.x.push_back(five_decimals(seconds(time_ns)));
     line.y.push_back(
-        rounded(std::asin(std::clamp(across.dot(direction - mean), -1.0, 1.0)) * 180.0 / std::numbers::pi));
+        five_decimals(std::asin(std::clamp(across.dot(direction - mean), -1.0, 1.0)) * 180.0 / std::numbers::pi));
   }
 }
 
@@ -150,11 +150,11 @@ std::vector<AttitudeState> true_attitudes(const scenarios::TruthTrack& track, co
 Plot sphere_track_plot(const scenarios::RunResult& run) {
   Plot plot = plot_of("track", "The way of the centre from above, at equal scales.", "x [m]", "y [m]");
   plot.equal_scales = true;
-  for (const Shown& shown : shown_paths(run)) {
+  for (const ShownPath& shown : shown_paths(run)) {
     PlotLine line = line_of(shown.name, shown.colour, shown.width);
     for (std::size_t k = 0; k < shown.path.points_W_m.size(); k += stride_of(shown.path)) {
-      line.x.push_back(rounded(shown.path.points_W_m[k].x()));
-      line.y.push_back(rounded(shown.path.points_W_m[k].y()));
+      line.x.push_back(five_decimals(shown.path.points_W_m[k].x()));
+      line.y.push_back(five_decimals(shown.path.points_W_m[k].y()));
     }
     plot.lines.push_back(std::move(line));
   }
@@ -165,7 +165,7 @@ Plot sphere_speed_plot(const scenarios::RunResult& run) {
   Plot plot = plot_of("speed", "Speed of the centre. Shaded: the sphere slips or slides.", "time [s]", "speed [m/s]");
   plot.from_zero = plot.over_time = true;
   plot.shaded = slip_spells(run.recording.truth);
-  for (const Shown& shown : shown_paths(run)) {
+  for (const ShownPath& shown : shown_paths(run)) {
     PlotLine line = line_of(shown.name, shown.colour, shown.width);
     const Path& path = shown.path;
     std::size_t before = 0, after = 0;
@@ -174,8 +174,8 @@ Plot sphere_speed_plot(const scenarios::RunResult& run) {
       while (after + 1 < path.time_ns.size() && path.time_ns[after] < path.time_ns[k] + kSpeedHalf_ns) ++after;
       if (after <= before) continue;
       const double way_m = (path.points_W_m[after] - path.points_W_m[before]).head<2>().norm();
-      line.x.push_back(rounded(seconds(path.time_ns[k])));
-      line.y.push_back(rounded(way_m / seconds(path.time_ns[after] - path.time_ns[before])));
+      line.x.push_back(five_decimals(seconds(path.time_ns[k])));
+      line.y.push_back(five_decimals(way_m / seconds(path.time_ns[after] - path.time_ns[before])));
     }
     plot.lines.push_back(std::move(line));
   }
@@ -185,12 +185,12 @@ Plot sphere_speed_plot(const scenarios::RunResult& run) {
 Plot sphere_height_plot(const scenarios::RunResult& run) {
   Plot plot = plot_of("height", "Height of the centre above its start.", "time [s]", "height [mm]");
   plot.over_time = true;
-  for (const Shown& shown : shown_paths(run)) {
+  for (const ShownPath& shown : shown_paths(run)) {
     PlotLine line = line_of(shown.name, shown.colour, shown.width);
     const Path& path = shown.path;
     for (std::size_t k = 0; k < path.points_W_m.size(); k += stride_of(path)) {
-      line.x.push_back(rounded(seconds(path.time_ns[k])));
-      line.y.push_back(rounded(1e3 * (path.points_W_m[k].z() - path.points_W_m.front().z())));
+      line.x.push_back(five_decimals(seconds(path.time_ns[k])));
+      line.y.push_back(five_decimals(1e3 * (path.points_W_m[k].z() - path.points_W_m.front().z())));
     }
     plot.lines.push_back(std::move(line));
   }

@@ -10,9 +10,9 @@ namespace {
 // Any two of these and the truth's lie at least 30 apart in CIELAB for normal, protan, deutan and tritan eyes, so that
 // light and dark tell apart what hue does not; none is so light or dark that it is lost on a light or a dark page.
 // Found by exchange, one colour at a time, over hues from amber to blue (palette_test.cpp holds the distances).
-constexpr std::array<const char*, kMethodColours> kColours = {"#ffbb22", "#8800ff", "#44ddff",
-                                                              "#bb0000", "#224499", "#bbcc77"};
-constexpr const char* kTruthColour = "#449977";
+constexpr std::array<const char*, kMethodColours> kMethodHex = {"#ffbb22", "#8800ff", "#44ddff",
+                                                                "#bb0000", "#224499", "#bbcc77"};
+constexpr const char* kTruthHex = "#449977";
 
 }  // namespace
 
@@ -23,10 +23,10 @@ std::array<float, 4> Colour::rgba() const {
 }
 
 Colour truth_colour() {
-  return {kTruthColour};
+  return {kTruthHex};
 }
 Colour method_colour(std::size_t index) {
-  return {kColours[index % kColours.size()]};
+  return {kMethodHex[index % kMethodHex.size()]};
 }
 
 }  // namespace tumble::tools

@@ -17,7 +17,7 @@ using Eigen::Vector3d;
 using Eigen::Vector3f;
 
 constexpr std::array<std::uint8_t, 3> kBackground = {24, 26, 30};
-constexpr int kScaleHeight = 14, kMargin = 6;
+constexpr int kScaleHeight = 14, kPictureMargin = 6;
 constexpr double kFocal = 1.7;  ///< of the picture's smaller half: an angle of view of some 60 degrees
 constexpr double kElevation_rad = 0.6;
 
@@ -137,17 +137,17 @@ sim::Picture map_picture(const std::vector<ErrorMap>& maps, const sim::Truth& tr
   }
   sim::Picture picture;
   const auto count = static_cast<int>(maps.size());
-  picture.width = count * width + (count - 1) * kMargin;
-  picture.height = height + 2 * kMargin + kScaleHeight;
+  picture.width = count * width + (count - 1) * kPictureMargin;
+  picture.height = height + 2 * kPictureMargin + kScaleHeight;
   for (int i = 0; i < picture.width * picture.height; ++i)
     picture.rgb.insert(picture.rgb.end(), kBackground.begin(), kBackground.end());
   const Camera camera(truth, width, height);
   for (int i = 0; i < count; ++i)
-    draw_map(maps[static_cast<std::size_t>(i)], camera, i * (width + kMargin), width, height, picture);
-  const int scale_width = picture.width - 2 * kMargin;
+    draw_map(maps[static_cast<std::size_t>(i)], camera, i * (width + kPictureMargin), width, height, picture);
+  const int scale_width = picture.width - 2 * kPictureMargin;
   for (int x = 0; x < scale_width; ++x) {
     const auto colour = error_colour(kMapErrorMax_m * static_cast<float>(x) / static_cast<float>(scale_width));
-    for (int y = 0; y < kScaleHeight; ++y) set_pixel(picture, kMargin + x, height + kMargin + y, colour);
+    for (int y = 0; y < kScaleHeight; ++y) set_pixel(picture, kPictureMargin + x, height + kPictureMargin + y, colour);
   }
   return picture;
 }

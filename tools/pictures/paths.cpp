@@ -19,18 +19,18 @@ Vector3d drawn_point_B(const sim::Sensors& sensors, const sim::Truth& truth) {
   return sensors.sphere_radius_m > 0.0 ? truth.p_BG_m : Vector3d::Zero();
 }
 
+bool moves(const sim::Truth& truth, std::size_t k) {
+  return truth.v_WB_m_s[k].norm() > 0.1 || truth.w_WB_B_rad_s[k].norm() > 0.2;
+}
+
+}  // namespace
+
 Isometry3d pose_of(const PoseState& state) {
   Isometry3d T_WA = Isometry3d::Identity();
   T_WA.linear() = state.q_WA.normalized().toRotationMatrix();
   T_WA.translation() = state.p_WA_m;
   return T_WA;
 }
-
-bool moves(const sim::Truth& truth, std::size_t k) {
-  return truth.v_WB_m_s[k].norm() > 0.1 || truth.w_WB_B_rad_s[k].norm() > 0.2;
-}
-
-}  // namespace
 
 bool given_mounting(Frame frame, const sim::Sensors& sensors, const sim::Truth* truth, Isometry3d& T_BA) {
   T_BA = Isometry3d::Identity();

@@ -19,6 +19,9 @@ struct Path {
   bool empty() const { return points_W_m.empty(); }
 };
 
+/// The pose of A in W, its attitude made of unit length.
+Eigen::Isometry3d pose_of(const PoseState& state);
+
 /// Mounting of the frame that an estimate's poses belong to, as the estimator was given it; false where the recording
 /// or its truth, if there is one, lacks the sensor. `truth` may be null: the sphere's centre is then the body's origin.
 bool given_mounting(scenarios::Frame frame, const sim::Sensors& sensors, const sim::Truth* truth,

@@ -20,9 +20,9 @@ struct WebpAnimation::Impl {
 namespace {
 
 /// A picture in libwebp's hands.
-class Imported {
+class WebpPicture {
  public:
-  explicit Imported(const sim::Picture& picture) {
+  explicit WebpPicture(const sim::Picture& picture) {
     if (WebPPictureInit(&picture_) == 0) throw std::runtime_error("libwebp is of another version than its headers");
     picture_.use_argb = 1;
     picture_.width = picture.width;
@@ -30,9 +30,9 @@ class Imported {
     if (WebPPictureImportRGB(&picture_, picture.rgb.data(), 3 * picture.width) == 0)
       throw std::runtime_error("no memory for a picture");
   }
-  ~Imported() { WebPPictureFree(&picture_); }
-  Imported(const Imported&) = delete;
-  Imported& operator=(const Imported&) = delete;
+  ~WebpPicture() { WebPPictureFree(&picture_); }
+  WebpPicture(const WebpPicture&) = delete;
+  WebpPicture& operator=(const WebpPicture&) = delete;
   WebPPicture* get() { return &picture_; }
 
  private:
@@ -66,7 +66,7 @@ void WebpAnimation::add(const sim::Picture& picture, int duration_ms) {
   if (picture.width != impl_->width || picture.height != impl_->height)
     throw std::invalid_argument("pictures of a WebP have one size");
   if (duration_ms < 1) throw std::invalid_argument("a picture is shown for a millisecond at least");
-  Imported imported(picture);
+  WebpPicture imported(picture);
   if (WebPAnimEncoderAdd(impl_->encoder, imported.get(), impl_->time_ms, &impl_->config) == 0)
     throw std::runtime_error(std::string("libwebp: ") + WebPAnimEncoderGetError(impl_->encoder));
   impl_->time_ms += duration_ms;

@@ -19,13 +19,6 @@ using scenarios::TruthTrack;
 constexpr double kFarthest_m = 1e4;
 constexpr std::int64_t kGap_ns = 500'000'000;
 
-Isometry3d pose_of(const PoseState& state) {
-  Isometry3d T_WA = Isometry3d::Identity();
-  T_WA.linear() = state.q_WA.normalized().toRotationMatrix();
-  T_WA.translation() = state.p_WA_m;
-  return T_WA;
-}
-
 PoseState state_of(std::int64_t time_ns, const Isometry3d& T_WA) {
   PoseState state;
   state.time_ns = time_ns;
@@ -34,7 +27,7 @@ PoseState state_of(std::int64_t time_ns, const Isometry3d& T_WA) {
   return state;
 }
 
-bool is_finite(const PoseState& state) {
+bool is_finite_pose(const PoseState& state) {
   return state.p_WA_m.allFinite() && state.q_WA.coeffs().allFinite() && state.q_WA.norm() > 1e-6;
 }
 
@@ -42,7 +35,7 @@ bool is_finite(const PoseState& state) {
 Isometry3d to_truth(const scenarios::Estimate& estimate, const sim::Truth& truth) {
   const TruthTrack track(truth, estimate.frame);
   for (const PoseState& state : estimate.poses) {
-    if (is_finite(state) && track.covers(state.time_ns))
+    if (is_finite_pose(state) && track.covers(state.time_ns))
       return Alignment::at(state, track.pose(state.time_ns)).transform();
   }
   return Isometry3d::Identity();
@@ -119,7 +112,7 @@ Motion estimated_motion(const scenarios::Estimate& estimate, const sim::Sensors&
   std::vector<std::int64_t> time_ns;
   std::vector<Isometry3d> T_WB;
   for (const PoseState& state : estimate.poses) {
-    if (!is_finite(state)) continue;
+    if (!is_finite_pose(state)) continue;
     time_ns.push_back(state.time_ns);
     T_WB.push_back(pose_of(state) * T_AB);
   }

@@ -21,7 +21,7 @@ constexpr double kWhole = 32767.0;
 constexpr std::int16_t kNoNumber = -32768;
 constexpr int kErrorSteps = 254;
 constexpr std::uint8_t kNoError = 255;
-constexpr int kColours = 64;
+constexpr int kColourLevels = 64;
 
 /// Arrays one behind the other, and what the head says of each.
 class Arrays {
@@ -230,8 +230,8 @@ json pack_strip(const ReplayStrip& strip, double scale, Arrays& arrays) {
 /// The colours of the errors from 0 to the largest, the same as in pictures of maps.
 json error_colours() {
   json out = json::array();
-  for (int k = 0; k < kColours; ++k) {
-    const auto colour = error_colour(kMapErrorMax_m * static_cast<float>(k) / (kColours - 1));
+  for (int k = 0; k < kColourLevels; ++k) {
+    const auto colour = error_colour(kMapErrorMax_m * static_cast<float>(k) / (kColourLevels - 1));
     out.push_back({colour[0], colour[1], colour[2]});
   }
   return out;

@@ -15,7 +15,7 @@ namespace {
 
 using scenarios::DependenceClass;
 
-constexpr double kWidth = 150.0, kHeight = 44.0, kMargin = 3.0;
+constexpr double kWidth = 150.0, kHeight = 44.0, kPlotMargin = 3.0;
 constexpr double kLeastWidth = 3.0;  // of a class of a single number
 constexpr double kDecade = 10.0;
 
@@ -46,7 +46,7 @@ Axis height_axis(std::span<const DependenceClass> classes) {
     least_centre = std::min(least_centre, part.centre.value);
     largest_centre = std::max(largest_centre, part.centre.value);
   }
-  Axis axis{low, high, kHeight - kMargin, kMargin, false};
+  Axis axis{low, high, kHeight - kPlotMargin, kPlotMargin, false};
   if (!(least_centre > 0.0) || !(largest_centre > kDecade * least_centre)) return axis;
   axis.logarithmic = true;
   axis.low = std::log10(low > 0.0 ? low : least_centre / kDecade);
@@ -60,13 +60,13 @@ std::string dependence_svg(std::span<const DependenceClass> classes,
                            const std::function<std::string(const DependenceClass&)>& told) {
   const auto is_finite = [](const DependenceClass& part) { return std::isfinite(part.centre.value); };
   if (classes.size() < 2 || std::none_of(classes.begin(), classes.end(), is_finite)) return "";
-  const Axis along{classes.front().low, classes.back().high, kMargin, kWidth - kMargin, false};
+  const Axis along{classes.front().low, classes.back().high, kPlotMargin, kWidth - kPlotMargin, false};
   const Axis up = height_axis(classes);
   std::string out = fmt::format(
       "<svg class=\"dependence\" role=\"img\" width=\"{0:.0f}\" height=\"{1:.0f}\" viewBox=\"0 0 {0:.0f} {1:.0f}\">",
       kWidth, kHeight);
   for (const DependenceClass& part : classes) {
-    const double from = std::min(along.place(part.low), kWidth - kMargin - kLeastWidth);
+    const double from = std::min(along.place(part.low), kWidth - kPlotMargin - kLeastWidth);
     const double width = std::max(along.place(part.high) - from, kLeastWidth);
     const double top = up.place(part.centre.high), bottom = up.place(part.centre.low);
     out += fmt::format(

@@ -21,10 +21,6 @@ using scenarios::FailureComparison;
 using scenarios::Finding;
 using scenarios::MetricComparison;
 
-bool one_section(const Contest& a, const Contest& b) {
-  return a.scenario == b.scenario && a.kind == b.kind && a.against == b.against;
-}
-
 std::string finding_cell(Finding finding) {
   return cell(to_string(finding), finding == Finding::better ? "good" : finding == Finding::worse ? "bad" : "");
 }

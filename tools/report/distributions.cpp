@@ -53,7 +53,7 @@ std::string caption_of(std::span<const Spread> spreads) {
   return out + thinned_text(spreads);
 }
 
-double rounded(double value) {
+double four_decimals(double value) {
   return std::round(value * 1e4) / 1e4;
 }
 
@@ -68,7 +68,7 @@ Figure histograms(std::span<const Spread> spreads) {
   for (const Spread& spread : spreads) {
     if (!spread.of_draws) continue;
     json x = json::array();
-    for (const double value : at_most(spread.values, kBoxPoints)) x.push_back(rounded(value * spread.factor));
+    for (const double value : at_most(spread.values, kBoxPoints)) x.push_back(four_decimals(value * spread.factor));
     traces.push_back({{"type", "histogram"},
                       {"name", plot_text(spread.scenario)},
                       {"histnorm", "percent"},

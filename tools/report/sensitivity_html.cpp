@@ -19,7 +19,6 @@ using scenarios::Influence;
 using scenarios::Sensitivity;
 
 constexpr std::size_t kStrongest = 3;
-constexpr double kRisk = 0.05;
 constexpr const char* kFailure = "not ok";
 
 std::string median_text(const Sensitivity& row, double value) {
@@ -60,7 +59,7 @@ std::string row_html(const Sensitivity& row) {
   std::size_t shown = 0;
   for (const Influence& each : row.influences) {
     if (shown == kStrongest) break;
-    if (!(each.corrected < kRisk)) continue;
+    if (!(each.corrected < scenarios::kInfluenceRisk)) continue;
     out += "<tr>" + cell(shown == 0 ? row.method : "") + cell(shown == 0 ? row.metric : "") +
            influence_cells(row, each) + "</tr>\n";
     ++shown;

@@ -33,7 +33,7 @@ using scenarios::BenchResult;
 
 constexpr std::size_t kDigestShown = 8;
 
-struct Options {
+struct BenchOptions {
   std::vector<std::string> methods;
   std::string suite;
   std::vector<fs::path> beside;
@@ -43,7 +43,7 @@ struct Options {
 };
 
 /// Methods of one kind, since a suite is of one.
-std::vector<scenarios::MethodPointer> methods_of(const Options& options) {
+std::vector<scenarios::MethodPointer> methods_of(const BenchOptions& options) {
   std::vector<scenarios::MethodPointer> methods = scenarios::find_methods(options.methods);
   for (const scenarios::MethodPointer& each : methods)
     if (each->info.kind != methods.front()->info.kind)
@@ -52,7 +52,7 @@ std::vector<scenarios::MethodPointer> methods_of(const Options& options) {
   return methods;
 }
 
-scenarios::Suite suite_of(const scenarios::DataRoot& data, const Options& options, scenarios::Kind kind) {
+scenarios::Suite suite_of(const scenarios::DataRoot& data, const BenchOptions& options, scenarios::Kind kind) {
   scenarios::Suite suite =
       scenarios::load_suite(data, options.suite.empty() ? scenarios::bench_suite_name(kind) : options.suite);
   if (suite.classes.empty()) throw BadInput("suite " + suite.name + " has no classes of draws (key 'draws')");
@@ -62,7 +62,7 @@ scenarios::Suite suite_of(const scenarios::DataRoot& data, const Options& option
 
 /// One name for what is to be run by this build: a run that was stopped goes on in it, and another method, or the same
 /// after a change, begins its own.
-fs::path database_of(const scenarios::DataRoot& data, const Options& options, const scenarios::Suite& suite,
+fs::path database_of(const scenarios::DataRoot& data, const BenchOptions& options, const scenarios::Suite& suite,
                      const std::vector<scenarios::MethodPointer>& methods) {
   if (!options.database.empty()) return options.database;
   std::vector<std::string> texts = {scenarios::build_id(), scenarios::data_digest(data),
@@ -74,7 +74,7 @@ fs::path database_of(const scenarios::DataRoot& data, const Options& options, co
 }
 
 /// Of the tree, and of files that were named, which are refused as a whole where they are of another suite.
-std::vector<BenchResult> stored_results(const scenarios::DataRoot& data, const Options& options,
+std::vector<BenchResult> stored_results(const scenarios::DataRoot& data, const BenchOptions& options,
                                         const scenarios::Suite& suite) {
   std::vector<BenchResult> all = scenarios::read_bench_results(scenarios::bench_results_file(data, suite.name));
   for (const fs::path& file : options.beside) {
@@ -87,7 +87,7 @@ std::vector<BenchResult> stored_results(const scenarios::DataRoot& data, const O
 }
 
 /// As it was asked for, without the folders of whose machine it was.
-std::string command_of(const Options& options) {
+std::string command_of(const BenchOptions& options) {
   std::string words = "tumble bench";
   for (const std::string& method : options.methods) {
     const fs::path path = method;
@@ -97,7 +97,7 @@ std::string command_of(const Options& options) {
   return words;
 }
 
-BenchPage page_of(const scenarios::Results& results, const scenarios::Suite& suite, const Options& options,
+BenchPage page_of(const scenarios::Results& results, const scenarios::Suite& suite, const BenchOptions& options,
                   const std::vector<scenarios::MethodPointer>& methods, std::vector<BenchResult> stored) {
   BenchPage page;
   for (const scenarios::MethodPointer& method : methods) {
@@ -126,7 +126,7 @@ void print(const Session& session, const std::vector<Table>& tables, const std::
     throw BadInput(std::string("standard output: ") + std::strerror(errno));
 }
 
-int bench(const Session& session, const Options& options) {
+int bench(const Session& session, const BenchOptions& options) {
   const scenarios::DataRoot data = session.data();
   const std::vector<scenarios::MethodPointer> methods = methods_of(options);
   const scenarios::Suite suite = suite_of(data, options, methods.front()->info.kind);
@@ -163,7 +163,7 @@ int bench(const Session& session, const Options& options) {
 }  // namespace
 
 Action declare_bench(VerbOptions& verb, const Session& session) {
-  auto options = std::make_shared<Options>();
+  auto options = std::make_shared<BenchOptions>();
   verb.add("METHOD", options->methods, "NAME.yaml or NAME.py of yours, or a name; several of one kind").required();
   verb.add("--suite", options->suite, "another suite whose draws are named [the standard one of the kind]");
   verb.add("--beside", options->beside, "FILE.jsonl of results that others have published, compared too")

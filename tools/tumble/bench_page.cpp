@@ -21,13 +21,13 @@ constexpr const char* kCost = "estimate_cpu_s";
 constexpr std::size_t kVersionShown = 40;
 
 /// All that stand on one page, those that ran first.
-struct Row {
+struct MethodRow {
   const BenchResult* result;
   std::string label;
 };
 
-std::vector<Row> rows_of(const BenchPage& page) {
-  std::vector<Row> rows;
+std::vector<MethodRow> rows_of(const BenchPage& page) {
+  std::vector<MethodRow> rows;
   for (const BenchResult& each : page.ran) rows.push_back({&each, each.method + " (now)"});
   for (const BenchResult& each : page.stored) rows.push_back({&each, each.method});
   return rows;
@@ -35,11 +35,11 @@ std::vector<Row> rows_of(const BenchPage& page) {
 
 /// What the others are paired with: the method that does nothing about the problem; where there is none on the page,
 /// the one that stands first in the registry.
-const BenchResult* baseline_of(const std::vector<Row>& rows) {
+const BenchResult* baseline_of(const std::vector<MethodRow>& rows) {
   const BenchResult* first = nullptr;
   for (const scenarios::Method& method : scenarios::methods()) {
     if (method.info.kind != rows.front().result->kind) continue;
-    const auto is_it = [&](const Row& row) { return row.result->method == method.info.name; };
+    const auto is_it = [&](const MethodRow& row) { return row.result->method == method.info.name; };
     const auto row = std::find_if(rows.begin(), rows.end(), is_it);
     if (row == rows.end()) continue;
     if (method.info.baseline) return row->result;
@@ -69,7 +69,7 @@ const char* sense_text(scenarios::Sense sense) {
   return "no contest";
 }
 
-Table metric_table(const scenarios::Suite& suite, const std::string& metric, const std::vector<Row>& rows,
+Table metric_table(const scenarios::Suite& suite, const std::string& metric, const std::vector<MethodRow>& rows,
                    const std::vector<BenchResult>& all) {
   const BenchResult* baseline = baseline_of(rows);
   std::vector<std::string> header = {"method"};
@@ -79,7 +79,7 @@ Table metric_table(const scenarios::Suite& suite, const std::string& metric, con
   if (baseline != nullptr) header.push_back("better than " + baseline->method + " in");
   Table table(fmt::format("{}: median, {}", metric, sense_text(scenarios::metric_info(metric).sense)), header);
   table.align_right_from(1);
-  for (const Row& row : rows) {
+  for (const MethodRow& row : rows) {
     std::vector<std::string> cells = {row.label};
     for (const scenarios::DrawClass& each : suite.classes)
       cells.push_back(cell_text(scenarios::bench_cell(*row.result, metric, each.name, all)));
@@ -94,10 +94,11 @@ Table metric_table(const scenarios::Suite& suite, const std::string& metric, con
 }
 
 /// Statuses, cost and where a result is from.
-Table origin_table(const scenarios::Suite& suite, const std::vector<Row>& rows, const std::vector<BenchResult>& all) {
+Table origin_table(const scenarios::Suite& suite, const std::vector<MethodRow>& rows,
+                   const std::vector<BenchResult>& all) {
   Table table(fmt::format("how each came about; {} {}", suite.name, scenarios::bench_suite_digest(suite)),
               {"method", "ok", "not ok", "CPU s a draw", "date", "version", "build"});
-  for (const Row& row : rows) {
+  for (const MethodRow& row : rows) {
     std::map<std::string, int> counts;
     for (const scenarios::BenchDraw& draw : row.result->draws) ++counts[to_string(draw.status)];
     const int ok = counts["ok"];
@@ -133,7 +134,7 @@ Table failure_table(const std::vector<BenchResult>& ran, std::span<const scenari
 
 std::vector<Table> bench_tables(const scenarios::Suite& suite, const BenchPage& page,
                                 std::span<const scenarios::Outcome> outcomes) {
-  const std::vector<Row> rows = rows_of(page);
+  const std::vector<MethodRow> rows = rows_of(page);
   std::vector<BenchResult> all = page.ran;
   all.insert(all.end(), page.stored.begin(), page.stored.end());
   std::vector<Table> tables;

@@ -14,6 +14,7 @@
 #include "scenarios/errors.hpp"
 #include "tools/tumble/arguments.hpp"
 #include "tools/tumble/asked.hpp"
+#include "tools/tumble/intervals.hpp"
 #include "tools/tumble/verbs.hpp"
 
 namespace tumble::tools {
@@ -28,7 +29,7 @@ using scenarios::FailureComparison;
 using scenarios::Finding;
 using scenarios::MetricComparison;
 
-struct Options {
+struct CompareOptions {
   std::filesystem::path database;
   std::vector<std::string> methods, metrics;
   std::string against, margin;
@@ -36,7 +37,7 @@ struct Options {
 };
 
 /// One method against the baseline, or against the one that is named last.
-scenarios::ComparisonOptions read(const Options& options) {
+scenarios::ComparisonOptions read(const CompareOptions& options) {
   scenarios::ComparisonOptions out;
   out.methods = options.methods;
   out.against = options.against;
@@ -54,21 +55,12 @@ scenarios::ComparisonOptions read(const Options& options) {
   return out;
 }
 
-std::string interval_text(const scenarios::Interval& interval) {
-  if (!std::isfinite(interval.low) && !std::isfinite(interval.high)) return "[-]";
-  return "[" + number_text(interval.low) + ", " + number_text(interval.high) + "]";
-}
-
 std::string title_of(const Contest& contest, const std::string& what) {
   return fmt::format("{}: {}, {}", contest.scenario, to_string(contest.kind), what);
 }
 
-bool one_section(const Contest& a, const Contest& b) {
-  return a.scenario == b.scenario && a.kind == b.kind && a.against == b.against;
-}
-
 /// A row's cells, each under its head.
-struct Row {
+struct ComparisonRow {
   std::vector<std::string> heads = {}, cells = {};
 
   void add(const std::string& head, std::string cell) {
@@ -83,8 +75,8 @@ struct Row {
   }
 };
 
-Row cells_of(const MetricComparison& row, bool margin, bool apart) {
-  Row out;
+ComparisonRow cells_of(const MetricComparison& row, bool margin, bool apart) {
+  ComparisonRow out;
   out.add("metric", row.metric);
   out.add("method", row.contest.method);
   out.add("draws", std::to_string(row.pairs));
@@ -116,8 +108,8 @@ std::string share_text(const scenarios::Interval& share) {
   return fmt::format("{:.1f} % [{:.1f}, {:.1f}]", 100.0 * share.value, 100.0 * share.low, 100.0 * share.high);
 }
 
-Row cells_of(const FailureComparison& row, bool apart) {
-  Row out;
+ComparisonRow cells_of(const FailureComparison& row, bool apart) {
+  ComparisonRow out;
   out.add("failure", row.what);
   out.add("method", row.contest.method);
   out.add("draws", std::to_string(row.pairs));
@@ -144,7 +136,7 @@ std::vector<Table> tables_of(const Comparisons& rows, const std::string& what, c
   std::vector<Table> tables;
   const Contest* open = nullptr;
   for (const auto& row : rows) {
-    Row own = cells(row);
+    ComparisonRow own = cells(row);
     if (open == nullptr || !one_section(*open, row.contest)) {
       tables.emplace_back(title_of(row.contest, what + row.contest.against), std::move(own.heads));
       tables.back().align_right_from(2);
@@ -153,14 +145,6 @@ std::vector<Table> tables_of(const Comparisons& rows, const std::string& what, c
     tables.back().add_row(std::move(own.cells));
   }
   return tables;
-}
-
-json finite(double value) {
-  return std::isfinite(value) ? json(value) : json();
-}
-
-json interval_json(const scenarios::Interval& i) {
-  return {{"value", finite(i.value)}, {"low", finite(i.low)}, {"high", finite(i.high)}};
 }
 
 json contest_json(const Contest& contest) {
@@ -210,7 +194,7 @@ json to_json(const Comparison& comparison, bool margin) {
   return {{"metrics", std::move(metrics)}, {"failures", std::move(failures)}};
 }
 
-int compare(const Session& session, const Options& options) {
+int compare(const Session& session, const CompareOptions& options) {
   const scenarios::ComparisonOptions asked = read(options);
   const scenarios::Results results(options.database, scenarios::Results::Mode::read_only);
   const Comparison comparison = scenarios::compare(scenarios::summarize(results), asked);
@@ -234,7 +218,7 @@ int compare(const Session& session, const Options& options) {
 }  // namespace
 
 Action declare_compare(VerbOptions& verb, const Session& session) {
-  auto options = std::make_shared<Options>();
+  auto options = std::make_shared<CompareOptions>();
   verb.add("DATABASE", options->database, "a results database, FILE.db").required();
   verb.add("--method", options->methods,
            "the method to compare; of several each with the last [all that need no truth, with the baseline]")

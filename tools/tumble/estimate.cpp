@@ -25,7 +25,7 @@ namespace {
 
 using scenarios::BadInput;
 
-struct Options {
+struct EstimateOptions {
   std::filesystem::path recording;
   std::string method;
   std::vector<std::string> parameters;
@@ -106,7 +106,7 @@ Table summary(const scenarios::Estimate& estimate) {
   return table;
 }
 
-int run_estimate(const Session& session, const Options& options) {
+int run_estimate(const Session& session, const EstimateOptions& options) {
   const sim::Sensors sensors = scenarios::read_sensors(options.recording);
   const scenarios::MethodPointer chosen = choose(options.method, {sensors.robot, !sensors.lidars.empty()});
   const scenarios::Method& method = *chosen;
@@ -144,7 +144,7 @@ int run_estimate(const Session& session, const Options& options) {
 }  // namespace
 
 Action declare_estimate(VerbOptions& verb, const Session& session) {
-  auto options = std::make_shared<Options>();
+  auto options = std::make_shared<EstimateOptions>();
   verb.add("RECORDING", options->recording, "a recording, FILE.h5").required().check(a_recording);
   verb.add("--method", options->method, "a method, as 'saave' or 'rate/saave'").required();
   verb.add("--set", options->parameters,

@@ -14,7 +14,7 @@ namespace tumble::tools {
 
 namespace {
 
-struct Options {
+struct ExportOptions {
   std::filesystem::path recording, out;
   std::string format, peer, points, frame;
   bool with_truth = false;
@@ -22,7 +22,7 @@ struct Options {
 };
 
 /// The one that is asked for, or that the output's ending tells.
-std::string format_of(const Options& options) {
+std::string format_of(const ExportOptions& options) {
   const std::string told = options.format.empty() ? scenarios::format_of_ending(options.out) : options.format;
   if (told.empty())
     throw scenarios::BadInput(options.out.string() +
@@ -31,14 +31,14 @@ std::string format_of(const Options& options) {
 }
 
 /// Says what was written, and where.
-int said(const Session& session, const Options& options, const std::string& what, const std::string& name) {
+int said(const Session& session, const ExportOptions& options, const std::string& what, const std::string& name) {
   Table table("", {"recording", what, "written to"});
   table.add_row({options.recording.string(), name, options.out.string()});
   session.print({table}, {{"recording", options.recording.string()}, {what, name}, {"output", options.out.string()}});
   return kDone;
 }
 
-int export_for_peer(const Session& session, const Options& options) {
+int export_for_peer(const Session& session, const ExportOptions& options) {
   const auto refuse = [](bool given, const char* option) {
     if (given) throw scenarios::BadInput(std::string(option) + ": --for says what is written");
   };
@@ -52,7 +52,7 @@ int export_for_peer(const Session& session, const Options& options) {
   return said(session, options, "for", options.peer);
 }
 
-int export_as(const Session& session, const Options& options) {
+int export_as(const Session& session, const ExportOptions& options) {
   const std::string format = format_of(options);
   const bool bag = scenarios::is_bag_format(format);
   if (options.with_truth && !bag)
@@ -83,7 +83,7 @@ int export_as(const Session& session, const Options& options) {
 }  // namespace
 
 Action declare_export(VerbOptions& verb, const Session& session) {
-  auto options = std::make_shared<Options>();
+  auto options = std::make_shared<ExportOptions>();
   std::string known;
   for (const std::string& format : scenarios::export_formats()) known += " " + format;
   verb.add("RECORDING", options->recording, "a recording, FILE.h5").required().check(a_recording);

@@ -31,7 +31,7 @@ namespace fs = std::filesystem;
 using nlohmann::json;
 using scenarios::GateResult;
 
-struct Options {
+struct GateOptions {
   std::string suite;
   int jobs = available_processors();
   fs::path database, accepted;
@@ -39,7 +39,7 @@ struct Options {
   bool accept = false;
 };
 
-fs::path gate_file(const scenarios::DataRoot& data, const Options& options, const std::string& suite) {
+fs::path gate_file(const scenarios::DataRoot& data, const GateOptions& options, const std::string& suite) {
   return options.accepted.empty() ? data.gates() / (suite + ".yaml") : options.accepted;
 }
 
@@ -49,7 +49,7 @@ bool is_of(const scenarios::MethodRun& run, const scenarios::MethodPointer& meth
 
 /// Methods of this build need not be given: what was accepted says which are held. Where a run is accepted, one that is
 /// given is held from then on.
-std::vector<scenarios::MethodPointer> given_methods(const Options& options) {
+std::vector<scenarios::MethodPointer> given_methods(const GateOptions& options) {
   for (const std::string& name : options.methods) {
     if (!options.accept && !scenarios::is_method_file(name))
       throw scenarios::BadInput("--method " + name +
@@ -60,7 +60,7 @@ std::vector<scenarios::MethodPointer> given_methods(const Options& options) {
 }
 
 /// Only what was accepted is run; where a run is accepted, what is given for the first time too.
-void keep_accepted(const scenarios::Gate& gate, const Options& options,
+void keep_accepted(const scenarios::Gate& gate, const GateOptions& options,
                    const std::vector<scenarios::MethodPointer>& given, scenarios::Suite& suite) {
   std::vector<std::string> methods = options.methods, names;
   const auto add = [](std::vector<std::string>& list, const std::string& name) {
@@ -147,7 +147,7 @@ json to_json(const std::vector<GateResult>& results, bool passes) {
 }
 
 /// The gate that is there, or, to be accepted for the first time, none yet.
-std::optional<scenarios::Gate> load(const scenarios::DataRoot& data, const Options& options,
+std::optional<scenarios::Gate> load(const scenarios::DataRoot& data, const GateOptions& options,
                                     const std::vector<scenarios::MethodPointer>& given, const std::string& suite) {
   const fs::path file = gate_file(data, options, suite);
   if (options.accept && !(fs::exists(file) && fs::exists(fs::path(file).replace_extension(".csv"))))
@@ -178,13 +178,13 @@ std::string certificate_text(const Session& session, const scenarios::DataRoot& 
 }
 
 /// Cases say themselves what is held.
-int run_case_gate(const Session& session, const scenarios::DataRoot& data, const Options& options) {
+int run_case_gate(const Session& session, const scenarios::DataRoot& data, const GateOptions& options) {
   if (!options.accepted.empty() || !options.methods.empty())
     throw scenarios::BadInput("--against, --method: a named case says itself what is held");
   return hold_cases(session, data, {options.suite, options.jobs, options.database, options.accept});
 }
 
-int run_gate(const Session& session, const Options& options) {
+int run_gate(const Session& session, const GateOptions& options) {
   const scenarios::DataRoot data = session.data();
   if (names_cases(data, options.suite)) return run_case_gate(session, data, options);
   scenarios::Suite suite = scenarios::load_suite(data, options.suite);
@@ -236,7 +236,7 @@ int run_gate(const Session& session, const Options& options) {
 }  // namespace
 
 Action declare_gate(VerbOptions& verb, const Session& session) {
-  auto options = std::make_shared<Options>();
+  auto options = std::make_shared<GateOptions>();
   verb.add("SUITE", options->suite,
            "a suite, a suite file, or a scenario: its fixed seeds are swept; 'regressions', or one of the named cases")
       .required()

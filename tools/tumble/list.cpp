@@ -29,7 +29,7 @@ json parameter_json(const sim::Parameter& p) {
           {"low", p.low},   {"high", p.high}, {"doc", p.doc}};
 }
 
-std::string bound_text(const sim::Parameter& p) {
+std::string bounds_of_parameter(const sim::Parameter& p) {
   if (p.low == -kUnbounded && p.high == kUnbounded) return "any";
   return "[" + number_text(p.low) + ", " + number_text(p.high) + "]";
 }
@@ -72,7 +72,7 @@ void add_part(Table& table, json& rows, const std::string& place, std::span<cons
   for (const sim::Parameter& p : known) {
     const auto found = given.find(std::string(p.name));
     const std::string value = found == given.end() ? "" : distribution_text(found->second);
-    table.add_row({place + "." + std::string(p.name), value, number_text(p.default_value), bound_text(p),
+    table.add_row({place + "." + std::string(p.name), value, number_text(p.default_value), bounds_of_parameter(p),
                    std::string(p.unit), std::string(p.doc)});
     json row = parameter_json(p);
     row["place"] = place;
@@ -177,8 +177,8 @@ Listing list_methods(const std::string& only) {
       const sim::Parameter& p = info.parameters[k];
       const bool first = k < info.parameters_first;
       (first ? parameters : further)
-          .add_row({name, std::string(p.name), number_text(p.default_value), bound_text(p), std::string(p.unit),
-                    std::string(p.doc)});
+          .add_row({name, std::string(p.name), number_text(p.default_value), bounds_of_parameter(p),
+                    std::string(p.unit), std::string(p.doc)});
       entry["parameters"].push_back(parameter_json(p));
       entry["parameters"].back()["first"] = first;
     }
@@ -207,8 +207,8 @@ Listing list_sensors(const scenarios::DataRoot& data, const std::string& only) {
     for (const auto& number : sheet.entries) {
       const auto p = std::find_if(known.begin(), known.end(),
                                   [&](const sim::Parameter& each) { return each.name == number.name; });
-      numbers.add_row(
-          {number.name, number_text(number.value), number.unit, p == known.end() ? "" : bound_text(*p), number.source});
+      numbers.add_row({number.name, number_text(number.value), number.unit,
+                       p == known.end() ? "" : bounds_of_parameter(*p), number.source});
       json row = {{"name", number.name}, {"value", number.value}, {"unit", number.unit}, {"source", number.source}};
       if (p != known.end())
         row.update({{"default", p->default_value}, {"low", p->low}, {"high", p->high}, {"doc", p->doc}});

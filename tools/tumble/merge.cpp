@@ -12,13 +12,13 @@ namespace tumble::tools {
 
 namespace {
 
-struct Options {
+struct MergeOptions {
   std::filesystem::path out;
   std::vector<std::filesystem::path> in;
   bool mixed = false;
 };
 
-int merge(const Session& session, const Options& options) {
+int merge(const Session& session, const MergeOptions& options) {
   scenarios::require_not_an_input(options.out, options.in);
   const scenarios::DatabaseOwner owner(options.out);
   const scenarios::MergeCounts counts = scenarios::merge_results(owner, options.in, options.mixed);
@@ -42,7 +42,7 @@ int merge(const Session& session, const Options& options) {
 }  // namespace
 
 Action declare_merge(VerbOptions& verb, const Session& session) {
-  auto options = std::make_shared<Options>();
+  auto options = std::make_shared<MergeOptions>();
   verb.add("OUT", options->out, "the database to make, or to add to").required();
   verb.add("IN", options->in, "databases to join").required();
   verb.add_flag("--mixed-builds", options->mixed, "join rows of different builds");

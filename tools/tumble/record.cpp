@@ -13,7 +13,7 @@ namespace tumble::tools {
 
 namespace {
 
-struct Options {
+struct RecordOptions {
   std::string scenario, seed;
   int threads = 1;
   std::filesystem::path file;
@@ -32,7 +32,7 @@ Table contents(const sim::Sensors& sensors) {
   return table;
 }
 
-int record(const Session& session, const Options& options) {
+int record(const Session& session, const RecordOptions& options) {
   const scenarios::DataRoot data = session.data();
   const scenarios::Scenario scenario = scenarios::load_scenario(data, options.scenario);
   const std::uint64_t seed = seed_of(scenario, options.seed);
@@ -54,7 +54,7 @@ int record(const Session& session, const Options& options) {
 }  // namespace
 
 Action declare_record(VerbOptions& verb, const Session& session) {
-  auto options = std::make_shared<Options>();
+  auto options = std::make_shared<RecordOptions>();
   verb.add("SCENARIO", options->scenario, "a scenario of the catalogue, or a scenario file")
       .required()
       .check(a_scenario(session));

@@ -26,7 +26,7 @@ namespace {
 
 using scenarios::BadInput;
 
-struct Options {
+struct RenderOptions {
   std::string what, seed;
   std::vector<std::filesystem::path> estimates;
   std::filesystem::path output;
@@ -39,7 +39,7 @@ struct Options {
 };
 
 /// All that a scene points to.
-struct Content {
+struct RenderContent {
   std::optional<sim::BuiltSituation> built;
   sim::Sensors sensors;
   sim::Truth truth;
@@ -52,7 +52,7 @@ bool is_recording(const std::string& what) {
 }
 
 /// World, sensors and truth of a recording.
-void load_situation(const scenarios::DataRoot& data, const Options& options, Content& content) {
+void load_situation(const scenarios::DataRoot& data, const RenderOptions& options, RenderContent& content) {
   const scenarios::RecordingInfo info = scenarios::read_info(options.what);
   if (info.situation_yaml.empty()) throw BadInput(options.what + ": holds no situation, so there is no world to draw");
   content.built = built_from(info, options.what, data);
@@ -62,7 +62,7 @@ void load_situation(const scenarios::DataRoot& data, const Options& options, Con
   content.truth = scenarios::read_truth(options.what);
 }
 
-void load_recording(const scenarios::DataRoot& data, const Options& options, Content& content) {
+void load_recording(const scenarios::DataRoot& data, const RenderOptions& options, RenderContent& content) {
   load_situation(data, options, content);
   content.scene.sensors = &content.sensors;
   content.scene.truth = &content.truth;
@@ -76,7 +76,7 @@ void load_recording(const scenarios::DataRoot& data, const Options& options, Con
   }
 }
 
-void load_draw(const scenarios::DataRoot& data, const Options& options, Content& content) {
+void load_draw(const scenarios::DataRoot& data, const RenderOptions& options, RenderContent& content) {
   const scenarios::Scenario scenario = scenarios::load_scenario(data, options.what);
   if (!options.estimates.empty()) throw BadInput("estimates are drawn into a recording, not into a scenario");
   if (options.film > 0) throw BadInput("--film shows the way of a recording; '" + options.what + "' is a scenario");
@@ -84,11 +84,11 @@ void load_draw(const scenarios::DataRoot& data, const Options& options, Content&
 }
 
 /// Maps of the estimates side by side, coloured by error.
-int render_maps(const Session& session, const Options& options, const scenarios::DataRoot& data) {
+int render_maps(const Session& session, const RenderOptions& options, const scenarios::DataRoot& data) {
   if (!is_recording(options.what) || options.estimates.empty()) {
     throw BadInput("--map shows the maps of estimates of a recording: FILE.h5 ESTIMATE...");
   }
-  Content content;
+  RenderContent content;
   load_situation(data, options, content);
   const sim::Surface surface(*content.built);
   std::vector<ErrorMap> maps;
@@ -119,7 +119,7 @@ constexpr std::size_t kFramesMax = 3000;
 /// A line every so often, of what takes minutes.
 constexpr double kSayEvery_s = 10.0;
 
-std::vector<std::uint8_t> video_of(const Session& session, const Options& options, const Scene& scene) {
+std::vector<std::uint8_t> video_of(const Session& session, const RenderOptions& options, const Scene& scene) {
   MovingOptions moving;
   moving.width = options.width;
   moving.height = options.height;
@@ -144,7 +144,7 @@ std::vector<std::uint8_t> video_of(const Session& session, const Options& option
   return moving_picture(scene, span, moving);
 }
 
-void require_video(const Options& options) {
+void require_video(const RenderOptions& options) {
   if (!is_recording(options.what))
     throw BadInput("--video shows the way of a recording; '" + options.what + "' is a scenario");
   if (options.film > 0 || options.map) throw BadInput("--video, --film and --map are three pictures: ask for one");
@@ -152,7 +152,7 @@ void require_video(const Options& options) {
     throw BadInput("--video writes a WebP: " + options.output.string() + " must end in .webp");
 }
 
-void write_picture(const Session& session, const Options& options, const Scene& scene) {
+void write_picture(const Session& session, const RenderOptions& options, const Scene& scene) {
   if (options.video) {
     const std::vector<std::uint8_t> bytes = video_of(session, options, scene);
     scenarios::replace_file(options.output, std::as_bytes(std::span(bytes)));
@@ -163,7 +163,7 @@ void write_picture(const Session& session, const Options& options, const Scene& 
   }
 }
 
-int render(const Session& session, const Options& options) {
+int render(const Session& session, const RenderOptions& options) {
   const scenarios::DataRoot data = session.data();
   if (options.video) require_video(options);
   std::vector<std::filesystem::path> inputs = options.estimates;
@@ -173,7 +173,7 @@ int render(const Session& session, const Options& options) {
     throw BadInput("--seed is for a scenario; '" + options.what + "' is a recording, of one draw");
   }
   if (options.map) return render_maps(session, options, data);
-  Content content;
+  RenderContent content;
   if (is_recording(options.what)) {
     load_recording(data, options, content);
   } else {
@@ -196,7 +196,7 @@ int render(const Session& session, const Options& options) {
 }  // namespace
 
 Action declare_render(VerbOptions& verb, const Session& session) {
-  auto options = std::make_shared<Options>();
+  auto options = std::make_shared<RenderOptions>();
   verb.add("WHAT", options->what, "a recording, FILE.h5, or a scenario (with --seed)")
       .required()
       .check([&session](const std::string& text) {

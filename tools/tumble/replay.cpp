@@ -22,7 +22,7 @@ namespace tumble::tools {
 
 namespace {
 
-struct Options {
+struct ReplayOptions {
   std::filesystem::path recording, page;
   std::vector<std::filesystem::path> estimates;
   std::string frame;
@@ -30,7 +30,7 @@ struct Options {
 };
 
 /// All that a replay points to.
-struct Content {
+struct ReplayContent {
   sim::Sensors sensors;
   std::optional<sim::Truth> truth;
   std::optional<sim::BuiltSituation> built;
@@ -39,8 +39,8 @@ struct Content {
 };
 
 /// The truth is opened for people's eyes; no estimate is made here.
-void load_recording(const Session& session, const Options& options, const scenarios::RecordingInfo& info,
-                    Content& content) {
+void load_recording(const Session& session, const ReplayOptions& options, const scenarios::RecordingInfo& info,
+                    ReplayContent& content) {
   content.sensors = scenarios::read_sensors(options.recording);
   if (info.has_truth) content.truth = scenarios::read_truth(options.recording);
   if (info.situation_yaml.empty()) return;
@@ -48,7 +48,7 @@ void load_recording(const Session& session, const Options& options, const scenar
   content.surface.emplace(*content.built);
 }
 
-void load_estimates(const Session& session, const Options& options, Content& content, ReplayInput& input) {
+void load_estimates(const Session& session, const ReplayOptions& options, ReplayContent& content, ReplayInput& input) {
   const scenarios::Frame frame = frame_of(options.frame, !content.sensors.imus.empty());
   for (const std::filesystem::path& path : options.estimates) {
     scenarios::Kind kind;
@@ -69,12 +69,12 @@ std::string title_of(const scenarios::RecordingInfo& info, const std::filesystem
   return info.scenario.empty() ? recording.filename().string() : fmt::format("{}, seed {}", info.scenario, info.seed);
 }
 
-int make_replay(const Session& session, const Options& options) {
+int make_replay(const Session& session, const ReplayOptions& options) {
   std::vector<std::filesystem::path> inputs = {options.recording};
   inputs.insert(inputs.end(), options.estimates.begin(), options.estimates.end());
   prepare_output(options.page, inputs);
   const scenarios::RecordingInfo info = scenarios::read_info(options.recording);
-  Content content;
+  ReplayContent content;
   load_recording(session, options, info, content);
   ReplayInput input;
   input.title = title_of(info, options.recording);
@@ -110,7 +110,7 @@ int make_replay(const Session& session, const Options& options) {
 }  // namespace
 
 Action declare_replay(VerbOptions& verb, const Session& session) {
-  auto options = std::make_shared<Options>();
+  auto options = std::make_shared<ReplayOptions>();
   verb.add("RECORDING", options->recording, "the recording, FILE.h5, with or without truth")
       .required()
       .check(a_recording);

@@ -21,6 +21,7 @@
 #include "tools/report/distributions.hpp"
 #include "tools/report/sensitivity_html.hpp"
 #include "tools/tumble/arguments.hpp"
+#include "tools/tumble/intervals.hpp"
 #include "tools/tumble/numbers_of_draws.hpp"
 #include "tools/tumble/verbs.hpp"
 
@@ -36,15 +37,10 @@ using scenarios::Section;
 using scenarios::Summary;
 using scenarios::Wins;
 
-struct Options {
+struct ReportVerbOptions {
   std::filesystem::path database, page, badge;
   bool all = false;
 };
-
-std::string interval_text(const scenarios::Interval& interval) {
-  if (!std::isfinite(interval.low) && !std::isfinite(interval.high)) return "[-]";
-  return "[" + number_text(interval.low) + ", " + number_text(interval.high) + "]";
-}
 
 std::string wins_text(const Wins& wins) {
   return wins.pairs == 0 ? "" : fmt::format("{} of {}", wins.count, wins.pairs);
@@ -80,14 +76,6 @@ Table draws_table(const Summary& summary) {
                    std::to_string(rejected == summary.rejected.end() ? 0 : rejected->second)});
   }
   return table;
-}
-
-json finite(double value) {
-  return std::isfinite(value) ? json(value) : json();
-}
-
-json interval_json(const scenarios::Interval& i) {
-  return {{"value", finite(i.value)}, {"low", finite(i.low)}, {"high", finite(i.high)}};
 }
 
 /// Everything that the page's tables hold, in SI units.
@@ -171,7 +159,7 @@ void add_sensitivity(const Session& session, const std::string& data_found, Repo
   }
 }
 
-PageContent content_of(const Session& session, const Options& options, ReportInput input) {
+PageContent content_of(const Session& session, const ReportVerbOptions& options, ReportInput input) {
   ReportOptions report;
   report.database = options.database;
   report.page = options.page;
@@ -183,7 +171,7 @@ PageContent content_of(const Session& session, const Options& options, ReportInp
   return report_content(std::move(input), report);
 }
 
-void write_page(const Session& session, const Options& options, ReportInput input) {
+void write_page(const Session& session, const ReportVerbOptions& options, ReportInput input) {
   const std::string plotly = options.page.empty() ? "" : read_text(session.plotly());
   const PageContent content = content_of(session, options, std::move(input));
   if (!options.badge.empty()) scenarios::replace_file(options.badge, badge_svg(badge_of(content)));
@@ -192,7 +180,7 @@ void write_page(const Session& session, const Options& options, ReportInput inpu
   scenarios::replace_file(options.page, page_html(content, plotly));
 }
 
-int report(const Session& session, const Options& options) {
+int report(const Session& session, const ReportVerbOptions& options) {
   for (const std::filesystem::path& output : {options.page, options.badge}) {
     if (!output.empty()) prepare_output(output, std::vector<std::filesystem::path>{options.database});
   }
@@ -232,7 +220,7 @@ int report(const Session& session, const Options& options) {
 }  // namespace
 
 Action declare_report(VerbOptions& verb, const Session& session) {
-  auto options = std::make_shared<Options>();
+  auto options = std::make_shared<ReportVerbOptions>();
   verb.add("DATABASE", options->database, "a results database, FILE.db").required();
   verb.add("-o,--output", options->page, "the page, FILE.html [tables alone]");
   verb.add("--badge", options->badge, "a badge, FILE.svg: the suite and how many contests are won");

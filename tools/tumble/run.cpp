@@ -30,7 +30,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-struct Options {
+struct RunOptions {
   std::string scenario, seed;  ///< an empty seed: 1, or a named case's own
   std::vector<std::string> methods, parameters;
   std::string vary;
@@ -40,7 +40,7 @@ struct Options {
 };
 
 /// A scenario and nothing else: somebody looks what this is.
-bool is_bare(const Options& options) {
+bool is_bare(const RunOptions& options) {
   return options.seed.empty() && options.methods.empty() && options.folder.empty() && options.learnt.empty() &&
          options.parameters.empty() && options.vary.empty();
 }
@@ -53,7 +53,7 @@ fs::path free_folder(const std::string& name) {
 }
 
 /// Ours beside the method that does nothing about the problem, of every kind that has both for this scenario.
-Options first_run(Options options, const scenarios::Scenario& scenario) {
+RunOptions first_run(RunOptions options, const scenarios::Scenario& scenario) {
   constexpr std::pair<const char*, const char*> kPairs[] = {
       {"rate/raw", "rate/tumble"}, {"position/rolling", "position/tumble"}, {"slam/icp_raw", "slam/tumble"}};
   const auto applies = [&](const char* name) {
@@ -66,7 +66,7 @@ Options first_run(Options options, const scenarios::Scenario& scenario) {
   return options;
 }
 
-void say_what_next(const Session& session, const Options& options) {
+void say_what_next(const Session& session, const RunOptions& options) {
   const std::string folder = options.folder.string();
   session.note("left in " + folder +
                "/: recording.h5, situation.yaml, estimates/, snapshots/scene.png and film.png, replay.html");
@@ -119,7 +119,7 @@ std::vector<scenarios::MethodPointer> pointers(const std::vector<scenarios::Meth
 }
 
 /// The point of a curve that is asked for, or none.
-scenarios::Setting setting_of(const scenarios::DataRoot& data, const Options& options, std::uint64_t seed) {
+scenarios::Setting setting_of(const scenarios::DataRoot& data, const RunOptions& options, std::uint64_t seed) {
   if (options.vary.empty()) return {};
   const scenarios::Setting setting = scenarios::setting_from(options.vary);
   scenarios::Variation variation{{}, {setting.value}};
@@ -141,11 +141,11 @@ void say_troubles(const Session& session, const scenarios::RunResult& result) {
   }
 }
 
-int run(const Session& session, const Options& given) {
+int run(const Session& session, const RunOptions& given) {
   const scenarios::DataRoot data = session.data();
   const scenarios::Scenario scenario = scenarios::load_scenario(data, given.scenario);
   const bool first = is_bare(given);
-  const Options options = first ? first_run(given, scenario) : given;
+  const RunOptions options = first ? first_run(given, scenario) : given;
   const bool any_draw = options.seed.empty() && !scenario.named_case;
   const std::uint64_t seed = any_draw ? 1 : seed_of(scenario, options.seed);
   const auto selected = select_methods(options.methods);
@@ -194,7 +194,7 @@ int run(const Session& session, const Options& given) {
 }  // namespace
 
 Action declare_run(VerbOptions& verb, const Session& session) {
-  auto options = std::make_shared<Options>();
+  auto options = std::make_shared<RunOptions>();
   verb.add("SCENARIO", options->scenario, "a scenario of the catalogue, or a scenario file")
       .required()
       .check(a_scenario(session));

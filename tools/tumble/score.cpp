@@ -26,7 +26,7 @@ namespace tumble::tools {
 
 namespace {
 
-struct Options {
+struct ScoreOptions {
   std::filesystem::path estimate, recording;
   std::string frame, kind;
 };
@@ -40,7 +40,7 @@ void move_to_clock(std::int64_t origin_ns, scenarios::Estimate& estimate) {
 }
 
 /// What was seen and what is claimed must share some time, and the truth must know something.
-void require_common_time(const Options& options, const scenarios::Estimate& estimate, const sim::Truth& truth) {
+void require_common_time(const ScoreOptions& options, const scenarios::Estimate& estimate, const sim::Truth& truth) {
   const bool known = std::any_of(truth.p_WB_m.begin(), truth.p_WB_m.end(), [](const auto& p) { return p.allFinite(); });
   if (!known) throw scenarios::BadInput(options.recording.string() + ": its truth holds no known place");
   if (estimate.poses.empty()) return;
@@ -87,7 +87,7 @@ Standing standing_of(const scenarios::Estimate& estimate, const sim::Truth& trut
 }
 
 /// A trajectory that shares next to nothing with the recording has no score: all of its errors would be zero.
-void require_compared(const Options& options, const Standing& standing) {
+void require_compared(const ScoreOptions& options, const Standing& standing) {
   if (standing.compared >= kComparedMin && standing.spanned() >= kSpannedShareMin) return;
   throw scenarios::BadInput(
       fmt::format("{}: {} of its {} poses lie within {}, and cover {:.1f} % of its {:.3f} s; must be at least {} poses "
@@ -156,7 +156,7 @@ scenarios::Kind kind_of(const std::string& name, const sim::Sensors& sensors) {
   return name == "slam" ? scenarios::Kind::slam : scenarios::Kind::position;
 }
 
-int score_estimate(const Session& session, const Options& options) {
+int score_estimate(const Session& session, const ScoreOptions& options) {
   const scenarios::RecordingInfo info = scenarios::read_info(options.recording);
   if (!info.has_truth) throw scenarios::BadInput(options.recording.string() + ": holds no truth to score against");
   const sim::Sensors sensors = scenarios::read_sensors(options.recording);
@@ -215,7 +215,7 @@ int score_estimate(const Session& session, const Options& options) {
 }  // namespace
 
 Action declare_score(VerbOptions& verb, const Session& session) {
-  auto options = std::make_shared<Options>();
+  auto options = std::make_shared<ScoreOptions>();
   verb.add("ESTIMATE", options->estimate, "folder of an estimate, or a TUM file (t x y z qx qy qz qw)").required();
   verb.add("RECORDING", options->recording, "the recording with its truth, FILE.h5").required();
   verb.add("--frame", options->frame,

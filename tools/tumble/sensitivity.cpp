@@ -10,6 +10,7 @@
 
 #include "scenarios/errors.hpp"
 #include "scenarios/provenance/data_digest.hpp"
+#include "tools/tumble/intervals.hpp"
 #include "tools/tumble/numbers_of_draws.hpp"
 #include "tools/tumble/verbs.hpp"
 
@@ -23,9 +24,8 @@ using scenarios::Influence;
 using scenarios::Sensitivity;
 
 constexpr std::size_t kShown = 3;
-constexpr double kRisk = 0.05;
 
-struct Options {
+struct SensitivityVerbOptions {
   std::filesystem::path database;
   std::vector<std::string> methods, metrics;
   bool motion = false, all = false, dependence = false;
@@ -41,7 +41,8 @@ void require_same_data(const scenarios::Results& results, const scenarios::DataR
                    ": what its draws were cannot be told; --motion asks for what their motions were alone");
 }
 
-std::map<std::string, scenarios::NumbersOfDraws> numbers_of(const Session& session, const Options& options,
+std::map<std::string, scenarios::NumbersOfDraws> numbers_of(const Session& session,
+                                                            const SensitivityVerbOptions& options,
                                                             const scenarios::Results& results,
                                                             const scenarios::Summary& summary) {
   if (options.motion) return numbers_of_motions(results.draws(), summary);
@@ -54,7 +55,7 @@ std::map<std::string, scenarios::NumbersOfDraws> numbers_of(const Session& sessi
 std::vector<Influence> shown(const Sensitivity& row, bool all) {
   std::vector<Influence> out;
   for (const Influence& each : row.influences) {
-    if (all || (out.size() < kShown && each.corrected < kRisk)) out.push_back(each);
+    if (all || (out.size() < kShown && each.corrected < scenarios::kInfluenceRisk)) out.push_back(each);
   }
   return out;
 }
@@ -108,10 +109,6 @@ Table dependence_table(const std::vector<Sensitivity>& rows, bool all) {
   return table;
 }
 
-json finite(double value) {
-  return std::isfinite(value) ? json(value) : json();
-}
-
 json to_json(const std::vector<scenarios::DependenceClass>& dependence) {
   json out = json::array();
   for (const scenarios::DependenceClass& part : dependence) {
@@ -153,7 +150,7 @@ json to_json(const std::vector<Sensitivity>& rows) {
   return out;
 }
 
-int sensitivity(const Session& session, const Options& options) {
+int sensitivity(const Session& session, const SensitivityVerbOptions& options) {
   const scenarios::Results results(options.database, scenarios::Results::Mode::read_only);
   const scenarios::Summary summary = scenarios::summarize(results);
   const std::vector<Sensitivity> rows = scenarios::sensitivities(
@@ -172,7 +169,7 @@ int sensitivity(const Session& session, const Options& options) {
 }  // namespace
 
 Action declare_sensitivity(VerbOptions& verb, const Session& session) {
-  auto options = std::make_shared<Options>();
+  auto options = std::make_shared<SensitivityVerbOptions>();
   verb.add("DATABASE", options->database, "a results database, FILE.db").required();
   verb.add("--method", options->methods, "a method; repeat for more [all that need no truth]").one_at_a_time();
   verb.add("--metric", options->metrics, "a metric; repeat for more [the headline ones of the kind]").one_at_a_time();

@@ -16,6 +16,7 @@
 #include "scenarios/sweep/sweep.hpp"
 #include "scenarios/sweep/sweep_notes.hpp"
 #include "tools/tumble/arguments.hpp"
+#include "tools/tumble/intervals.hpp"
 #include "tools/tumble/verbs.hpp"
 
 namespace tumble::tools {
@@ -28,7 +29,7 @@ using scenarios::Fate;
 using scenarios::ShrinkLine;
 using scenarios::Shrunk;
 
-struct Options {
+struct ShrinkVerbOptions {
   std::string scenario, seed, method, metric, control;
   std::optional<double> worse_than;
   int budget = scenarios::ShrinkOptions{}.budget;
@@ -36,7 +37,7 @@ struct Options {
 };
 
 /// The bound of the method's kind, where it applies to the robot: what even it cannot do is no case.
-scenarios::MethodPointer control_of(const Options& options, const scenarios::Method& method,
+scenarios::MethodPointer control_of(const ShrinkVerbOptions& options, const scenarios::Method& method,
                                     const scenarios::Scenario& scenario, double time_limit_s) {
   if (options.control == "none") return nullptr;
   if (!options.control.empty()) return one_method(options.control, time_limit_s);
@@ -55,10 +56,6 @@ double value_of(const scenarios::Outcome& outcome, const std::string& metric) {
     if (score.metric == metric) return score.value;
   }
   return std::nan("");
-}
-
-json number_json(double value) {
-  return std::isfinite(value) ? json(value) : json();
 }
 
 std::string amount_text(const std::optional<double>& value) {
@@ -86,7 +83,7 @@ Table outcomes_table(const Shrunk& shrunk, const std::string& metric) {
   return table;
 }
 
-json to_json(const Shrunk& shrunk, const std::string& metric, const Options& options) {
+json to_json(const Shrunk& shrunk, const std::string& metric, const ShrinkVerbOptions& options) {
   json lines = json::array();
   for (const ShrinkLine& line : shrunk.lines) {
     json row = {{"what", line.what}, {"fate", to_string(line.fate)}};
@@ -94,12 +91,12 @@ json to_json(const Shrunk& shrunk, const std::string& metric, const Options& opt
     if (line.to) row["to"] = *line.to;
     if (line.without) {
       row["without"] = {{"status", to_string(line.without->status)},
-                        {"value", number_json(value_of(*line.without, metric))}};
+                        {"value", finite(value_of(*line.without, metric))}};
     }
     lines.push_back(std::move(row));
   }
   const auto side = [&](const scenarios::Outcome& outcome) {
-    return json{{"status", to_string(outcome.status)}, {"value", number_json(value_of(outcome, metric))}};
+    return json{{"status", to_string(outcome.status)}, {"value", finite(value_of(outcome, metric))}};
   };
   return {{"failure", shrunk.failure},       {"metric", metric},          {"drawn", side(shrunk.drawn)},
           {"shrunk", side(shrunk.left)},     {"runs", shrunk.runs},       {"complete", shrunk.complete},
@@ -107,7 +104,7 @@ json to_json(const Shrunk& shrunk, const std::string& metric, const Options& opt
 }
 
 /// The words that shrink the same draw once more.
-std::string command_of(const Options& options, std::uint64_t seed) {
+std::string command_of(const ShrinkVerbOptions& options, std::uint64_t seed) {
   using scenarios::shell_word;
   std::string words = "tumble shrink " + shell_word(options.scenario) + " --seed " + std::to_string(seed) +
                       " --method " + shell_word(options.method);
@@ -136,7 +133,7 @@ void require_own_name(const scenarios::DataRoot& data, const std::string& name) 
   }
 }
 
-void require_whole(const Options& options) {
+void require_whole(const ShrinkVerbOptions& options) {
   if (options.metric.empty() != !options.worse_than)
     throw BadInput("--metric and --worse-than go together: which number, and from where on a run fails");
   if (options.worse_than && !std::isfinite(*options.worse_than)) throw BadInput("--worse-than is not a finite number");
@@ -148,7 +145,7 @@ std::string control_text(const Shrunk& shrunk, const scenarios::ShrinkOptions& o
   return shrunk.controlled ? name + " does not fail on it" : name + " fails on the draw too, and controls nothing";
 }
 
-int run_shrink(const Session& session, const Options& options) {
+int run_shrink(const Session& session, const ShrinkVerbOptions& options) {
   require_whole(options);
   const std::string name = name_of(options.file);
   const scenarios::DataRoot data = session.data();
@@ -187,7 +184,7 @@ int run_shrink(const Session& session, const Options& options) {
 }  // namespace
 
 Action declare_shrink(VerbOptions& verb, const Session& session) {
-  auto options = std::make_shared<Options>();
+  auto options = std::make_shared<ShrinkVerbOptions>();
   verb.add("SCENARIO", options->scenario, "a scenario, a named case, or a scenario file")
       .required()
       .check(a_scenario(session));

@@ -29,7 +29,7 @@ namespace {
 /// Unless told: each example costs a draw run once more and its pictures.
 constexpr std::uint64_t kExamplesMax = 3, kDrawsPerExample = 8, kFailuresMax = 8, kDrawsPerFailure = 4;
 
-struct Options {
+struct SweepVerbOptions {
   std::string suite;
   std::string seeds, shard;
   std::vector<std::string> scenarios, methods, again;
@@ -53,7 +53,7 @@ void take_scenarios(const std::vector<std::string>& named, scenarios::Suite& sui
 }
 
 /// Whoever means a scenario and names a suite of the same name waits for others.
-void say_what_it_holds(const Session& session, const Options& options, const scenarios::Suite& suite) {
+void say_what_it_holds(const Session& session, const SweepVerbOptions& options, const scenarios::Suite& suite) {
   if (!options.scenarios.empty() || suite.scenarios.size() < 2) return;
   if (std::ranges::count(suite.scenarios, options.suite) == 0) return;
   session.note(fmt::format("suite '{0}': {1}; --scenario {0} for that one alone", options.suite,
@@ -61,7 +61,7 @@ void say_what_it_holds(const Session& session, const Options& options, const sce
 }
 
 /// The suite with what the command line changes of it. Returns false when this shard has no seed.
-bool select(const scenarios::DataRoot& data, const Options& options, scenarios::Suite& suite) {
+bool select(const scenarios::DataRoot& data, const SweepVerbOptions& options, scenarios::Suite& suite) {
   suite = scenarios::load_suite(data, options.suite);
   take_scenarios(options.scenarios, suite);
   const bool recorded = !suite.recordings.empty();
@@ -99,7 +99,7 @@ void certify(const Session& session, const scenarios::DataRoot& data, const std:
 }
 
 /// The words that ask for the same sweep once more, but for its database.
-std::string command_of(const Options& options) {
+std::string command_of(const SweepVerbOptions& options) {
   using scenarios::shell_word;
   std::string words = shell_word(options.suite);
   for (const std::string& scenario : options.scenarios) words += " --scenario " + shell_word(scenario);
@@ -110,7 +110,7 @@ std::string command_of(const Options& options) {
 }
 
 /// Behind those of the sweeps before into the same database.
-void note_command(scenarios::Results results, const Options& options) {
+void note_command(scenarios::Results results, const SweepVerbOptions& options) {
   const std::string known = results.note(scenarios::kCommandNote);
   results.set_note(scenarios::kCommandNote, scenarios::with_commands(known, command_of(options)));
 }
@@ -119,7 +119,7 @@ void note_command(scenarios::Results results, const Options& options) {
 /// pictures costs the sweep a line, not its table and its status. Returns false when it was
 /// stopped.
 bool leave_examples(const Session& session, const scenarios::DataRoot& data, const scenarios::Suite& suite,
-                    const Options& options, std::uint64_t draws, const std::atomic<bool>& stop) {
+                    const SweepVerbOptions& options, std::uint64_t draws, const std::atomic<bool>& stop) {
   if (!options.shard.empty()) return true;
   LeaveOptions leave;
   leave.count = options.examples.value_or(std::min(kExamplesMax, draws / kDrawsPerExample));
@@ -169,7 +169,7 @@ std::vector<scenarios::OutcomeStatus> statuses_named(const std::vector<std::stri
   return statuses;
 }
 
-scenarios::SweepOptions sweep_options(const Options& options, const std::atomic<bool>& stop) {
+scenarios::SweepOptions sweep_options(const SweepVerbOptions& options, const std::atomic<bool>& stop) {
   scenarios::SweepOptions out;
   out.jobs = options.jobs;
   out.memory_mib = options.memory_mib;
@@ -181,7 +181,7 @@ scenarios::SweepOptions sweep_options(const Options& options, const std::atomic<
 }
 
 /// Recorded in the results before anything runs. An empty word asks nothing.
-std::optional<scenarios::Question> ask(const Options& options, const scenarios::DataRoot& data,
+std::optional<scenarios::Question> ask(const SweepVerbOptions& options, const scenarios::DataRoot& data,
                                        const scenarios::Suite& suite) {
   if (options.until.empty()) return std::nullopt;
   if (!options.shard.empty()) throw scenarios::BadInput("--until: a shard has no looks at all of the draws");
@@ -195,7 +195,8 @@ std::optional<scenarios::Question> ask(const Options& options, const scenarios::
   return question;
 }
 
-void say_what_is_kept(const Session& session, const Options& options, const scenarios::SweepProgress& progress) {
+void say_what_is_kept(const Session& session, const SweepVerbOptions& options,
+                      const scenarios::SweepProgress& progress) {
   if (options.keep == "none") return;
   session.note(fmt::format("{} of {} draws to keep stand in {}.files/kept/SCENARIO/SEED", progress.kept,
                            progress.to_keep, options.database.string()));
@@ -205,7 +206,7 @@ void say_what_is_kept(const Session& session, const Options& options, const scen
                  progress.not_kept.empty() ? "stopped before" : progress.not_kept.c_str());
 }
 
-int run_sweep(const Session& session, const Options& options) {
+int run_sweep(const Session& session, const SweepVerbOptions& options) {
   scenarios::parse_keep(options.keep);
   const scenarios::DataRoot data = session.data();
   scenarios::Suite suite;
@@ -257,7 +258,7 @@ int run_sweep(const Session& session, const Options& options) {
 }  // namespace
 
 Action declare_sweep(VerbOptions& verb, const Session& session) {
-  auto options = std::make_shared<Options>();
+  auto options = std::make_shared<SweepVerbOptions>();
   verb.add("SUITE", options->suite, "a suite, a suite file, or a scenario").required().check(a_suite(session));
   verb.add("--scenario", options->scenarios, "of the suite's scenarios this one; repeat for more [all of them]")
       .one_at_a_time();

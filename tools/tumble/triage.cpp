@@ -26,7 +26,7 @@ using nlohmann::json;
 using scenarios::BadInput;
 using scenarios::TriageRow;
 
-struct Options {
+struct TriageVerbOptions {
   std::string what, seed, seeds, method, metric;
   std::optional<double> limit;
   int jobs = available_processors();
@@ -86,14 +86,14 @@ std::string conclusion(const std::vector<TriageRow>& rows) {
   return cures.empty() ? "no input cures the failure: it lies in the method or in the scenario" : "cured by: " + cures;
 }
 
-scenarios::Failure failure_of(const Options& options, const std::string& metric) {
+scenarios::Failure failure_of(const TriageVerbOptions& options, const std::string& metric) {
   if (!options.metric.empty() && !options.limit) throw BadInput("--metric needs --limit: from where on a run fails");
   if (!options.limit) return {};
   if (!std::isfinite(*options.limit)) throw BadInput("--limit is not a finite number");
   return {metric, *options.limit};
 }
 
-int run_triage_of_draw(const Session& session, const Options& options) {
+int run_triage_of_draw(const Session& session, const TriageVerbOptions& options) {
   const scenarios::DataRoot data = session.data();
   const scenarios::Scenario scenario = scenarios::load_scenario(data, options.what);
   const std::uint64_t seed = seed_of(scenario, options.seed);
@@ -120,7 +120,7 @@ std::function<void(const std::string&)> known_name(const Session& session) {
 }
 
 /// A seed, or a named case, is one draw; what else stands there is a suite.
-bool is_one_draw(const Session& session, const Options& options) {
+bool is_one_draw(const Session& session, const TriageVerbOptions& options) {
   const bool named = !options.what.ends_with(".yaml") && names_cases(session.data(), options.what);
   const bool one = !options.seed.empty() || (named && options.seeds.empty());
   if (one && (!options.seeds.empty() || !options.database.empty()))
@@ -129,14 +129,14 @@ bool is_one_draw(const Session& session, const Options& options) {
 }
 
 /// What one draw of a suite is asked with.
-std::string words_of(const Options& options) {
+std::string words_of(const TriageVerbOptions& options) {
   std::string words = " --method " + scenarios::shell_word(options.method);
   if (!options.metric.empty()) words += " --metric " + scenarios::shell_word(options.metric);
   if (options.limit) words += fmt::format(" --limit {}", *options.limit);
   return words;
 }
 
-int run_triage(const Session& session, const Options& options) {
+int run_triage(const Session& session, const TriageVerbOptions& options) {
   if (is_one_draw(session, options)) return run_triage_of_draw(session, options);
   SuiteTriage asked;
   asked.method = one_method(options.method, 0.9 * asked.options.triage.timeout_s);
@@ -156,7 +156,7 @@ int run_triage(const Session& session, const Options& options) {
 }  // namespace
 
 Action declare_triage(VerbOptions& verb, const Session& session) {
-  auto options = std::make_shared<Options>();
+  auto options = std::make_shared<TriageVerbOptions>();
   verb.add("SCENARIO", options->what,
            "with --seed a scenario, a named case or a scenario file; without it a suite, a suite file or a scenario")
       .required()

@@ -24,7 +24,7 @@ using scenarios::DrawName;
 using scenarios::DrawTriage;
 using scenarios::InputWorth;
 
-std::string interval_text(const scenarios::Interval& interval) {
+std::string known_interval_text(const scenarios::Interval& interval) {
   if (std::isnan(interval.value)) return "";
   return fmt::format("[{}, {}]", number_text(interval.low), number_text(interval.high));
 }
@@ -40,21 +40,22 @@ Table table_of(const std::vector<InputWorth>& worths, const std::string& metric)
   for (const InputWorth& worth : worths) {
     table.add_row({worth.scenario.empty() ? "all" : worth.scenario, worth.input, std::to_string(worth.draws),
                    std::to_string(worth.failed), std::to_string(worth.cured), value_text(worth.cured_share.value),
-                   interval_text(worth.cured_share), std::to_string(worth.broken), value_text(worth.improvement.value),
-                   interval_text(worth.improvement), std::to_string(worth.better), std::to_string(worth.worse),
-                   fmt::format("{:.2g}", worth.corrected)});
+                   known_interval_text(worth.cured_share), std::to_string(worth.broken),
+                   value_text(worth.improvement.value), known_interval_text(worth.improvement),
+                   std::to_string(worth.better), std::to_string(worth.worse), fmt::format("{:.2g}", worth.corrected)});
   }
   return table;
 }
 
-json number_json(double value) {
+json signed_number_json(double value) {
   if (std::isinf(value)) return value > 0.0 ? "inf" : "-inf";
   return std::isnan(value) ? json() : json(value);
 }
 
-json interval_json(const scenarios::Interval& interval) {
-  return {
-      {"value", number_json(interval.value)}, {"low", number_json(interval.low)}, {"high", number_json(interval.high)}};
+json signed_interval_json(const scenarios::Interval& interval) {
+  return {{"value", signed_number_json(interval.value)},
+          {"low", signed_number_json(interval.low)},
+          {"high", signed_number_json(interval.high)}};
 }
 
 json draw_json(const DrawTriage& draw, const std::string& words) {
@@ -79,8 +80,8 @@ json to_json(const std::vector<InputWorth>& worths, const std::vector<DrawTriage
                     {"failed", worth.failed},
                     {"cured", worth.cured},
                     {"broken", worth.broken},
-                    {"share_cured", interval_json(worth.cured_share)},
-                    {"median_improvement", interval_json(worth.improvement)},
+                    {"share_cured", signed_interval_json(worth.cured_share)},
+                    {"median_improvement", signed_interval_json(worth.improvement)},
                     {"better", worth.better},
                     {"worse", worth.worse},
                     {"chance", worth.chance},

@@ -19,7 +19,7 @@ constexpr std::int64_t kAhead_ns = 10'000'000;
 /// What messages usually wait for each other; beyond it the clocks drift or stamps are no times of measuring.
 constexpr std::int64_t kSteady_ns = 500'000'000;
 
-std::string seconds(std::int64_t time_ns) {
+std::string seconds_text(std::int64_t time_ns) {
   std::array<char, 32> text{};
   std::snprintf(text.data(), text.size(), "%.6g s", 1e-9 * static_cast<double>(time_ns));
   return text.data();
@@ -37,8 +37,8 @@ std::int64_t between(std::int64_t from_ns, std::int64_t to_ns) {
 
 /// What a stamp does after the one before.
 std::string course(std::int64_t before_ns, std::int64_t now_ns) {
-  if (now_ns > before_ns) return "rises by " + seconds(between(before_ns, now_ns));
-  if (now_ns < before_ns) return "goes back by " + seconds(between(now_ns, before_ns));
+  if (now_ns > before_ns) return "rises by " + seconds_text(between(before_ns, now_ns));
+  if (now_ns < before_ns) return "goes back by " + seconds_text(between(now_ns, before_ns));
   return now_ns == 0 ? "is 0, as the one before" : "stands still";
 }
 
@@ -79,7 +79,7 @@ std::string BagStamps::remark() const {
   const bool changes = between(least_lag_ns_, most_lag_ns_) > kSteady_ns;
   const std::string taken = source_ == StampSource::header ? "headers" : "records";
   return std::string(other_clock() || changes ? "caution: " : "") + "the bag recorded its messages " +
-         seconds(least_lag_ns_) + " to " + seconds(most_lag_ns_) + " after the stamps of their headers" +
+         seconds_text(least_lag_ns_) + " to " + seconds_text(most_lag_ns_) + " after the stamps of their headers" +
          (other_clock() ? ": another clock?"
           : changes     ? ": do the clocks drift?"
                         : "") +

@@ -88,12 +88,12 @@ std::vector<Event> first_readings(std::size_t imus, const std::vector<Event>& ev
 }
 
 /// Under which names a sensor stands in a bag.
-struct Place {
+struct SensorPlace {
   std::string topic, frame;
 };
 
-std::vector<Place> imu_places(const sim::Sensors& sensors, const std::optional<ReaderNames>& names) {
-  std::vector<Place> out;
+std::vector<SensorPlace> imu_places(const sim::Sensors& sensors, const std::optional<ReaderNames>& names) {
+  std::vector<SensorPlace> out;
   for (const sim::ImuRecord& imu : sensors.imus) {
     const std::string name = file_stem(imu.name, "imu", out.size());
     out.push_back({"/" + name, name});
@@ -102,8 +102,8 @@ std::vector<Place> imu_places(const sim::Sensors& sensors, const std::optional<R
   return out;
 }
 
-std::vector<Place> lidar_places(const sim::Sensors& sensors, const std::optional<ReaderNames>& names) {
-  std::vector<Place> out;
+std::vector<SensorPlace> lidar_places(const sim::Sensors& sensors, const std::optional<ReaderNames>& names) {
+  std::vector<SensorPlace> out;
   for (const sim::LidarRecord& lidar : sensors.lidars) {
     const std::string name = file_stem(lidar.name, "lidar", out.size());
     out.push_back({"/" + name + "/points", name});
@@ -183,13 +183,13 @@ class Export {
   void write(const Event& event, std::int64_t stamp) {
     switch (event.kind) {
       case Event::imu: {
-        const Place& place = imus_[event.of];
+        const SensorPlace& place = imus_[event.of];
         return bag_.write(place.topic, stamp,
                           imu_message(sensors_.imus[event.of], event.index, header_of(stamp, place.frame)));
       }
       case Event::sweep: {
         const sim::LidarRecord& lidar = sensors_.lidars[event.of];
-        const Place& place = lidars_[event.of];
+        const SensorPlace& place = lidars_[event.of];
         const std::int64_t start_ns = stamp_of(lidar.sweep_start_ns[event.index]);
         const ros::Header header = header_of(start_ns, place.frame);
         if (writing_.points == nullptr)
@@ -230,9 +230,9 @@ class Export {
   const BagWriting& writing_;
   BagWriter& bag_;
   std::int64_t origin_ns_;
-  std::vector<Place> imus_, lidars_;     ///< of those sensors that are written, the first ones
-  std::string body_;                     ///< its frame
-  std::optional<std::int64_t> tick_ns_;  ///< the clock's last one
+  std::vector<SensorPlace> imus_, lidars_;  ///< of those sensors that are written, the first ones
+  std::string body_;                        ///< its frame
+  std::optional<std::int64_t> tick_ns_;     ///< the clock's last one
 };
 
 void write_bag(const sim::Sensors& sensors, const BagWriting& writing, BagWriter& bag) {

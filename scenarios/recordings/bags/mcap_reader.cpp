@@ -10,9 +10,9 @@
 
 namespace tumble::scenarios {
 
-namespace {
+namespace mcap {
 
-using namespace mcap;
+namespace {
 
 /// Messages that wait because later chunks may hold earlier ones.
 constexpr std::uint64_t kWaitingMax = 1u << 30;
@@ -179,8 +179,10 @@ class McapReader : public BagReader {
 
 }  // namespace
 
+}  // namespace mcap
+
 std::unique_ptr<BagReader> open_mcap(const std::vector<std::filesystem::path>& files) {
-  return std::make_unique<McapReader>(files);
+  return std::make_unique<mcap::McapReader>(files);
 }
 
 }  // namespace tumble::scenarios

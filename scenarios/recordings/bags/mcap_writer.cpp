@@ -15,9 +15,9 @@
 
 namespace tumble::scenarios {
 
-namespace {
+namespace mcap {
 
-using namespace mcap;
+namespace {
 
 /// A chunk is closed once it holds so many bytes.
 constexpr std::size_t kChunkBytes = 1u << 20;
@@ -161,8 +161,10 @@ class McapWriter : public BagWriter {
 
 }  // namespace
 
+}  // namespace mcap
+
 std::unique_ptr<BagWriter> make_mcap_writer(const std::filesystem::path& file) {
-  return std::make_unique<McapWriter>(file);
+  return std::make_unique<mcap::McapWriter>(file);
 }
 
 }  // namespace tumble::scenarios

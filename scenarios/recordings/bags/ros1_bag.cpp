@@ -78,7 +78,7 @@ class QuietBag {
   QuietBag& operator=(const QuietBag&) = delete;
 };
 
-std::string one_line(std::string text) {
+std::string without_line_ends(std::string text) {
   std::replace(text.begin(), text.end(), '\n', ' ');
   return text;
 }
@@ -92,7 +92,7 @@ auto guarded(const std::filesystem::path& path, const char* what, Call&& call) {
   } catch (const BadInput&) {
     throw;
   } catch (const std::exception& error) {
-    throw BadInput(path.string() + ": " + what + ": " + one_line(error.what()));
+    throw BadInput(path.string() + ": " + what + ": " + without_line_ends(error.what()));
   }
 }
 

@@ -144,7 +144,7 @@ class Ros2BagWriter : public BagWriter {
 
 /// The files of a bag, in order, and how they are stored: "sqlite3" or "mcap", and what of it is packed: "", "file" or
 /// "message".
-struct Storage {
+struct StoredBag {
   std::string kind = "sqlite3";
   std::vector<path> files;
   std::string packed = {};
@@ -165,7 +165,7 @@ std::string packed_by(const YAML::Node& root, const path& metadata) {
   return mode;
 }
 
-Storage storage_of(const path& bag) {
+StoredBag storage_of(const path& bag) {
   if (!std::filesystem::is_directory(bag)) {
     const bool packed = bag.extension() == ".zstd";
     const path name = packed ? bag.stem() : bag;
@@ -173,7 +173,7 @@ Storage storage_of(const path& bag) {
   }
   const path metadata = bag / "metadata.yaml";
   if (!std::filesystem::is_regular_file(metadata)) fail_at(bag, "holds no metadata.yaml: no ROS 2 bag");
-  Storage out;
+  StoredBag out;
   try {
     const YAML::Node root = YAML::LoadFile(metadata.string())["rosbag2_bagfile_information"];
     out.kind = root["storage_identifier"].as<std::string>();
@@ -257,7 +257,7 @@ std::unique_ptr<BagWriter> make_ros2_writer(const path& folder) {
 }
 
 std::unique_ptr<BagReader> open_ros2_bag(const path& bag) {
-  const Storage storage = storage_of(bag);
+  const StoredBag storage = storage_of(bag);
   const auto open = [&](const std::vector<path>& files) -> std::unique_ptr<BagReader> {
     if (storage.kind == "mcap") return open_mcap(files);
     return std::make_unique<Ros2BagReader>(files);

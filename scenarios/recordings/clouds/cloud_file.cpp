@@ -78,7 +78,7 @@ Cloud to_columns(const pcl::PCLPointCloud2& cloud, std::size_t points) {
 }
 
 /// Whether a word is a number and nothing else: "nan" and "inf" are, "0,5" and "x" are not.
-bool is_number(std::string_view word) {
+bool is_number_of_pcl(std::string_view word) {
   if (word.starts_with('+')) word.remove_prefix(1);
   double value = 0.0;
   const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), value);
@@ -98,7 +98,7 @@ void require_numbers(const std::filesystem::path& path, const CloudHeader& heade
     std::uint64_t words = 0;
     for (std::size_t begin = 0; (begin = line.find_first_not_of(" \t\r", begin)) != std::string::npos;) {
       const std::size_t end = std::min(line.find_first_of(" \t\r", begin), line.size());
-      if (!is_number(std::string_view(line).substr(begin, end - begin))) {
+      if (!is_number_of_pcl(std::string_view(line).substr(begin, end - begin))) {
         throw BadInput(path.string() + ":" + std::to_string(number) + ": word " + std::to_string(words + 1) +
                        " is no number (decimals are written with a point)");
       }

@@ -15,11 +15,11 @@ namespace tumble::scenarios {
 
 namespace {
 
-struct Unit {
+struct TimeUnit {
   const char* name;
   double ns;
 };
-constexpr std::array<Unit, 4> kUnits = {{{"s", 1e9}, {"ms", 1e6}, {"us", 1e3}, {"ns", 1.0}}};
+constexpr std::array<TimeUnit, 4> kUnits = {{{"s", 1e9}, {"ms", 1e6}, {"us", 1e3}, {"ns", 1.0}}};
 constexpr std::array<const char*, 8> kNames = {"t",          "time",        "timestamp",   "timestamps",
                                                "time_stamp", "offset_time", "time_offset", "offset"};
 /// Share of the sweep period that the times of a sweep span: a sector of 7 degrees at least, and some overlap at most.
@@ -36,15 +36,15 @@ std::string lower(std::string text) {
 }
 
 /// The unit that a name ends in; null when in none.
-const Unit* unit_of_name(const std::string& name) {
-  const auto ends = [&](const Unit& unit) { return name.ends_with(std::string("_") + unit.name); };
+const TimeUnit* unit_of_name(const std::string& name) {
+  const auto ends = [&](const TimeUnit& unit) { return name.ends_with(std::string("_") + unit.name); };
   const auto* found = std::find_if(kUnits.begin(), kUnits.end(), ends);
   return found == kUnits.end() ? nullptr : found;
 }
 
 bool is_time(const std::string& field) {
   std::string name = lower(field);
-  if (const Unit* unit = unit_of_name(name)) name.resize(name.size() - std::string(unit->name).size() - 1);
+  if (const TimeUnit* unit = unit_of_name(name)) name.resize(name.size() - std::string(unit->name).size() - 1);
   return std::find(kNames.begin(), kNames.end(), name) != kNames.end();
 }
 
@@ -81,22 +81,22 @@ std::pair<double, double> reach(const Cloud& cloud, const std::string& field) {
   return out;
 }
 
-bool fits(double span, const Unit& unit, double period_ns) {
+bool fits(double span, const TimeUnit& unit, double period_ns) {
   return span * unit.ns > kSpanMin * period_ns && span * unit.ns <= kSpanMax * period_ns;
 }
 
-std::string share_of(double span, const Unit& unit, double period_ns) {
+std::string share_of(double span, const TimeUnit& unit, double period_ns) {
   std::string text = std::string("in ") + unit.name + " that is ";
   append_number(text, static_cast<float>(100.0 * span * unit.ns / period_ns));
   return text + " % of the sweep period";
 }
 
 /// Refuses a unit that is stated, by a flag or by the field's name, where the numbers say another one.
-void require_no_other_unit(const Unit& stated, double span, double period_ns, const std::string& field,
+void require_no_other_unit(const TimeUnit& stated, double span, double period_ns, const std::string& field,
                            const std::string& where) {
   if (!(period_ns > 0.0) || fits(span, stated, period_ns)) return;
   const auto* read =
-      std::find_if(kUnits.begin(), kUnits.end(), [&](const Unit& each) { return fits(span, each, period_ns); });
+      std::find_if(kUnits.begin(), kUnits.end(), [&](const TimeUnit& each) { return fits(span, each, period_ns); });
   if (read == kUnits.end()) return;
   std::string line = where + ": the field '" + field + "' is stated to be in " + stated.name + " and spans ";
   append_number(line, span);
@@ -106,7 +106,7 @@ void require_no_other_unit(const Unit& stated, double span, double period_ns, co
 
 /// The unit by the size of the numbers.
 double unit_by_size(double span, double largest, double period_ns, const std::string& field, const std::string& where) {
-  for (const Unit& unit : kUnits) {
+  for (const TimeUnit& unit : kUnits) {
     if (period_ns > 0.0 && fits(span, unit, period_ns)) return unit.ns;
     // of stamps since the epoch the largest unit that makes them old enough
     if (!(period_ns > 0.0) && largest >= kEpochMin_s * 1e9 / unit.ns && largest < kEpochMin_s * 1e12 / unit.ns)
@@ -140,7 +140,8 @@ PointTimeRule find_point_times(const std::vector<Cloud>& first, std::int64_t per
   }
   if (rule.field.empty() || spans.empty()) return {};
   const std::string unit = reading.time_unit;
-  const auto* named = std::find_if(kUnits.begin(), kUnits.end(), [&](const Unit& each) { return unit == each.name; });
+  const auto* named =
+      std::find_if(kUnits.begin(), kUnits.end(), [&](const TimeUnit& each) { return unit == each.name; });
   const double span = upper_median(spans), period = static_cast<double>(period_ns);
   if (!unit.empty() && named == kUnits.end())
     throw BadInput("the unit of times is '" + unit + "', must be s, ms, us or ns");

@@ -18,7 +18,7 @@ struct Name {
 };
 
 template <class Value>
-using Names = std::vector<std::pair<std::string_view, Value>>;
+using UnitNames = std::vector<std::pair<std::string_view, Value>>;
 
 const std::vector<std::string_view> kTimes = {"t",     "time", "timestamp", "timestamps",
                                               "stamp", "ts",   "elapsed",   "secondselapsed"};
@@ -27,17 +27,17 @@ const std::vector<std::string_view> kRates = {
 const std::vector<std::string_view> kForces = {
     "a", "acc", "accel", "accelerometer", "acceleration", "linearacceleration", "f", "specificforce", "arss", "linacc"};
 
-const Names<int> kTimeUnits = {{"s", 9},  {"sec", 9},  {"secs", 9}, {"seconds", 9}, {"ms", 6},         {"msec", 6},
-                               {"us", 3}, {"usec", 3}, {"ns", 0},   {"nsec", 0},    {"nanoseconds", 0}};
-const Names<GyroUnit> kRateUnits = {
+const UnitNames<int> kTimeUnits = {{"s", 9},  {"sec", 9},  {"secs", 9}, {"seconds", 9}, {"ms", 6},         {"msec", 6},
+                                   {"us", 3}, {"usec", 3}, {"ns", 0},   {"nsec", 0},    {"nanoseconds", 0}};
+const UnitNames<GyroUnit> kRateUnits = {
     {"rads", GyroUnit::rad_s},   {"radps", GyroUnit::rad_s}, {"rads1", GyroUnit::rad_s},
     {"radsec", GyroUnit::rad_s}, {"degs", GyroUnit::deg_s},  {"dps", GyroUnit::deg_s},
     {"degps", GyroUnit::deg_s},  {"degs1", GyroUnit::deg_s}, {"degsec", GyroUnit::deg_s}};
-const Names<AccelUnit> kForceUnits = {{"ms2", AccelUnit::m_s2},
-                                      {"mss", AccelUnit::m_s2},
-                                      {"mps2", AccelUnit::m_s2},
-                                      {"g", AccelUnit::g},
-                                      {"gs", AccelUnit::g}};
+const UnitNames<AccelUnit> kForceUnits = {{"ms2", AccelUnit::m_s2},
+                                          {"mss", AccelUnit::m_s2},
+                                          {"mps2", AccelUnit::m_s2},
+                                          {"g", AccelUnit::g},
+                                          {"gs", AccelUnit::g}};
 
 std::string letters(std::string_view text) {
   constexpr std::string_view kSquare = "\xC2\xB2", kDegree = "\xC2\xB0";
@@ -52,7 +52,7 @@ std::string letters(std::string_view text) {
 }
 
 template <class Value>
-std::optional<Value> value_of(const Names<Value>& names, std::string_view name) {
+std::optional<Value> value_of(const UnitNames<Value>& names, std::string_view name) {
   const auto found = std::find_if(names.begin(), names.end(), [&](const auto& each) { return each.first == name; });
   return found == names.end() ? std::nullopt : std::optional(found->second);
 }
@@ -70,7 +70,7 @@ Name split_brackets(std::string_view field) {
 
 /// "time_ms", "gyro_x_deg_s": the unit follows at an underscore, which begins after the axis.
 template <class Value, class IsQuantity>
-Name split_suffix(std::string_view field, const Names<Value>& units, const IsQuantity& is_quantity) {
+Name split_suffix(std::string_view field, const UnitNames<Value>& units, const IsQuantity& is_quantity) {
   for (std::size_t at = field.find('_'); at != std::string_view::npos; at = field.find('_', at + 1)) {
     Name name{letters(field.substr(0, at)), letters(field.substr(at))};
     if (is_quantity(name.quantity) && value_of(units, name.unit)) return name;
@@ -108,8 +108,8 @@ class HeaderReader {
   }
 
   template <class Unit>
-  std::optional<Unit> triad(const std::vector<std::string_view>& names, const Names<Unit>& units, const char* called,
-                            std::array<std::size_t, 3>& columns) {
+  std::optional<Unit> triad(const std::vector<std::string_view>& names, const UnitNames<Unit>& units,
+                            const char* called, std::array<std::size_t, 3>& columns) {
     std::array<std::optional<std::size_t>, 3> found;
     std::array<std::optional<Unit>, 3> stated;
     const auto is_axis = [&](std::string_view quantity) { return axis_of(names, quantity).has_value(); };
@@ -155,7 +155,7 @@ class HeaderReader {
     column = from;
   }
   template <class Unit>
-  std::optional<Unit> unit_of(const Names<Unit>& units, const Name& name, std::size_t i) const {
+  std::optional<Unit> unit_of(const UnitNames<Unit>& units, const Name& name, std::size_t i) const {
     if (name.unit.empty()) return std::nullopt;
     std::optional<Unit> unit = value_of(units, name.unit);
     if (!unit) fail("column '" + text(i) + "' is in a unit that is not known");

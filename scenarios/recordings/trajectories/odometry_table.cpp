@@ -32,7 +32,7 @@ constexpr std::array<const char*, 9> kOdometryColumns = {
 };
 
 /// Of a longer line one byte more than a header may have: a file without line ends is not read whole for it.
-std::string header_line(const std::filesystem::path& file) {
+std::string odometry_header(const std::filesystem::path& file) {
   std::ifstream stream(file, std::ios::binary);
   std::string line(kHeaderMax_bytes + 2, '\0');
   if (std::filesystem::is_regular_file(file)) stream.getline(line.data(), static_cast<std::streamsize>(line.size()));
@@ -70,11 +70,11 @@ std::array<std::size_t, kOdometryColumns.size()> places_in(const std::filesystem
 }  // namespace
 
 bool is_odometry(const std::filesystem::path& file) {
-  return header_line(file).starts_with(std::string(kFirst) + ",");
+  return odometry_header(file).starts_with(std::string(kFirst) + ",");
 }
 
 std::vector<ReferencePose> read_odometry_poses(const std::filesystem::path& file) {
-  const std::string header = header_line(file);
+  const std::string header = odometry_header(file);
   if (header.size() > kHeaderMax_bytes) {
     throw BadInput(file.string() + ":1: the header has more than " + std::to_string(kHeaderMax_bytes) + " bytes");
   }
