@@ -92,11 +92,11 @@ bool reads_lidars(const MethodInfo& info) {
 /// Methods of kind `rate` read no lidar. What is kept has them as the draw's methods read them, whichever are run now.
 Lidars lidars_for(const DrawTask& task, bool recordings_unseen) {
   const bool kept = task.keeping.when != Keeping::When::never && task.keeping.lidars;
-  const bool read = kept || std::any_of(task.runs.begin(), task.runs.end(), [&](const DrawTask::Run& run) {
-                      const MethodInfo& info = run.method->info;
-                      return needs_lidar(run.setting) ||
-                             (recordings_unseen ? reads_lidars(info) : info.kind != Kind::rate);
-                    });
+  const bool read =
+      kept || std::any_of(task.runs.begin(), task.runs.end(), [&](const DrawTask::Run& run) {
+        const MethodInfo& info = run.method->info;
+        return needs_lidar(run.setting) || (recordings_unseen ? reads_lidars(info) : info.kind != Kind::rate);
+      });
   return read ? Lidars::simulated : Lidars::left_out;
 }
 
@@ -183,10 +183,9 @@ void run_draw(const DataRoot& data, const DrawTask& task, double timeout_s, int 
   std::optional<sim::Surface> surface;
   const std::string& name = task.name;
   try {
-    draw = task.recording != nullptr
-               ? read_draw(*task.recording)
-               : simulate_draw(data, with_setting(*task.scenario, task.setting), task.seed, 1,
-                               lidars_for(task, recordings_unseen));
+    draw = task.recording != nullptr ? read_draw(*task.recording)
+                                     : simulate_draw(data, with_setting(*task.scenario, task.setting), task.seed, 1,
+                                                     lidars_for(task, recordings_unseen));
     const bool maps = std::any_of(task.runs.begin(), task.runs.end(),
                                   [](const DrawTask::Run& run) { return run.method->info.kind == Kind::slam; });
     if (maps && draw->built) surface.emplace(*draw->built);

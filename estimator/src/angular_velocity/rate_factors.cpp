@@ -141,8 +141,7 @@ Vector3d flight_curvature(const RateKnot& knot, const RigConstants& rig) {
   const Vector3d &w = knot.rate_rad_s, &alpha = knot.acceleration_rad_s2, &t = rig.lever_arm_m;
   const Jerk jerk = jerk_of(knot, rig);
   const Vector3d& j = jerk.value;
-  const Vector3d snap =
-      -jerk.J_inv * (j.cross(jerk.Jw) + 2.0 * alpha.cross(jerk.Ja) + w.cross(Vector3d(jerk.J * j)));
+  const Vector3d snap = -jerk.J_inv * (j.cross(jerk.Jw) + 2.0 * alpha.cross(jerk.Ja) + w.cross(Vector3d(jerk.J * j)));
   return snap.cross(t) + j.cross(w.cross(t)) + 2.0 * alpha.cross(alpha.cross(t)) + w.cross(j.cross(t));
 }
 
