@@ -82,12 +82,19 @@ bool read_until(Process& process, double deadline_s, std::string& buffer) {
   }
 }
 
+/// Of this build's, those that make maps alone; somebody else's may read all that its kind is given.
+bool reads_lidars(const MethodInfo& info) {
+  return info.kind == Kind::slam || (info.kind != Kind::rate && !info.version.empty());
+}
+
 /// Methods of kind `rate` read no lidar. What is kept has them as the draw's methods read them, whichever are run now.
-Lidars lidars_for(const DrawTask& task) {
+Lidars lidars_for(const DrawTask& task, bool recordings_unseen) {
   const bool kept = task.keeping.when != Keeping::When::never && task.keeping.lidars;
-  const bool read = kept || std::any_of(task.runs.begin(), task.runs.end(), [](const DrawTask::Run& run) {
-                      return run.method->info.kind != Kind::rate || needs_lidar(run.setting);
-                    });
+  const bool read =
+      kept || std::any_of(task.runs.begin(), task.runs.end(), [&](const DrawTask::Run& run) {
+        const MethodInfo& info = run.method->info;
+        return needs_lidar(run.setting) || (recordings_unseen ? reads_lidars(info) : info.kind != Kind::rate);
+      });
   return read ? Lidars::simulated : Lidars::left_out;
 }
 
@@ -169,14 +176,14 @@ std::vector<Outcome> without_answer(const DrawTask& task, OutcomeStatus status, 
   return outcomes;
 }
 
-void run_draw(const DataRoot& data, const DrawTask& task, double timeout_s, int fd) {
+void run_draw(const DataRoot& data, const DrawTask& task, double timeout_s, int fd, bool recordings_unseen) {
   std::optional<SimulatedDraw> draw;
   std::optional<sim::Surface> surface;
   const std::string& name = task.name;
   try {
-    draw = task.recording != nullptr
-               ? read_draw(*task.recording)
-               : simulate_draw(data, with_setting(*task.scenario, task.setting), task.seed, 1, lidars_for(task));
+    draw = task.recording != nullptr ? read_draw(*task.recording)
+                                     : simulate_draw(data, with_setting(*task.scenario, task.setting), task.seed, 1,
+                                                     lidars_for(task, recordings_unseen));
     const bool maps = std::any_of(task.runs.begin(), task.runs.end(),
                                   [](const DrawTask::Run& run) { return run.method->info.kind == Kind::slam; });
     if (maps && draw->built) surface.emplace(*draw->built);

@@ -40,8 +40,8 @@ std::vector<Outcome> without_answer(const DrawTask& task, OutcomeStatus status, 
 
 /// Simulates one draw, without lidars where no method reads them, and tells `fd` what came of it, one message a line: a
 /// rejection when it cannot be drawn or simulated, or an outcome per run as each ends. The last word, an empty message,
-/// is its caller's. Runs in a worker.
-void run_draw(const DataRoot& data, const DrawTask& task, double timeout_s, int fd);
+/// is its caller's. `recordings_unseen` as in SweepOptions. Runs in a worker.
+void run_draw(const DataRoot& data, const DrawTask& task, double timeout_s, int fd, bool recordings_unseen = false);
 
 /// Runs one method in a process of its own for at most `timeout_s` of wall time. A crash, a time-out or an exception is
 /// an outcome. Cost: CPU and peak memory of the estimate alone, memory above what the draw's process held. The estimate

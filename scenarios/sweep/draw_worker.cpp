@@ -32,7 +32,7 @@ void serve(const WorkerTerms& terms, int tasks, int fd) {
   std::string buffer;
   while (const std::optional<std::string> line = next_line(tasks, buffer)) {
     if (line->empty()) return;
-    run_draw(terms.data, terms.plan.from_line(*line), terms.timeout_s, fd);
+    run_draw(terms.data, terms.plan.from_line(*line), terms.timeout_s, fd, terms.recordings_unseen);
     malloc_trim(0);  // an idle worker holds nothing of its last draw
     // the last word: whatever ends the process before it, the draw's own destructors too, is of this draw
     write_all(fd, to_line({}));

@@ -15,8 +15,9 @@ namespace tumble::scenarios {
 struct WorkerTerms {
   const DataRoot& data;
   const SweepPlan& plan;
-  double timeout_s;   ///< of a method
-  double memory_mib;  ///< of data, of the worker and of each process that it makes
+  double timeout_s;                ///< of a method
+  double memory_mib;               ///< of data, of the worker and of each process that it makes
+  bool recordings_unseen = false;  ///< as in SweepOptions
 };
 
 /// A process that serves one draw after the other. What it is told and what it says are lines of text, so that nothing

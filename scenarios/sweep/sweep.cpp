@@ -69,7 +69,7 @@ class Sweep {
         started_s_(now_s()),
         plan_(data, suite, options, database),
         kept_(database),
-        terms_{data, plan_, suite.timeout_s, options.memory_mib} {}
+        terms_{data, plan_, suite.timeout_s, options.memory_mib, options.recordings_unseen} {}
 
   SweepProgress run() {
     plan_.require_same_recordings(results_);

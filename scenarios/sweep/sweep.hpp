@@ -79,6 +79,9 @@ struct SweepOptions {
   std::vector<OutcomeStatus> again;  ///< statuses whose rows are run once more: crashed, timeout, killed
   Keep keep;               ///< draws whose recording and estimates are left beside the database; none: as it is
   RecordingInfo versions;  ///< of program and engine, for recordings that are kept
+  /// Where nobody asks for the digest of a recording, which tells whether it holds lidars: draws whose methods of this
+  /// build read none are simulated without them, estimates and scores the same. Not together with `keep`.
+  bool recordings_unseen = false;
 };
 
 /// Makes the database, or opens it, as one of this suite, build, models and scenarios. Throws BadInput when it is of

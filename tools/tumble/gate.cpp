@@ -208,6 +208,7 @@ int run_gate(const Session& session, const GateOptions& options) {
   scenarios::SweepOptions how;
   how.jobs = options.jobs;
   how.stop = &interrupt.raised();
+  how.recordings_unseen = options.database.empty();
   const scenarios::SweepProgress progress = sweep_with_progress(session, data, suite, owner, how);
   if (progress.draws_done < progress.draws_total) return say_stopped(progress);
 

@@ -24,12 +24,10 @@ Eigen::Matrix<double, 3, 5> basis_times(const Vector3d& v) {
   return out;
 }
 
-// Angular jerk of torque-free rotation about which a knot is taken to turn, and its derivatives.
+// Angular jerk of torque-free rotation about which a knot is taken to turn.
 struct Jerk {
-  Vector3d value;
-  Matrix3d by_rate, by_acceleration;
-  Eigen::Matrix<double, 3, 5> by_inertia;
   Matrix3d J, J_inv;
+  Vector3d Jw, Ja, value;
 };
 
 // The derivative of J alpha + w x J w = 0 by time: J j = -(alpha x J w + w x J alpha), rate_smoother.md (R15).
@@ -38,15 +36,35 @@ Jerk jerk_of(const RateKnot& knot, const RigConstants& rig) {
   Jerk out;
   out.J = rig.inertia_matrix();
   out.J_inv = out.J.inverse();
-  const Vector3d Jw = out.J * w, Ja = out.J * alpha;
-  out.value = -out.J_inv * (alpha.cross(Jw) + w.cross(Ja));
-  out.by_rate = -out.J_inv * (so3::hat(alpha) * out.J - so3::hat(Ja));
-  out.by_acceleration = -out.J_inv * (so3::hat(w) * out.J - so3::hat(Jw));
-  Eigen::Matrix<double, 3, 5> moved = basis_times(out.value);
+  out.Jw = out.J * w;
+  out.Ja = out.J * alpha;
+  out.value = -out.J_inv * (alpha.cross(out.Jw) + w.cross(out.Ja));
+  return out;
+}
+
+// What it changes by; apart, because who asks for the jerk alone asks several times a sample.
+struct JerkDerivatives {
+  Matrix3d by_rate, by_acceleration;
+  Eigen::Matrix<double, 3, 5> by_inertia;
+};
+
+JerkDerivatives derivatives_of(const Jerk& jerk, const RateKnot& knot) {
+  const Vector3d &w = knot.rate_rad_s, &alpha = knot.acceleration_rad_s2;
+  JerkDerivatives out;
+  out.by_rate = -jerk.J_inv * (so3::hat(alpha) * jerk.J - so3::hat(jerk.Ja));
+  out.by_acceleration = -jerk.J_inv * (so3::hat(w) * jerk.J - so3::hat(jerk.Jw));
+  Eigen::Matrix<double, 3, 5> moved = basis_times(jerk.value);
   moved.noalias() += so3::hat(alpha).lazyProduct(basis_times(w));
   moved.noalias() += so3::hat(w).lazyProduct(basis_times(alpha));
-  out.by_inertia = -out.J_inv.lazyProduct(moved);
+  out.by_inertia = -jerk.J_inv.lazyProduct(moved);
   return out;
+}
+
+// The knot `delay_s` before, as far as Euler's equation without torque takes it back: rate_smoother.md (R16).
+RateKnot earlier_by(double delay_s, const RateKnot& knot, const Jerk& jerk) {
+  const double half = 0.5 * delay_s * delay_s;
+  return {knot.rate_rad_s - delay_s * knot.acceleration_rad_s2 + half * jerk.value,
+          knot.acceleration_rad_s2 - delay_s * jerk.value};
 }
 
 }  // namespace
@@ -95,19 +113,26 @@ RateFactor flight_factor(const RateKnot& knot, const RigConstants& rig, const Ve
 RateFactor late_flight_factor(const RateKnot& knot, const RigConstants& rig, const Vector3d& reading_m_s2,
                               double delay_s, Vector3d* by_delay) {
   const Jerk jerk = jerk_of(knot, rig);
+  const JerkDerivatives derivatives = derivatives_of(jerk, knot);
   const double d = delay_s, half = 0.5 * delay_s * delay_s;
-  const RateKnot earlier = {knot.rate_rad_s - d * knot.acceleration_rad_s2 + half * jerk.value,
-                            knot.acceleration_rad_s2 - d * jerk.value};
-  const RateFactor at = flight_factor(earlier, rig, reading_m_s2);
+  const RateFactor at = flight_factor(earlier_by(d, knot, jerk), rig, reading_m_s2);
   const Matrix3d by_rate = at.by_knot.leftCols<3>(), by_acceleration = at.by_knot.rightCols<3>();
   RateFactor f = at;
-  f.by_knot.leftCols<3>() = by_rate + (half * by_rate - d * by_acceleration) * jerk.by_rate;
+  f.by_knot.leftCols<3>() = by_rate + (half * by_rate - d * by_acceleration) * derivatives.by_rate;
   f.by_knot.rightCols<3>() =
-      by_acceleration - d * by_rate + (half * by_rate - d * by_acceleration) * jerk.by_acceleration;
-  f.by_rig.middleCols<5>(9) = (half * by_rate - d * by_acceleration) * jerk.by_inertia;
+      by_acceleration - d * by_rate + (half * by_rate - d * by_acceleration) * derivatives.by_acceleration;
+  f.by_rig.middleCols<5>(9) = (half * by_rate - d * by_acceleration) * derivatives.by_inertia;
   if (by_delay != nullptr) {
     *by_delay = by_rate * (d * jerk.value - knot.acceleration_rad_s2) - by_acceleration * jerk.value;
   }
+  return f;
+}
+
+// rate_smoother.md (R16), by the rig alone
+RateFactor late_flight_by_rig(const RateKnot& knot, const RigConstants& rig, const Vector3d& reading_m_s2,
+                              double delay_s) {
+  RateFactor f = flight_factor(earlier_by(delay_s, knot, jerk_of(knot, rig)), rig, reading_m_s2);
+  f.by_knot.setZero();
   return f;
 }
 
@@ -116,8 +141,7 @@ Vector3d flight_curvature(const RateKnot& knot, const RigConstants& rig) {
   const Vector3d &w = knot.rate_rad_s, &alpha = knot.acceleration_rad_s2, &t = rig.lever_arm_m;
   const Jerk jerk = jerk_of(knot, rig);
   const Vector3d& j = jerk.value;
-  const Vector3d snap = -jerk.J_inv * (j.cross(Vector3d(jerk.J * w)) + 2.0 * alpha.cross(Vector3d(jerk.J * alpha)) +
-                                       w.cross(Vector3d(jerk.J * j)));
+  const Vector3d snap = -jerk.J_inv * (j.cross(jerk.Jw) + 2.0 * alpha.cross(jerk.Ja) + w.cross(Vector3d(jerk.J * j)));
   return snap.cross(t) + j.cross(w.cross(t)) + 2.0 * alpha.cross(alpha.cross(t)) + w.cross(j.cross(t));
 }
 

@@ -154,7 +154,7 @@ RateModel::RateModel(const RateModelParams& params, double period_s) : params_(p
 void RateModel::weigh(const RateObservation& observation, const RigConstants& rig,
                       const RigConstants::Matrix& rig_covariance, double widen, double jump,
                       RateEstimate& estimate) const {
-  RateFactor flight = this->flight(observation, estimate.knot, rig);
+  RateFactor flight = flight_by_rig(observation, estimate.knot, rig);
   const Vector3d hidden = read_accel_elements(observation, flight);
   const RateFactor euler = euler_factor(estimate.knot, rig);
   const double r2 = normalised(flight, flight_spread(flight, rig_covariance), accel_sigma_m_s2(observation), hidden) +

@@ -53,6 +53,16 @@ RateFactor RateModel::flight(const RateObservation& observation, const RateKnot&
   return out;
 }
 
+RateFactor RateModel::flight_by_rig(const RateObservation& observation, const RateKnot& knot,
+                                    const RigConstants& rig) const {
+  const Vector3d& reading = observation.sample.specific_force_m_s2;
+  const double delay_s = params_.errors.accel_delay_s + observation.accel_age_s;
+  if (exact_ && delay_s == 0.0) return flight_factor(knot, rig, reading);
+  RateFactor out = late_flight_by_rig(knot, rig, reading - params_.errors.accel * reading, delay_s);
+  out.residual += 0.5 * params_.errors.accel_blur_s2 * flight_curvature(knot, rig);
+  return out;
+}
+
 // rate_smoother.md (R35), and the sums over samples of (R37)
 void RateModel::add_errors(const RateObservation& observation, const RateEstimate& estimate, const RigConstants& rig,
                            arrow::ErrorMatrix& block, arrow::BorderErrors& border, SensorErrorEvidence& evidence,

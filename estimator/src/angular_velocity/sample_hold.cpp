@@ -27,8 +27,10 @@ struct Clock {
   double age(double sample) const { return sample - phase - period * reading(sample); }
 };
 
-double agreement(const Clock& clock, std::span<const std::size_t> moving, const std::vector<bool>& repeats) {
-  std::size_t same = 0;
+// Samples that a clock does not explain; counted no further than one beyond `most`.
+std::size_t misses_of(const Clock& clock, std::span<const std::size_t> moving, const std::vector<bool>& repeats,
+                      std::size_t most) {
+  std::size_t misses = 0;
   double last_at = -1.0, last = 0.0;
   for (const std::size_t k : moving) {
     const auto at = static_cast<double>(k);
@@ -36,31 +38,34 @@ double agreement(const Clock& clock, std::span<const std::size_t> moving, const 
     const double before = at - 1.0 == last_at ? last : clock.reading(at - 1.0);
     last = clock.reading(at);
     last_at = at;
-    same += (last == before) == repeats[k];
+    if ((last == before) != repeats[k] && ++misses > most) break;
   }
-  return static_cast<double>(same) / static_cast<double>(moving.size());
+  return misses;
 }
 
 // Phases, side by side on the circle, with which a period explains most: the longest run of them.
 struct Phases {
-  double agreement = -1.0;
+  std::size_t misses = 0;
   double first = 0.0;
   int count = 0;
 };
 
-Phases best_phases(double period, std::span<const std::size_t> moving, const std::vector<bool>& repeats) {
+// A period that leaves more than `most` unexplained is told by that alone: most of those tried leave far more.
+Phases best_phases(double period, std::span<const std::size_t> moving, const std::vector<bool>& repeats,
+                   std::size_t most) {
   // the phase at the middle of the motion stays as the period changes
   const auto middle = static_cast<double>(moving[moving.size() / 2]);
-  std::array<double, kPhases> shares;
-  Phases out;
+  std::array<std::size_t, kPhases> misses;
+  Phases out{most + 1};
   for (std::size_t p = 0; p < kPhases; ++p) {
-    shares[p] = agreement({period, middle + period * static_cast<double>(p) / kPhases}, moving, repeats);
-    out.agreement = std::max(out.agreement, shares[p]);
+    const Clock clock{period, middle + period * static_cast<double>(p) / kPhases};
+    misses[p] = misses_of(clock, moving, repeats, std::min(most, out.misses));
+    out.misses = std::min(out.misses, misses[p]);
   }
   // twice round, so that a run may begin before the end of the circle
   int run = 0;
   for (int p = 0; p < 2 * kPhases; ++p) {
-    run = shares[static_cast<std::size_t>(p % kPhases)] == out.agreement ? std::min(run + 1, kPhases) : 0;
+    run = misses[static_cast<std::size_t>(p % kPhases)] == out.misses ? std::min(run + 1, kPhases) : 0;
     if (run <= out.count) continue;
     out.count = run;
     out.first = middle + period * (p - run + 1) / kPhases;
@@ -72,21 +77,21 @@ Phases best_phases(double period, std::span<const std::size_t> moving, const std
 // period and phase, in whose middle the most phases stand side by side.
 Clock best_clock(const Clock& first, double reach, int periods, std::span<const std::size_t> moving,
                  const std::vector<bool>& repeats, double& found) {
-  Phases best;
+  Phases best{moving.size()};
   int begin = 0, end = 0;
   const auto period = [&](double i) { return first.period * (1.0 + reach * i / periods); };
   for (int i = -periods; i <= periods; ++i) {
-    const Phases tried = best_phases(period(i), moving, repeats);
-    const bool same = tried.agreement == best.agreement && tried.count == best.count;
+    const Phases tried = best_phases(period(i), moving, repeats, best.misses);
+    const bool same = tried.misses == best.misses && tried.count == best.count;
     if (same) end = i;
-    if (same || tried.agreement < best.agreement) continue;
-    if (tried.agreement == best.agreement && tried.count < best.count) continue;
+    if (same || tried.misses > best.misses) continue;
+    if (tried.misses == best.misses && tried.count < best.count) continue;
     best = tried;
     begin = end = i;
   }
   const double middle = period(0.5 * (begin + end));
-  const Phases at = best_phases(middle, moving, repeats);
-  found = at.agreement;
+  const Phases at = best_phases(middle, moving, repeats, moving.size());
+  found = static_cast<double>(moving.size() - at.misses) / static_cast<double>(moving.size());
   return {middle, at.first + 0.5 * middle * (at.count - 1) / kPhases};
 }
 

@@ -218,6 +218,21 @@ TEST(LateFlight, IsTheFlightOfTheEarlierInstant) {
   }
 }
 
+// weighing and moving a sample are about one residual
+TEST(LateFlight, ByTheRigAloneIsTheSameToTheBit) {
+  oracles::Gaussian noise(13);
+  for (const double delay_s : {0.0, 5e-4, 3e-3}) {
+    const Point p = random_point(noise);
+    const RateFactor whole = late_flight_factor(p.knot, p.rig, kReading, delay_s, nullptr),
+                     part = late_flight_by_rig(p.knot, p.rig, kReading, delay_s);
+    EXPECT_EQ(part.residual, whole.residual);
+    EXPECT_EQ(part.by_rig.leftCols<9>(), whole.by_rig.leftCols<9>());
+    EXPECT_TRUE(part.by_knot.isZero(0.0));
+    EXPECT_TRUE(part.by_rig.rightCols<RigConstants::kSize - 9>().isZero(0.0));
+    EXPECT_FALSE(whole.by_rig.middleCols<5>(9).isZero(0.0) && delay_s > 0.0) << "by inertia too";
+  }
+}
+
 TEST(LateFlight, CurvatureIsTheSecondDerivativeOfTheForce) {
   oracles::Gaussian noise(14);
   for (int i = 0; i < 20; ++i) {

@@ -99,6 +99,34 @@ TEST_F(SweepTest, RateMethodsAloneAreRunWithoutLidar) {
   EXPECT_EQ(digests(folder_ / "all.db").at("1rate"), whole.recording_digest + run.outcomes[0].estimate_digest);
 }
 
+// where nobody sees the recordings, methods of this build that make no map are run without lidar, to the same bits
+TEST_F(SweepTest, UnseenRecordingsHaveTheLidarsThatAreRead) {
+  write("scenarios/catalogue/roll.yaml",
+        std::string(kRoll) + "  - {name: lidar, kind: rosette_lidar, device: mid100, site: mid100}\n");
+  Suite suite = small_suite(1);
+  suite.methods = {"rolling", "attitude/tumble", "position/tumble", "position/tumble_live"};
+  SweepOptions unseen;
+  unseen.recordings_unseen = true;
+  sweep(data(), suite, folder_ / "seen.db", {});
+  sweep(data(), suite, folder_ / "unseen.db", unseen);
+  const SimulatedDraw whole = simulate_draw(data(), load_scenario(data(), "roll"), 1, 1);
+  const std::string bare = digest_without_lidars(whole.recording);
+  const Results as_seen(folder_ / "seen.db", Results::Mode::read_only);
+  const Results results(folder_ / "unseen.db", Results::Mode::read_only);
+  ASSERT_EQ(results.outcomes().size(), 4u);
+  for (std::size_t k = 0; k < 4; ++k) {
+    const Outcome seen = as_seen.outcomes()[k], found = results.outcomes()[k];
+    EXPECT_EQ(seen.recording_digest, whole.recording_digest);
+    EXPECT_EQ(found.recording_digest, bare);
+    EXPECT_EQ(found.method, seen.method);
+    EXPECT_EQ(found.estimate_digest, seen.estimate_digest) << seen.method;
+  }
+  suite.methods.push_back("slam/poses_rolling");
+  sweep(data(), suite, folder_ / "maps.db", unseen);
+  for (const Outcome& outcome : Results(folder_ / "maps.db", Results::Mode::read_only).outcomes())
+    EXPECT_EQ(outcome.recording_digest, whole.recording_digest) << "a map is made with a lidar";
+}
+
 // a draw that never moves is refused by the simulation, kept as such, and not tried again
 TEST_F(SweepTest, ARejectedDrawIsKept) {
   std::string still = kRoll;

@@ -38,6 +38,11 @@ RateFactor flight_factor(const RateKnot& knot, const RigConstants& rig, const Ei
 RateFactor late_flight_factor(const RateKnot& knot, const RigConstants& rig, const Eigen::Vector3d& reading_m_s2,
                               double delay_s, Eigen::Vector3d* by_delay);
 
+/// The same residual with its derivatives by lever arm and accelerometer's bias alone, all others zero: for who asks
+/// how well a sample fits, and moves nothing.
+RateFactor late_flight_by_rig(const RateKnot& knot, const RigConstants& rig, const Eigen::Vector3d& reading_m_s2,
+                              double delay_s);
+
 /// Second derivative by time of the specific force at the lever arm in free flight [m/s^4]: half of it, times the
 /// variance of a window, is what the window adds to the reading.
 Eigen::Vector3d flight_curvature(const RateKnot& knot, const RigConstants& rig);

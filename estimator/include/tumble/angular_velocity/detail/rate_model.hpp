@@ -98,6 +98,8 @@ class RateModel {
   /// flight_factor() with what is known of the accelerometer's errors; `by_delay`: as late_flight_factor().
   RateFactor flight(const RateObservation& observation, const RateKnot& knot, const RigConstants& rig,
                     Eigen::Vector3d* by_delay = nullptr) const;
+  /// The same with the derivatives that weigh() needs, by the rig: in place of all of them less than half the work.
+  RateFactor flight_by_rig(const RateObservation& observation, const RateKnot& knot, const RigConstants& rig) const;
   double gyro_information(const RateObservation& observation, const RateEstimate& estimate, int axis) const;
   void add_gyro(const RateObservation& observation, const RateEstimate& estimate, const RigConstants& rig,
                 arrow::Block& block, arrow::Corner& corner) const;
