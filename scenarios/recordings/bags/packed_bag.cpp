@@ -22,8 +22,8 @@ using std::filesystem::path;
 
 /// What comes out of so many bytes that were packed at most; of messages of sensors it is some tens of times.
 constexpr std::uint64_t most_of(std::uint64_t packed_bytes) {
-  constexpr std::uint64_t kAlways = 64u << 20, kRatioMax = 200;
-  return kAlways + kRatioMax * packed_bytes;
+  constexpr std::uint64_t kAlways = 64u << 20, kBagRatioMax = 200;
+  return kAlways + kBagRatioMax * packed_bytes;
 }
 
 /// What may come out of a file that is to be unpacked into a folder.
