@@ -48,7 +48,7 @@ constexpr const char* kPoseCovariance =
     "(6, 6), of (position error in W [m], attitude error phi in W [rad]); zero where not reported";
 constexpr const char* kPoseCovariances = "(N, 6, 6), of (position error in W [m], attitude error phi in W [rad])";
 
-void bind_rates(nb::module_& m) {
+void bind_rates_of_results(nb::module_& m) {
   bind_rows<Rates>(m, "Rates", "Angular velocity of an IMU in the world, in the IMU's axes, one per sample.")
       .def_prop_ro("time_ns", &times<Rates>, kTimes)
       .def_prop_ro(
@@ -74,7 +74,7 @@ void bind_rates(nb::module_& m) {
           "(N,) uint8: 0 measured, 1 recovered in flight, 2 recovered in contact, 3 bounded only (`RateSource`)");
 }
 
-void bind_attitudes(nb::module_& m) {
+void bind_attitudes_of_results(nb::module_& m) {
   bind_rows<Attitudes>(m, "Attitudes", "Attitude of an IMU in the world, one per sample.")
       .def_prop_ro("time_ns", &times<Attitudes>, kTimes)
       .def_prop_ro(
@@ -128,7 +128,7 @@ void bind_poses(nb::module_& m) {
           kPoseCovariances);
 }
 
-void bind_rolling(nb::module_& m) {
+void bind_rolling_of_results(nb::module_& m) {
   using R = RollingPoses;
   bind_rows<R>(m, "RollingPoses", "Poses of a rolling sphere's centre, with what is known of the contact.")
       .def_prop_ro("time_ns", &times<R>, kTimes)
@@ -183,10 +183,10 @@ Poses joined(const std::vector<std::vector<PoseState>>& parts) {
 }
 
 void bind_results(nb::module_& m) {
-  bind_rates(m);
-  bind_attitudes(m);
+  bind_rates_of_results(m);
+  bind_attitudes_of_results(m);
   bind_poses(m);
-  bind_rolling(m);
+  bind_rolling_of_results(m);
   bind_map(m);
 }
 

@@ -21,7 +21,7 @@ namespace tumble::python {
 
 namespace {
 
-void bind_smoother(nb::module_& m) {
+void bind_rolling_smoother(nb::module_& m) {
   using Object = Guarded<Streaming<RollingSmoother>>;
   nb::class_<Object> bound(
       m, "RollingSmoother",
@@ -277,7 +277,7 @@ void bind_rolling(nb::module_& m) {
       .value("incline", RollingMode::incline, "it stands still on a slope")
       .value("rough", RollingMode::rough, "it stands still, the floor goes up and down");
   bind_filter(m);
-  bind_smoother(m);
+  bind_rolling_smoother(m);
   bind_door(m);
 }
 

@@ -22,7 +22,7 @@ namespace tumble::python {
 
 namespace {
 
-TumblingOdometry restored_door(std::span<const std::byte> bytes) {
+TumblingOdometry restored_tumbling(std::span<const std::byte> bytes) {
   TumblingOdometry::Params params;
   require(TumblingOdometry::saved_params(bytes, params));
   TumblingOdometry out(params);
@@ -30,29 +30,29 @@ TumblingOdometry restored_door(std::span<const std::byte> bytes) {
   return out;
 }
 
-using Object = Guarded<TumblingOdometry>;
+using TumblingDoor = Guarded<TumblingOdometry>;
 using Sweep = TumblingOdometry::Sweep;
 
 /// The door's own numbers take the place of these.
-const std::vector<const char*> kOfTheDoor = {"imu_*",
-                                             "range_*",
-                                             "rate_lever_arm_sigma_m",
-                                             "rate_gyro_noise_density",
-                                             "rate_accel_noise_density",
-                                             "rate_period_s",
-                                             "rate_lag_s",
-                                             "rate_evidence_gravity_m_s2",
-                                             "rate_carried_gravity_m_s2",
-                                             "rate_carried_gap_max_s",
-                                             "rate_carried_period_s",
-                                             "rate_carried_lag_s",
-                                             "rate_carried_iterations_max",
-                                             "mapping_mount_sigma_*",
-                                             "mapping_time_offset_sigma_s",
-                                             "mapping_gravity_m_s2",
-                                             "mapping_range_*",
-                                             "mapping_own_body_*",
-                                             "mapping_accel_rail_m_s2"};
+const std::vector<const char*> kOfTumbling = {"imu_*",
+                                              "range_*",
+                                              "rate_lever_arm_sigma_m",
+                                              "rate_gyro_noise_density",
+                                              "rate_accel_noise_density",
+                                              "rate_period_s",
+                                              "rate_lag_s",
+                                              "rate_evidence_gravity_m_s2",
+                                              "rate_carried_gravity_m_s2",
+                                              "rate_carried_gap_max_s",
+                                              "rate_carried_period_s",
+                                              "rate_carried_lag_s",
+                                              "rate_carried_iterations_max",
+                                              "mapping_mount_sigma_*",
+                                              "mapping_time_offset_sigma_s",
+                                              "mapping_gravity_m_s2",
+                                              "mapping_range_*",
+                                              "mapping_own_body_*",
+                                              "mapping_accel_rail_m_s2"};
 
 template <class Sheet>
 Sheet sheet_of(nb::handle given, const char* field, const char* type) {
@@ -61,7 +61,7 @@ Sheet sheet_of(nb::handle given, const char* field, const char* type) {
   return sheet;
 }
 
-TumblingOdometry::Params door_params(const nb::kwargs& given) {
+TumblingOdometry::Params tumbling_params(const nb::kwargs& given) {
   Keywords keywords("TumblingOdometry", given);
   TumblingOdometry::Params params;
   params.imu = sheet_of<ImuSheet>(keywords.need("imu"), "imu", "an ImuSheet");
@@ -73,12 +73,13 @@ TumblingOdometry::Params door_params(const nb::kwargs& given) {
     params.own_body_L = box_of(body, "own_body_L");
   if (const nb::object rig = keywords.take("calibration"); rig.is_valid() && !rig.is_none())
     params.expert.rate.rate.model.calibration = rig_of(rig, "calibration");
-  read_fields(keywords, params, kOfTheDoor);
+  read_fields(keywords, params, kOfTumbling);
   keywords.done();
   return params;
 }
 
-void add_imu(Object& self, nb::handle time_ns, nb::handle gyro, nb::handle accel, nb::handle clip_flags) {
+void add_tumbling_imu(TumblingDoor& self, nb::handle time_ns, nb::handle gyro, nb::handle accel,
+                      nb::handle clip_flags) {
   const std::vector<ImuSample> samples = samples_of(time_ns, gyro, accel, clip_flags);
   Status status;
   std::size_t k = 0;
@@ -88,8 +89,8 @@ void add_imu(Object& self, nb::handle time_ns, nb::handle gyro, nb::handle accel
   if (!status.ok()) require(status, k);
 }
 
-void add_sweep(Object& self, nb::handle start_ns, nb::handle end_ns, nb::handle position, nb::handle offset_ns,
-               nb::handle ring, nb::handle intensity) {
+void add_tumbling_sweep(TumblingDoor& self, nb::handle start_ns, nb::handle end_ns, nb::handle position,
+                        nb::handle offset_ns, nb::handle ring, nb::handle intensity) {
   const TimeNs start = time_of(start_ns, "start_ns"), end = time_of(end_ns, "end_ns");
   const std::vector<LidarPoint> points = points_of(position, offset_ns, ring, intensity);
   require(self.run([&](TumblingOdometry& odometry) { return odometry.add_sweep(start, end, points); }));
@@ -106,7 +107,7 @@ void bind_talk(Class& bound) {
   bound
       .def(
           "newest",
-          [](Object& self) {
+          [](TumblingDoor& self) {
             PoseState pose;
             require(self.run([&](TumblingOdometry& odometry) { return odometry.newest(pose); }));
             return pose;
@@ -116,51 +117,58 @@ void bind_talk(Class& bound) {
           "covariance. TumbleError `empty` before that.")
       .def(
           "newest_rate",
-          [](Object& self) {
+          [](TumblingDoor& self) {
             return rates_of(self.run([](TumblingOdometry& odometry) { return odometry.newest_rate(); }));
           },
           "Rate of the newest sample, provisional where the gyro clips; no row before the first.")
       .def(
           "settled_rate",
-          [](Object& self) {
+          [](TumblingDoor& self) {
             return rates_of(self.run([](TumblingOdometry& odometry) { return odometry.settled_rate(); }));
           },
           "Latest settled rate, lag_s old; no row while the lag fills.")
       .def(
-          "rig", [](Object& self) { return self.run([](TumblingOdometry& odometry) { return odometry.rig(); }); },
+          "rig", [](TumblingDoor& self) { return self.run([](TumblingOdometry& odometry) { return odometry.rig(); }); },
           "What is known of the IMU on the body: lever arm, biases, elements. For the next run's `calibration`.")
       .def(
           "calibration",
-          [](Object& self) {
+          [](TumblingDoor& self) {
             return self.run([](TumblingOdometry& odometry) { return odometry.mapper().calibration(); });
           },
           "T_IL, the clocks' offset and gravity as estimated so far.")
       .def(
           "open_trajectory",
-          [](Object& self) {
+          [](TumblingDoor& self) {
             return joined(self.run([](TumblingOdometry& odometry) { return odometry.mapper().open_trajectories(); }));
           },
           "Poses of the sweeps in the window that have not had their last word yet.")
       .def(
           "map",
-          [](Object& self) {
+          [](TumblingDoor& self) {
             return MapPoints{self.run([](TumblingOdometry& odometry) { return odometry.mapper().map(); })};
           },
           "The map within mapping_map_radius_m of the sensor.")
       .def(
           "doubt",
-          [](Object& self) { return doubt_of(self.run([](TumblingOdometry& odometry) { return odometry.doubt(); })); },
+          [](TumblingDoor& self) {
+            return doubt_of(self.run([](TumblingOdometry& odometry) { return odometry.doubt(); }));
+          },
           nb::sig("def doubt(self) -> tumble.errors.TumbleError | None"), kDoubt)
       .def_prop_ro(
-          "gaps", [](Object& self) { return self.run([](TumblingOdometry& odometry) { return odometry.gaps(); }); },
+          "gaps",
+          [](TumblingDoor& self) { return self.run([](TumblingOdometry& odometry) { return odometry.gaps(); }); },
           "of the IMU, after which the rates began anew")
       .def_prop_ro(
           "passed_again",
-          [](Object& self) { return self.run([](TumblingOdometry& odometry) { return odometry.passed_again(); }); },
+          [](TumblingDoor& self) {
+            return self.run([](TumblingOdometry& odometry) { return odometry.passed_again(); });
+          },
           "whether map and pose are those of the second pass")
       .def_prop_ro(
           "dropped_sweeps",
-          [](Object& self) { return self.run([](TumblingOdometry& odometry) { return odometry.dropped_sweeps(); }); },
+          [](TumblingDoor& self) {
+            return self.run([](TumblingOdometry& odometry) { return odometry.dropped_sweeps(); });
+          },
           "that nobody took in time");
 }
 
@@ -175,7 +183,7 @@ void bind_tumbling(nb::module_& m) {
           "placed", [](const Sweep& s) { return !s.report.trajectory.empty(); },
           "whether it has poses; one that begins before the IMU has none")
       .def_ro("report", &Sweep::report);
-  nb::class_<Object> bound(
+  nb::class_<TumblingDoor> bound(
       m, "TumblingOdometry",
       "Pose, velocity and map of a body that tumbles, from one IMU whose gyro may clip and a lidar whose sweeps are "
       "bent:\n"
@@ -190,22 +198,25 @@ void bind_tumbling(nb::module_& m) {
   bound
       .def(
           "__init__",
-          [](Object* self, const nb::kwargs& options) { new (self) Object(TumblingOdometry(door_params(options))); },
+          [](TumblingDoor* self, const nb::kwargs& options) {
+            new (self) TumblingDoor(TumblingOdometry(tumbling_params(options)));
+          },
           nb::arg("options"), takes_options())
-      .def("add_imu", &add_imu, nb::arg("time_ns"), nb::arg("gyro"), nb::arg("accel"),
+      .def("add_imu", &add_tumbling_imu, nb::arg("time_ns"), nb::arg("gyro"), nb::arg("accel"),
            nb::arg("clip_flags") = nb::none(),
            "Takes one sample or many, in order of time. Sweeps whose rates are settled with them are registered now.")
-      .def("add_sweep", &add_sweep, nb::arg("start_ns"), nb::arg("end_ns"), nb::arg("position"), nb::arg("offset_ns"),
-           nb::arg("ring") = nb::none(), nb::arg("intensity") = nb::none(),
+      .def("add_sweep", &add_tumbling_sweep, nb::arg("start_ns"), nb::arg("end_ns"), nb::arg("position"),
+           nb::arg("offset_ns"), nb::arg("ring") = nb::none(), nb::arg("intensity") = nb::none(),
            "Takes a sweep of points fired in [start_ns, end_ns], at any time after its last point: position (N, 3), m, "
            "in\n"
            "the lidar's axes at each point's own instant; offset_ns (N,), after the start.")
       .def(
-          "take", [](Object& self) { return self.run([](TumblingOdometry& odometry) { return odometry.take(); }); },
+          "take",
+          [](TumblingDoor& self) { return self.run([](TumblingOdometry& odometry) { return odometry.take(); }); },
           "The next sweep that was registered, in order; None when there is none yet.")
       .def(
           "take_all",
-          [](Object& self) {
+          [](TumblingDoor& self) {
             return self.run([](TumblingOdometry& odometry) {
               std::vector<Sweep> out;
               while (std::optional<Sweep> sweep = odometry.take()) out.push_back(std::move(*sweep));
@@ -214,12 +225,12 @@ void bind_tumbling(nb::module_& m) {
           },
           "All of them.")
       .def(
-          "finish", [](Object& self) { self.run([](TumblingOdometry& odometry) { odometry.finish(); }); },
+          "finish", [](TumblingDoor& self) { self.run([](TumblingOdometry& odometry) { odometry.finish(); }); },
           "Settles what there is, at the end of a run or at a halt: take() gives the sweeps that the IMU covers.")
-      .def_static("parameters", [] { return list_fields(TumblingOdometry::Params{}, kOfTheDoor); });
+      .def_static("parameters", [] { return list_fields(TumblingOdometry::Params{}, kOfTumbling); });
   bind_talk(bound);
-  bind_copy<Object>(bound);
-  bind_saving<TumblingOdometry>(bound, &restored_door);
+  bind_copy<TumblingDoor>(bound);
+  bind_saving<TumblingOdometry>(bound, &restored_tumbling);
 }
 
 }  // namespace tumble::python
