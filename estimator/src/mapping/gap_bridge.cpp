@@ -3,11 +3,12 @@
 
 #include <algorithm>
 
+#include "tumble/common/imu.hpp"
+
 namespace tumble::mapping {
 
 namespace {
 
-constexpr std::uint8_t kThreeAxes = 7;
 constexpr TimeNs kStep_ns = 10'000'000;
 constexpr TimeNs kStepsMax = 64;
 
@@ -28,7 +29,7 @@ void bridge_gap(const InertialNoiseParams& params, const WindowRate& before, con
     const Eigen::Array3d variance = (left * before.sigma_rad_s).array().square() +
                                     (gone * after.sigma_rad_s).array().square() + walk * walk * gone * left * span_s;
     part.rate_sigma_rad_s = variance.sqrt().min(params.rate_sigma_max_rad_s);
-    part.clipped_axes = kThreeAxes;
+    part.clipped_axes = kClipGyro;
     part.bridges_gap = true;
   }
 }

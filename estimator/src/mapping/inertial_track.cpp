@@ -6,6 +6,7 @@
 #include <numbers>
 
 #include "mapper_rest.hpp"
+#include "tumble/common/imu.hpp"
 
 namespace tumble::mapping {
 
@@ -13,7 +14,6 @@ namespace {
 
 using Params = LidarInertialOdometry::Params;
 
-constexpr std::uint8_t kAllAxes = 7;
 constexpr TimeNs kArcStep_ns = 5'000'000;
 constexpr TimeNs kArcMost_ns = 10'000'000'000;  // no flight lasts so long
 constexpr double kArcOff_rad_s = 0.5;           // beyond deviations: an impact changes more, a wrong inertia less
@@ -69,7 +69,7 @@ void InertialTrack::take(const Params& params, const ImuSample& sample, const Ra
   if (!next.at_rest) next.w_WI_I_rad_s = rate.w_WI_I_rad_s - initial_.gyro_bias_rad_s;
   next.f_I_m_s2 = sample.specific_force_m_s2;
   next.rate_sigma_rad_s = believed_rate_sigma(params, rate);
-  next.clipped_axes = static_cast<std::uint8_t>(rate.clipped_axes & kAllAxes);
+  next.clipped_axes = static_cast<std::uint8_t>(rate.clipped_axes & kClipGyro);
   next.railed_axes = railed_axes(params, sample);
   const bool after_gap = next.time_ns - next.from_ns > kGap_ns;
   // a reading is of its own window, which is as long as the one before the gap
@@ -137,7 +137,7 @@ void InertialTrack::listen_for_rest(const Params& params, const ImuSample& sampl
                                     MotionSample& next) {
   ImuSample heard = sample;
   heard.angular_velocity_rad_s = rate.w_WI_I_rad_s;
-  const bool clipped = (rate.clipped_axes & kAllAxes) != 0;
+  const bool clipped = (rate.clipped_axes & kClipGyro) != 0;
   // while the rest at the start lasts its mean is the bias
   const Eigen::Vector3d bias = initial_.lasts ? Eigen::Vector3d(Eigen::Vector3d::Zero()) : initial_.gyro_bias_rad_s;
   if (clipped) rest_ = {};
