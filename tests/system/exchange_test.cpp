@@ -103,6 +103,7 @@ TEST(Exchange, SweepsWithAnImuAndReferencePosesAreScored) {
   ASSERT_EQ(estimate.status, 0) << estimate.err;
   const Ended rolled = run_program({"score", (folder / "e").string(), back, "--json"});
   ASSERT_EQ(rolled.status, 0) << rolled.err;
+  EXPECT_EQ(run_program({"score", back, (folder / "e").string(), "--json"}).out, rolled.out) << "the recording first";
   EXPECT_LT(metric(json_of(rolled), "position_end_error_m"), 1.0);
 }
 

@@ -39,6 +39,14 @@ void move_to_clock(std::int64_t origin_ns, scenarios::Estimate& estimate) {
   for (PoseState& pose : estimate.poses) pose.time_ns -= origin_ns;
 }
 
+/// The other verbs name the recording first, so that either order is taken: no estimate bears a recording's ending.
+void order(ScoreOptions& options) {
+  const auto is_recording = [](const std::filesystem::path& file) {
+    return file.extension() == ".h5" || file.extension() == ".hdf5";
+  };
+  if (is_recording(options.estimate) && !is_recording(options.recording)) options.estimate.swap(options.recording);
+}
+
 /// What was seen and what is claimed must share some time, and the truth must know something.
 void require_common_time(const ScoreOptions& options, const scenarios::Estimate& estimate, const sim::Truth& truth) {
   const bool known = std::any_of(truth.p_WB_m.begin(), truth.p_WB_m.end(), [](const auto& p) { return p.allFinite(); });
@@ -217,13 +225,16 @@ int score_estimate(const Session& session, const ScoreOptions& options) {
 Action declare_score(VerbOptions& verb, const Session& session) {
   auto options = std::make_shared<ScoreOptions>();
   verb.add("ESTIMATE", options->estimate, "folder of an estimate, or a TUM file (t x y z qx qy qz qw)").required();
-  verb.add("RECORDING", options->recording, "the recording with its truth, FILE.h5").required();
+  verb.add("RECORDING", options->recording, "the recording with its truth, FILE.h5; may stand first").required();
   verb.add("--frame", options->frame,
            "whose poses a TUM file holds: imu, lidar, body or centre [imu; body where the recording has none]");
   verb.add("--kind", options->kind,
            "what a TUM file is scored as: position or slam, which adds the rotation at the end [slam where the "
            "recording has a lidar and no rolling sphere]");
-  return [&session, options] { return score_estimate(session, *options); };
+  return [&session, options] {
+    order(*options);
+    return score_estimate(session, *options);
+  };
 }
 
 }  // namespace tumble::tools
