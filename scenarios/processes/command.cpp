@@ -43,10 +43,11 @@ void become(const Command& command, std::string& problem) {
   }
   for (const int descriptor : command.descriptors) fcntl(descriptor, F_SETFD, 0);  // open beyond exec
   for (const auto& [name, value] : command.environment) setenv(name.c_str(), value.c_str(), 1);
-  limit(RLIMIT_DATA, command.memory_limit_mib * kMib);
   std::vector<char*> words;
   for (const std::string& word : command.words) words.push_back(const_cast<char*>(word.c_str()));
   words.push_back(nullptr);
+  // last, since this copy of the program may be larger than what the command may have: nothing is allocated below it
+  limit(RLIMIT_DATA, command.memory_limit_mib * kMib);
   execvp(words.front(), words.data());
   problem = command.words.front() + ": " + strerror(errno);
 }

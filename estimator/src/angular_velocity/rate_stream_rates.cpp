@@ -8,17 +8,32 @@
 
 namespace tumble {
 
-// What a run of clipped readings hides of one of its samples by the slopes at its ends: rate_stream.md (R105).
+// Whether a sample is of a flight that is long enough to tell of the rig, as far as the window goes.
+bool RateStream::in_long_flight(std::size_t at, const State& state) const {
+  const std::vector<Knot>& window = state.window;
+  const auto needed = static_cast<std::size_t>(params_.expert.flight_run_min);
+  const auto flies = [&](std::size_t k) { return window[k].estimate.flight_weight >= 0.5; };
+  if (!flies(at)) return false;
+  std::size_t first = at, last = at;
+  while (first > 0 && last - first < needed && flies(first - 1)) --first;
+  while (last + 1 < window.size() && last - first < needed && flies(last + 1)) ++last;
+  return last - first + 1 + (first > 0 ? 0 : state.flight_run) >= needed;
+}
+
+// What a run of clipped readings hides of one of its samples by the slopes at its ends, which a flight ends too: there
+// the force tells the rate. rate_stream.md (R105)
 double RateStream::hidden_by_slopes(std::size_t at, int axis, const State& state) const {
   const std::vector<Knot>& window = state.window;
   const auto hidden = [&](std::size_t k) {
     const RateObservation& o = window[k].observation;
-    return ((o.clipping.gyro | o.read_in_part()) >> axis & 1) != 0;
+    return ((o.clipping.gyro | o.read_in_part()) >> axis & 1) != 0 && !in_long_flight(k, state);
   };
   std::size_t first = at, last = at;
   while (first > 0 && hidden(first - 1)) --first;
   while (last + 1 < window.size() && hidden(last + 1)) ++last;
-  const double before = static_cast<double>(at - first) + 0.5 + (first > 0 ? 0.0 : state.entry_samples[axis]);
+  const bool from_flight = state.flight_run >= static_cast<std::size_t>(params_.expert.flight_run_min);
+  const double before =
+      static_cast<double>(at - first) + 0.5 + (first > 0 || from_flight ? 0.0 : state.entry_samples[axis]);
   // a run that goes on lasts as long again at least
   const double left = static_cast<double>(last - at) + 0.5,
                after = last + 1 < window.size() ? left : std::max(before, left);

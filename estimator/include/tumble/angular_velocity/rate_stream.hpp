@@ -102,6 +102,7 @@ class RateStream {
   bool step(State& state) const;
   RigConstants::Matrix inflated(const State& state) const;
   bool near_rails(std::size_t at, const State& state) const;
+  bool in_long_flight(std::size_t at, const State& state) const;
   double hidden_by_slopes(std::size_t at, int axis, const State& state) const;
   Eigen::Matrix3d doubted(std::size_t at, const State& state) const;
   RateState to_state(std::size_t at, const State& state) const;
