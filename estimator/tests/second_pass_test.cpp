@@ -46,8 +46,17 @@ void take_all(const ThrownBody& body, TumblingOdometry& odometry, Outcome& run) 
   }
 }
 
+/// Sweeps that begin within it see nothing.
+struct Blind {
+  double from_s = 0.0, to_s = 0.0;
+  bool holds(const ThrownBody::Sweep& sweep) const {
+    return seconds(sweep.start_ns) >= from_s && seconds(sweep.start_ns) < to_s;
+  }
+};
+
 /// Samples from `from` to `to` - 1, with the sweeps that end with them.
-void live(const ThrownBody& body, std::size_t from, std::size_t to, TumblingOdometry& odometry, Outcome& run) {
+void live(const ThrownBody& body, std::size_t from, std::size_t to, TumblingOdometry& odometry, Outcome& run,
+          const Blind& blind = {}) {
   const std::vector<ImuSample> imu = body.imu();
   const std::vector<ThrownBody::Sweep> sweeps = body.sweeps();
   for (std::size_t k = from; k < to; ++k) {
@@ -55,7 +64,8 @@ void live(const ThrownBody& body, std::size_t from, std::size_t to, TumblingOdom
     const TimeNs before_ns = k == 0 ? 0 : imu[k - 1].time_ns;
     for (const ThrownBody::Sweep& sweep : sweeps) {
       if (sweep.end_ns <= before_ns || sweep.end_ns > imu[k].time_ns) continue;
-      ASSERT_TRUE(odometry.add_sweep(sweep.start_ns, sweep.end_ns, sweep.points).ok());
+      const std::vector<LidarPoint> points = blind.holds(sweep) ? std::vector<LidarPoint>{} : sweep.points;
+      ASSERT_TRUE(odometry.add_sweep(sweep.start_ns, sweep.end_ns, points).ok());
     }
     take_all(body, odometry, run);
   }
@@ -146,6 +156,40 @@ TEST(SecondPass, ACopyMadeWhileItIsUnderWayGoesOnWithTheSameBits) {
   }
 }
 
+// A lidar that is blind for half a second of the flight: the first pass is lost, and is not waited for.
+TEST(SecondPass, BeginsAtOnceWhereTheFirstIsLost) {
+  ThrownBody body;
+  body.end_s = 4.2;
+  const std::size_t count = body.imu().size();
+  const Blind blind{1.0, 1.6};
+  TumblingOdometry::Params params = measured_badly(body, 100.0);  // nothing else begins it
+  Outcome found;
+  TumblingOdometry odometry(params);
+  live(body, 0, count, odometry, found, blind);
+  EXPECT_TRUE(found.taken_live);
+  EXPECT_LT(found.end_m, 0.2);  // measured 0.11
+
+  params.expert.again.lost_s = 0.0;
+  Outcome without;
+  TumblingOdometry waits(params);
+  live(body, 0, count, waits, without, blind);
+  EXPECT_FALSE(without.taken_live) << "negative control: it is not begun by that alone";
+  EXPECT_EQ(found.sweeps, without.sweeps);
+
+  // and goes on from its bytes wherever it is, begun or over
+  params = measured_badly(body, 100.0);
+  for (const std::size_t split : {std::size_t{165}, std::size_t{175}, std::size_t{190}, std::size_t{240}}) {
+    Outcome parts;
+    TumblingOdometry first(params), second(params);
+    live(body, 0, split, first, parts, blind);
+    ASSERT_TRUE(second.load(first.save()).ok()) << split;
+    live(body, split, count, second, parts, blind);
+    EXPECT_EQ(parts.sweeps, found.sweeps) << split;
+    EXPECT_EQ(parts.last.p_WA_m, found.last.p_WA_m) << split;
+    EXPECT_EQ(parts.taken_live, found.taken_live) << split;
+  }
+}
+
 TEST(SecondPass, AGapOfTheImuEndsIt) {
   ThrownBody body;
   body.end_s = 5.5;
@@ -166,6 +210,9 @@ TEST(SecondPass, RefusesParametersOutOfTheirBounds) {
   EXPECT_THROW(TumblingOdometry{params}, InvalidParams);
   params = stated;
   params.expert.again.inflation = 0.5;
+  EXPECT_THROW(TumblingOdometry{params}, InvalidParams);
+  params = stated;
+  params.expert.again.lost_s = -0.1;
   EXPECT_THROW(TumblingOdometry{params}, InvalidParams);
 }
 

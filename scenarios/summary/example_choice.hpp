@@ -20,6 +20,7 @@ struct ExampleCandidate {
 struct ExampleDraw {
   std::string scenario;
   std::uint64_t seed = 0;
+  // NOLINTNEXTLINE(modernize-use-nullptr): Clang 14 takes the zero that a defaulted <=> compares with for a pointer
   auto operator<=>(const ExampleDraw&) const = default;
 };
 

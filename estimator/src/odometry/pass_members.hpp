@@ -97,6 +97,8 @@ void SecondPass::members(Self& s, Visitor& visit) {
   visit("again.rejected_by_first", s.rejected_by_first_);
   visit("again.rejected", s.rejected_);
   visit("again.lost", s.lost_);
+  visit("again.early", s.early_);
+  visit("again.tried", s.tried_);
 }
 
 }  // namespace tumble

@@ -70,8 +70,17 @@ void SecondPass::remember(TimeNs start_ns, TimeNs end_ns, std::vector<LidarPoint
   rejected_by_first_ += verdict == SweepVerdict::rejected;
 }
 
+bool SecondPass::first_is_lost() const {
+  if (tried_ || !(params_.lost_s > 0.0)) return false;
+  const auto rejected = [](const Sweep& sweep) { return sweep.verdict == SweepVerdict::rejected; };
+  const auto last = std::find_if_not(sweeps_.rbegin(), sweeps_.rend(), rejected);
+  return last != sweeps_.rbegin() && last != sweeps_.rend() &&
+         seconds(sweeps_.back().end_ns - last->end_ns) >= params_.lost_s;
+}
+
 bool SecondPass::is_due() const {
-  return wanted_ && moves_ns_ && !sweeps_.empty() && seconds(sweeps_.back().end_ns - *moves_ns_) >= params_.after_s;
+  if (!wanted_ || !moves_ns_ || sweeps_.empty()) return false;
+  return seconds(sweeps_.back().end_ns - *moves_ns_) >= params_.after_s || first_is_lost();
 }
 
 RegimeStream::Params SecondPass::lagging_rate() const {
@@ -110,6 +119,7 @@ bool SecondPass::begin(const OdometryPass& first) {
     return false;
   }
   next_sample_ = next_sweep_ = rejected_ = 0;
+  early_ = seconds(sweeps_.back().end_ns - *moves_ns_) < params_.after_s;
   return true;
 }
 
@@ -119,8 +129,11 @@ void SecondPass::advance(OdometryPass& first) {
 }
 
 void SecondPass::complete(OdometryPass& first) {
+  constexpr std::size_t kAll = std::numeric_limits<std::size_t>::max();
+  if (pass_ && early_) run(first, kAll);
   if (!pass_ && (!wanted_ || !moves_ns_ || sweeps_.empty() || !begin(first))) return;
-  run(first, std::numeric_limits<std::size_t>::max());
+  early_ = false;
+  run(first, kAll);
   give_up();
 }
 
@@ -149,18 +162,26 @@ void SecondPass::run(OdometryPass& first, std::size_t sweeps) {
     (void)pass_->add_sweep(sweep.start_ns, sweep.end_ns, sweep.points, report);
     lost_ = report.verdict == SweepVerdict::rejected;
     rejected_ += lost_;
-    std::vector<LidarPoint>().swap(sweep.points);
+    if (!early_) std::vector<LidarPoint>().swap(sweep.points);
   }
 }
 
 void SecondPass::take_over(OdometryPass& first) {
   pass_->settle_until(first.settled()->time_ns);
-  const bool first_lost = sweeps_.back().verdict == SweepVerdict::rejected;
+  SweepVerdict& newest = sweeps_.back().verdict;
+  const bool first_lost = newest == SweepVerdict::rejected;
   if (rejected_ <= rejected_by_first_ + sweeps_.size() / kMoreShare && (!lost_ || first_lost)) {
     first.take_map(std::move(*pass_));
     taken_ = true;
+    // an early one is the first of the one that follows
+    rejected_by_first_ = rejected_;
+    if (!lost_) newest = SweepVerdict::registered;
   }
-  give_up();
+  if (!early_) return give_up();
+  pass_.reset();
+  next_sample_ = next_sweep_ = 0;
+  early_ = false;
+  tried_ = true;
 }
 
 }  // namespace tumble

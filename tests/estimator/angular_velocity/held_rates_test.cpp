@@ -91,7 +91,7 @@ TEST(HeldRates, ForcesOnALineComeBackAtTheirOwnTime) {
   all = samples;
   for (std::size_t k = 0; k < samples.size(); ++k) {
     // taken half a sample before it is said; the middle of a window of half the period
-    const double taken = static_cast<double>(k / kEach * kEach) - 0.5, middle = taken - 0.25 * kEach;
+    const double taken = static_cast<double>(k - k % kEach) - 0.5, middle = taken - 0.25 * kEach;
     samples[k].specific_force_m_s2.x() = kSlope_m_s3 * kPeriod_s * middle;
   }
   const std::vector<Vector3d> found = forces_between_readings(samples);

@@ -61,7 +61,7 @@ TEST(RegimeSmoother, AForceThatIsHeldIsComparedInItsOwnTime) {
   CarriedRecording recording = record(motion, 100.0, 10.0, kGyroRail_rad_s);
   constexpr std::size_t kPeriod = 4;
   for (std::size_t k = 0; k < recording.samples.size(); ++k) {
-    const double taken_s = 0.01 * static_cast<double>(k / kPeriod * kPeriod);
+    const double taken_s = 0.01 * static_cast<double>(k - k % kPeriod);
     recording.samples[k].specific_force_m_s2 = motion.specific_force(taken_s);
   }
   std::vector<RateState> joined;

@@ -21,8 +21,9 @@ namespace tumble {
 /// passed through again, with the rig and the calibration as learnt until then and rates that have `lag_s` ahead of
 /// them, `sweeps` sweeps for each that comes. When the second pass has caught up, its map and its pose take the place
 /// of those of the first one, unless it is lost or rejected clearly more sweeps, and what was remembered is forgotten.
-/// Poses that were given out stay: the pose moves once, by what the first pass was off, and a first pass that was lost
-/// is found.
+/// A first pass that has been lost for `lost_s` is not waited for: all is passed through at once, once, and again after
+/// `after_s`. Poses that were given out stay: the pose moves by what the first pass was off, and one that was lost is
+/// found.
 ///
 /// Memory: samples and sweeps of `rest_s` and of at most `remembered_s` of motion, and for as long a second map. Not
 /// modelled: a third pass with what the second has learnt; a jolt that ends the rest long before the tumble.
@@ -30,6 +31,7 @@ class SecondPass {
  public:
   struct Params {
     double after_s = 3.0;        ///< of motion, after which the second pass begins; 0: there is none
+    double lost_s = 0.4;         ///< or after the first pass has rejected sweeps for so long; 0: that begins nothing
     double lag_s = 0.5;          ///< of its rates
     std::size_t sweeps = 3;      ///< that it takes for each that comes; two at least, or it never catches up
     double remembered_s = 10.0;  ///< where it has not caught up within this of motion it is given up
@@ -42,6 +44,8 @@ class SecondPass {
     static void fields(Self& p, Visitor& visit) {
       visit(p.after_s, {"after_s", "s", 0.0, 100.0,
                         "of motion, after which all is passed through again with what was learnt; 0: never"});
+      visit(p.lost_s, {"lost_s", "s", 0.0, 100.0,
+                       "without a registered sweep, after which it begins early, once; 0: it does not"});
       visit(p.lag_s, {"lag_s", "s", 0.0, 10.0, "how old a sample is there when its rate is settled"});
       visit(p.sweeps, {"sweeps", "1", 2, 1000, "that the second pass takes for each that comes"});
       visit(p.remembered_s, {"remembered_s", "s", 0.0, 1000.0, "motion within which the second pass has to catch up"});
@@ -86,6 +90,7 @@ class SecondPass {
   };
 
   bool is_due() const;
+  bool first_is_lost() const;
   bool begin(const OdometryPass& first);
   void run(OdometryPass& first, std::size_t sweeps);
   void take_over(OdometryPass& first);
@@ -105,7 +110,8 @@ class SecondPass {
   std::optional<OdometryPass> pass_;
   std::size_t next_sample_ = 0, next_sweep_ = 0;
   std::size_t rejected_by_first_ = 0, rejected_ = 0;
-  bool lost_ = false;  ///< the second pass rejected its last sweep
+  bool lost_ = false;                   ///< the second pass rejected its last sweep
+  bool early_ = false, tried_ = false;  ///< it began because the first was lost; that has been, for good or not
 };
 
 }  // namespace tumble
