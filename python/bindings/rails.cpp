@@ -35,7 +35,7 @@ Found find_rails(nb::handle time_ns, nb::handle gyro, nb::handle accel, nb::hand
                  const nb::kwargs& given) {
   Keywords keywords("find_rails", given);
   ClippingFinder::Params params;
-  read_ranges(keywords, params.walls);
+  read_ranges(keywords, params.upright_rails);
   read_fields(keywords, params);
   keywords.done();
   const std::vector<ImuSample> samples = samples_of(time_ns, gyro, accel, clip_flags);

@@ -14,7 +14,7 @@ const Settings<CarriedSmoother::Params>& carried_settings() {
 
 CarriedElements find_clipped(const sim::ImuRecord& record, std::span<const ImuSample> samples) {
   ClippingFinder::Params params;
-  params.walls = stated_rails(record);
+  params.upright_rails = stated_rails(record);
   return carried_elements(samples, ClippingFinder(params).find(samples));
 }
 

@@ -50,7 +50,7 @@ Status auxiliary_readings(const sim::Sensors& sensors, std::span<const ImuSample
     if (record.accel_noise_m_s2_sqrt_hz > 0.0) auxiliary_imu.accel_noise_density = record.accel_noise_m_s2_sqrt_hz;
     std::vector<AuxiliaryReading> aligned;
     ClippingFinder::Params clipping;
-    clipping.walls = stated_rails(record);
+    clipping.upright_rails = stated_rails(record);
     const ClippingFinder::Found found = ClippingFinder(clipping).find(readings);
     auxiliary_imu.gyro_elements = found.rails.rows(Triad::gyro, model.element_sigma);
     auxiliary_imu.accel_elements = found.rails.rows(Triad::accelerometer, model.element_sigma);

@@ -103,7 +103,7 @@ void members(Self& s, Visitor& visit) {
 
 template <StateOf<KnownRails> Self, class Visitor>
 void members(Self& s, Visitor& visit) {
-  visit("rails.walls", s.walls);
+  visit("rails.upright_rails", s.upright_rails);
   visit("rails.planes", s.planes);
   visit("rails.accel_planes", s.accel_planes);
   visit("rails.upright", s.upright);

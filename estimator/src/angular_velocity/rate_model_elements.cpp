@@ -62,7 +62,7 @@ void RateModel::add_elements(const RateObservation& observation, const RateEstim
       pull = information * (gyro.residual[j] - observation.lost_rad_s[j]);
     } else if ((observation.clipping.gyro >> j & 1u) != 0) {
       const bool kept = gyro.residual[j] * observation.sample.angular_velocity_rad_s[j] >= 0.0;
-      if (kept && !estimate.soft_bounds) continue;  // a wall: rate_smoother.md (R8)
+      if (kept && !estimate.soft_bounds) continue;  // a hard bound: rate_smoother.md (R8)
       information = 1.0 / (params_.expert.readings.rail_sigma_rad_s * params_.expert.readings.rail_sigma_rad_s);
       pull = information * gyro.residual[j];
       if (estimate.soft_bounds) {

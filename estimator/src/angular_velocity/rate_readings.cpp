@@ -25,10 +25,10 @@ void tell_rails(const ClippingFinder& finder, const KnownRails& rails, RateRepor
   health.rails_upright = rails.upright;
   for (int c = 0; c < 6; ++c) {
     const auto channel = static_cast<std::size_t>(c);
-    health.rail[channel] = finder.walls().rail(rails.walls, c);
+    health.rail[channel] = finder.upright_rails().rail(rails.upright_rails, c);
     const auto& plane = (c < 3 ? planes : accel_planes).element[static_cast<std::size_t>(c % 3)];
     if (plane) health.rail[channel] = plane->distance_rad_s;
-    health.rail_disagrees[channel] = finder.walls().disagrees(rails.walls, c);
+    health.rail_disagrees[channel] = finder.upright_rails().disagrees(rails.upright_rails, c);
   }
 }
 
@@ -51,7 +51,7 @@ void mark_doubtful(const RailPlaneFinder::Params& expected, const ClippingFinder
   }
   for (std::size_t k = 0; k < observations.size(); ++k) {
     const auto [before, after] = beside[k];
-    mark_partial(planes, finder.walls(), rails.walls, noise_rad_s, before, observations[k], after);
+    mark_partial(planes, finder.upright_rails(), rails.upright_rails, noise_rad_s, before, observations[k], after);
     if (rails.upright) continue;
     doubt_unseen_rails(planes, least, noise_rad_s, before, observations[k], after);
   }

@@ -83,7 +83,7 @@ void members(Self& s, Visitor& visit) {
 template <StateOf<RateStream::Knot> Self, class Visitor>
 void members(Self& s, Visitor& visit) {
   visit("knot.observation", s.observation);
-  visit("knot.by_walls", s.by_walls);
+  visit("knot.by_upright_rails", s.by_upright_rails);
   visit("knot.estimate", s.estimate);
   visit("knot.covariance_rad2_s2", s.covariance_rad2_s2);
   visit("knot.approach_rad_s", s.approach_rad_s);

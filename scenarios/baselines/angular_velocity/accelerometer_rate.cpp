@@ -54,7 +54,7 @@ struct AccelerometerFilter {
 }  // namespace
 
 AccelerometerRate::AccelerometerRate(const Params& params)
-    : params_(params), rails_({.walls = params.rails, .tilted = params.tilted_rails}) {
+    : params_(params), rails_({.upright_rails = params.rails, .tilted = params.tilted_rails}) {
   require_fields(params);
 }
 

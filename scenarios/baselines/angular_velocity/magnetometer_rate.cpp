@@ -74,7 +74,7 @@ void start_field(const Vector3d& reading, double noise, double iron, FieldFilter
 }  // namespace
 
 MagnetometerRate::MagnetometerRate(const Params& params)
-    : params_(params), rails_({.walls = params.rails, .tilted = params.tilted_rails}) {
+    : params_(params), rails_({.upright_rails = params.rails, .tilted = params.tilted_rails}) {
   require_fields(params);
 }
 

@@ -183,7 +183,7 @@ void smooth(const Step& next, Belief& now, const Belief& next_smoothed) {
 }  // namespace
 
 StandstillSmoother::StandstillSmoother(const Params& params)
-    : params_(params), rails_({.walls = params.rails, .tilted = params.tilted_rails}) {
+    : params_(params), rails_({.upright_rails = params.rails, .tilted = params.tilted_rails}) {
   require_fields(params);
 }
 

@@ -64,7 +64,7 @@ struct RateEstimate {
   /// reading): precision and precision * mean.
   Eigen::Vector3d bound_precision = Eigen::Vector3d::Zero();
   Eigen::Vector3d bound_shift = Eigen::Vector3d::Zero();
-  bool soft_bounds = false;  ///< false: bounds are walls that act only when violated (for the first iterations)
+  bool soft_bounds = false;  ///< false: bounds are hard, they act only when violated (for the first iterations)
 };
 
 }  // namespace tumble
