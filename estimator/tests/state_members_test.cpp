@@ -151,7 +151,7 @@ TEST(StateMembers, AllOfAMapper) {
 }
 
 TEST(StateMembers, AllOfARollingOdometry) {
-  const RollingOdometry door(test::params_of(test::kPlaces));
+  const RollingOdometry door(test::params_of(test::kPositions));
   expect_whole(ImuMerge::State{}, "merge");
   const auto state = std::make_unique<RollingSmoother::State>();
   expect_whole(*state, "rolling");

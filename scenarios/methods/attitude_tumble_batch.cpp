@@ -79,7 +79,8 @@ Method attitude_tumble_batch() {
   info.name = "tumble_batch";
   info.kind = Kind::attitude;
   info.doc =
-      "A smoother over the whole recording of a body that is carried: bounded acceleration, velocity and place, rest, "
+      "A smoother over the whole recording of a body that is carried: bounded acceleration, velocity and position, "
+      "rest, "
       "clipped gyro axes as bounds, or with the rates of rate/tumble where nobody held the body meanwhile.";
   info.ours = true;
   info.settings = {&carried_settings()};

@@ -26,7 +26,7 @@ constexpr std::array kStrollParameters = {
     Parameter{"step_hz", 1.8, 0.2, 4.0, "Hz", "steps a second; those of a walker, assumed"},
     Parameter{"step_m", 0.015, 0.0, 0.1, "m", "amplitude with which the steps lift the robot; assumed"},
     Parameter{"sway_rad", 0.08, 0.0, 0.5, "rad", "root mean square of roll, pitch and yaw, 0.2 to 1.2 Hz; assumed"},
-    Parameter{"sway_m", 0.02, 0.0, 0.2, "m", "the same of the place, per axis; assumed"},
+    Parameter{"sway_m", 0.02, 0.0, 0.2, "m", "the same of the position, per axis; assumed"},
     Parameter{"hand_seed", 0.0, 0.0, 1e9, "1", "what is random about the hand belongs to this number, rounded down"},
 };
 
@@ -46,7 +46,7 @@ class Stroll : public Motion {
         inertia_B_kg_m2_(carried_inertia_B_kg_m2(hand_)) {
     Stream stream(static_cast<std::uint64_t>(values.at("hand_seed")), "hand.stroll");
     for (int i = 0; i < 3; ++i) turns_.emplace_back(stream, values.at("sway_rad"), kSwayLow_hz, kSwayHigh_hz);
-    for (int i = 0; i < 3; ++i) places_.emplace_back(stream, values.at("sway_m"), kSwayLow_hz, kSwayHigh_hz);
+    for (int i = 0; i < 3; ++i) positions_.emplace_back(stream, values.at("sway_m"), kSwayLow_hz, kSwayHigh_hz);
   }
 
   BodyState start() const override { return hand_.start(); }
@@ -82,7 +82,7 @@ class Stroll : public Motion {
     const double step_rad = 2.0 * std::numbers::pi * values_.at("step_hz") * walked_s;
     const Eigen::Vector3d eight_m(half_length_m_ * std::sin(phase), half_width_m_ * std::sin(2.0 * phase),
                                   share * values_.at("step_m") * std::sin(step_rad));
-    const Eigen::Vector3d sway_m(places_[0].at(time_s), places_[1].at(time_s), places_[2].at(time_s));
+    const Eigen::Vector3d sway_m(positions_[0].at(time_s), positions_[1].at(time_s), positions_[2].at(time_s));
     return {hand_.start().p_WB_m + Eigen::AngleAxisd(values_.at("heading_rad"), Eigen::Vector3d::UnitZ()) * eight_m +
                 share * sway_m,
             heading(phase) * Eigen::AngleAxisd(share * turns_[0].at(time_s), Eigen::Vector3d::UnitZ()) *
@@ -94,7 +94,7 @@ class Stroll : public Motion {
   double half_length_m_, half_width_m_, phase_rate_rad_s_, ease_s_, walk_s_;
   HoldingHand hand_;
   Eigen::Matrix3d inertia_B_kg_m2_;
-  std::vector<Tremor> turns_, places_;  ///< about z, y and x; along x, y and z
+  std::vector<Tremor> turns_, positions_;  ///< about z, y and x; along x, y and z
 };
 
 std::unique_ptr<Motion> make_stroll(const Values& values, const engine::World& world) {

@@ -27,7 +27,7 @@ constexpr std::array kTwirlParameters = {
               "root mean square of the unsteady turn about x, beside the strokes, 0.3 to 4 Hz; as on the real wand"},
     Parameter{"sway_rad", 0.03, 0.0, 0.5, "rad",
               "root mean square of the unsteady pitch and yaw, 0.3 to 4 Hz; assumed"},
-    Parameter{"sway_m", 0.01, 0.0, 0.2, "m", "the same of the place of the grip, per axis; assumed"},
+    Parameter{"sway_m", 0.01, 0.0, 0.2, "m", "the same of the position of the grip, per axis; assumed"},
     Parameter{"grip_x_m", 0.0, -0.5, 0.5, "m", "what the hand carries, in the robot's design frame, B axes"},
     Parameter{"grip_y_m", 0.0, -0.5, 0.5, "m", "the same along y"},
     Parameter{"grip_z_m", 0.0, -0.5, 0.5, "m", "the same along z"},
@@ -81,7 +81,8 @@ class Twirl : public Motion {
     strokes_ = plan_strokes(values, stream);
     turns_.emplace_back(stream, values.at("twist_rad"), kTwirlSwayLow_hz, kTwirlSwayHigh_hz);
     for (int i = 0; i < 2; ++i) turns_.emplace_back(stream, values.at("sway_rad"), kTwirlSwayLow_hz, kTwirlSwayHigh_hz);
-    for (int i = 0; i < 3; ++i) places_.emplace_back(stream, values.at("sway_m"), kTwirlSwayLow_hz, kTwirlSwayHigh_hz);
+    for (int i = 0; i < 3; ++i)
+      positions_.emplace_back(stream, values.at("sway_m"), kTwirlSwayLow_hz, kTwirlSwayHigh_hz);
   }
 
   BodyState start() const override { return hand_.start(); }
@@ -100,7 +101,7 @@ class Twirl : public Motion {
     }
     // the unsteadiness sets in within a second, without a jump of acceleration
     const double share = eased(time_s - rest_s_);
-    const Eigen::Vector3d sway_m(places_[0].at(time_s), places_[1].at(time_s), places_[2].at(time_s));
+    const Eigen::Vector3d sway_m(positions_[0].at(time_s), positions_[1].at(time_s), positions_[2].at(time_s));
     const BodyState start = hand_.start();
     CarriedPose pose;
     pose.q = start.q_WB * Eigen::AngleAxisd(share * turns_[1].at(time_s), Eigen::Vector3d::UnitZ()) *
@@ -115,7 +116,7 @@ class Twirl : public Motion {
   Eigen::Vector3d grip_B_m_;
   Eigen::Matrix3d inertia_B_kg_m2_;
   std::vector<Stroke> strokes_;
-  std::vector<Tremor> turns_, places_;  ///< about x, z and y; along x, y and z
+  std::vector<Tremor> turns_, positions_;  ///< about x, z and y; along x, y and z
 };
 
 std::unique_ptr<Motion> make_twirl(const Values& values, const engine::World& world) {

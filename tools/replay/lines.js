@@ -4,7 +4,7 @@ function ribbonOf(track, least_m, box) {
   const kept = [];
   for (let k = 0; k < track.count; ++k) {
     if (!track.known(k)) { kept.push(null); continue; }
-    const p = track.place(k);
+    const p = track.position(k);
     if (p.some((value, i) => value < box.low[i] || value > box.high[i])) break;
     const last = kept[kept.length - 1];
     if (last && distance(last.p, p) < least_m) continue;
@@ -35,7 +35,7 @@ function boxOf(track) {
   const low = [Infinity, Infinity, Infinity], high = [-Infinity, -Infinity, -Infinity];
   for (let k = 0; k < track.count; ++k) {
     if (!track.known(k)) continue;
-    track.place(k).forEach((value, i) => { low[i] = Math.min(low[i], value); high[i] = Math.max(high[i], value); });
+    track.position(k).forEach((value, i) => { low[i] = Math.min(low[i], value); high[i] = Math.max(high[i], value); });
   }
   return { low, high };
 }

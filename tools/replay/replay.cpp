@@ -115,7 +115,7 @@ std::vector<Motion> motions_of(const ReplayInput& input, std::int64_t step_ns) {
     if (reference.empty()) reference = motions.back();
   }
   if (reference.empty())
-    throw scenarios::BadInput("there is no way to show: no truth that knows places, and no estimate with poses");
+    throw scenarios::BadInput("there is no way to show: no truth that knows positions, and no estimate with poses");
   return motions;
 }
 

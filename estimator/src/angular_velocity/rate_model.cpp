@@ -23,7 +23,7 @@ void check(const AuxiliaryImu& p) {
   require_within("auxiliary_imu gyro_error_rad_s", p.gyro_error_rad_s, 1e-9, 10.0);
   require_within("auxiliary_imu accel_error_m_s2", p.accel_error_m_s2, 1e-9, 10.0);
   require_within("auxiliary_imu share_error", p.share_error, 0.0, 1.0);
-  require_within("auxiliary_imu place_error_m", p.place_error_m, 1e-9, 1.0);
+  require_within("auxiliary_imu position_error_m", p.position_error_m, 1e-9, 1.0);
   require_within("auxiliary_imu clock_error_s", p.clock_error_s, 0.0, 0.1);
   for (const double value : p.T_IC.matrix().reshaped()) require_within("auxiliary_imu T_IC", value, -100.0, 100.0);
 }

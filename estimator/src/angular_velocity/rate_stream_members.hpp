@@ -184,7 +184,7 @@ void members(Self& s, Visitor& visit) {
   visit("auxiliary.gyro_error_rad_s", s.gyro_error_rad_s);
   visit("auxiliary.accel_error_m_s2", s.accel_error_m_s2);
   visit("auxiliary.share_error", s.share_error);
-  visit("auxiliary.place_error_m", s.place_error_m);
+  visit("auxiliary.position_error_m", s.position_error_m);
   visit("auxiliary.clock_error_s", s.clock_error_s);
   visit("auxiliary.gyro_elements", s.gyro_elements);
   visit("auxiliary.accel_elements", s.accel_elements);

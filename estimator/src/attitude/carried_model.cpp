@@ -141,7 +141,7 @@ void Node::move(const System::StateVector& step) {
   angular_acceleration_rad_s2 += step.segment<3>(kAngular);
   a_W_m_s2 += step.segment<3>(kHand);
   v_W_m_s += step.segment<3>(kVelocity);
-  p_W_m += step.segment<3>(kPlace);
+  p_W_m += step.segment<3>(kPosition);
 }
 
 void Constants::move(const System::BorderVector& step) {
@@ -305,20 +305,20 @@ double Motion::add_step(const Node& from, const Node& to, double hand, System::B
 // carried.md (C9)
 double Motion::add_bounds(const Node& node, System::Block& block) const {
   const double velocity = params_.velocity_m_s * params_.velocity_m_s * params_.velocity_tau_s;
-  const double place = params_.position_m * params_.position_m * params_.position_tau_s;
+  const double position = params_.position_m * params_.position_m * params_.position_tau_s;
   return add_zero(node.v_W_m_s, params_.step_s / velocity, kVelocity, block) +
-         add_zero(node.p_W_m, params_.step_s / place, kPlace, block);
+         add_zero(node.p_W_m, params_.step_s / position, kPosition, block);
 }
 
 double Motion::add_first(const Node& node, System::Block& block) const {
   const Vector3d up_I = node.q_WI.conjugate() * Vector3d::UnitZ();
   block.diagonal.topLeftCorner<3, 3>() += 1e6 * up_I * up_I.transpose() + 0.1 * Matrix3d::Identity();
-  const double hand = params_.hand_m_s2, velocity = params_.velocity_m_s, place = params_.position_m;
+  const double hand = params_.hand_m_s2, velocity = params_.velocity_m_s, position = params_.position_m;
   return add_zero(node.w_WI_I_rad_s, 1e-4, kRate, block) +
          add_zero(node.angular_acceleration_rad_s2, 1e-6, kAngular, block) +
          add_zero(node.a_W_m_s2, 1.0 / (hand * hand), kHand, block) +
          add_zero(node.v_W_m_s, 1.0 / (velocity * velocity), kVelocity, block) +
-         add_zero(node.p_W_m, 1.0 / (place * place), kPlace, block);
+         add_zero(node.p_W_m, 1.0 / (position * position), kPosition, block);
 }
 
 }  // namespace tumble::carried

@@ -190,7 +190,7 @@ void Problem::restore(Answer answer) {
 
 // carried.md (C16), (C34)
 Status Problem::solve(CarriedSmoother::Report& report) {
-  std::optional<Place> before;  // the last step
+  std::optional<Iterate> before;  // the last step
   report.converged = false;
   for (int k = 0; k < params_.expert.iterations_max; ++k) {
     if (k >= kFollowFirst && k <= kFollowLast && params_.expert.hand.hand_follow > 0.0) {
@@ -199,7 +199,7 @@ Status Problem::solve(CarriedSmoother::Report& report) {
     }
     report.cost = linearise();
     if (before && !descend_from(*before, report.cost)) break;
-    before = Place{nodes_, constants_, report.cost};
+    before = Iterate{nodes_, constants_, report.cost};
     double largest = 0.0;
     if (!step(largest)) return {kLost, "iteration of the carried body", k + 1.0, static_cast<double>(k)};
     report.iterations = k + 1;
@@ -218,7 +218,7 @@ Status Problem::solve(CarriedSmoother::Report& report) {
 
 // Where the last step led to a larger cost, shorter ones are tried. False when none leads down: the nodes are then back
 // where they were before it, and linearised there.
-bool Problem::descend_from(const Place& before, double& cost) {
+bool Problem::descend_from(const Iterate& before, double& cost) {
   const auto goes_down = [&] { return cost < before.cost + kRises; };
   for (int k = 0; k < kHalvings && !goes_down(); ++k) {
     nodes_ = before.nodes;

@@ -13,7 +13,7 @@ void members(Self& s, Visitor& visit) {
   visit("forces.P", s.P);
   visit("forces.difference_m_s2", s.difference_m_s2);
   visit("forces.force_m_s2", s.force_m_s2);
-  visit("forces.by_place", s.by_place);
+  visit("forces.by_position", s.by_position);
   visit("forces.acceleration_rad_s2", s.acceleration_rad_s2);
   visit("forces.samples", s.samples);
   visit("forces.span_s", s.span_s);

@@ -38,11 +38,11 @@ struct AccelerometerFilter {
 
   // iterated: the last linearisation stands where the update ends
   void measure_difference(const Vector3d& p_I_m, const Vector3d& difference, double variance) {
-    const RigConstants place{.lever_arm_m = p_I_m};
+    const RigConstants rig{.lever_arm_m = p_I_m};
     const RateAndAcceleration before = x;
     RateCovariance after = P;
     for (int i = 0; i < kIterations; ++i) {
-      const RateFactor f = flight_factor({x.head<3>(), x.tail<3>()}, place, difference);
+      const RateFactor f = flight_factor({x.head<3>(), x.tail<3>()}, rig, difference);
       const Vector3d innovation = -(f.residual + f.by_knot * (before - x));
       after = P;
       x = before + vector_update<3, 6>(f.by_knot, innovation, variance * Eigen::Matrix3d::Identity(), after);

@@ -269,7 +269,7 @@ TEST(ImuPlausibility, WhereTheGyroIsAtItsRailNothingIsCompared) {
   EXPECT_TRUE(plausibility.verdict(state).ok()) << plausibility.verdict(state).message();
 }
 
-// Nor is its size: what a rig that spins in flight feels at its place is as steady.
+// Nor is its size: what a rig that spins in flight feels at its position is as steady.
 TEST(ImuPlausibility, AForceIsNotTakenForGravityWhileTheGyroIsAtItsRail) {
   const auto verdict = [](double range_rad_s) {
     const ImuPlausibility plausibility({.gyro_range_rad_s = range_rad_s});

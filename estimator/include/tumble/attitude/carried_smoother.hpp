@@ -39,11 +39,12 @@ struct ClippedElements {
 /// Attitude and angular velocity of a body that is carried (held, swung, twirled), from one IMU, also where its gyro
 /// clips: a smoother over a whole recording.
 ///
-/// What a hand does is bounded: its acceleration is short-lived and its velocity and place come back. So the specific
-/// force is gravity at the attitude, the lever arm's share and a bounded rest, and gravity turning in the sensor tells
-/// the rate that the gyro lost. Nodes at equal times of attitude, rate, angular acceleration and the carried point's
-/// acceleration, velocity, place; constants of the device beside them; Gauss-Newton on the arrow matrix (ArrowSystem),
-/// covariances from the same factors. O(time) in memory (about 7 kB a node) and work, whatever the IMU's rate.
+/// What a hand does is bounded: its acceleration is short-lived and its velocity and position come back. So the
+/// specific force is gravity at the attitude, the lever arm's share and a bounded rest, and gravity turning in the
+/// sensor tells the rate that the gyro lost. Nodes at equal times of attitude, rate, angular acceleration and the
+/// carried point's acceleration, velocity, position; constants of the device beside them; Gauss-Newton on the arrow
+/// matrix (ArrowSystem), covariances from the same factors. O(time) in memory (about 7 kB a node) and work, whatever
+/// the IMU's rate.
 ///
 /// Not modelled: flight (a body that is thrown: `hand_mahalanobis` tells), contact beyond what a hand's acceleration
 /// explains, walk of the biases, heading.

@@ -48,13 +48,13 @@ struct ImuPlausibilityParams {
 ///
 /// Where the force is steady in size over a fifth of a second it is nearly gravity: its size must be g, and the gyro
 /// must say how its direction turns, u(t + T) = R^T u(t). A steady force of another size is no gravity: of a body
-/// that flies and spins it is what its turning makes of the sensor's place, and stands still in the sensor's axes. Of
-/// that its direction is not asked, nor anything of a window in which the gyro is at its rail. Where the force turned,
-/// it must have turned as the gyro says: the slope of one over the other is 1 of a sound IMU, 2 of a gyro of half the
-/// scale, -1 of one of the other sense, and about 0 of axes that are swapped. Pushes and a rod that a force points
-/// along spread about that slope and do not move it far. A body that turns about the one axis which a wrong naming
-/// leaves alone (a sphere that rolls along x = y with x and y swapped) keeps it; but the right naming leaves less
-/// unexplained, so every naming is asked. A force that does not turn at all while the body does is told apart from
+/// that flies and spins it is what its turning makes of the sensor's position, and stands still in the sensor's axes.
+/// Of that its direction is not asked, nor anything of a window in which the gyro is at its rail. Where the force
+/// turned, it must have turned as the gyro says: the slope of one over the other is 1 of a sound IMU, 2 of a gyro of
+/// half the scale, -1 of one of the other sense, and about 0 of axes that are swapped. Pushes and a rod that a force
+/// points along spread about that slope and do not move it far. A body that turns about the one axis which a wrong
+/// naming leaves alone (a sphere that rolls along x = y with x and y swapped) keeps it; but the right naming leaves
+/// less unexplained, so every naming is asked. A force that does not turn at all while the body does is told apart from
 /// that.
 ///
 /// A gyro or an accelerometer that repeats one reading to the last bit, for a second and ten times as long as ever

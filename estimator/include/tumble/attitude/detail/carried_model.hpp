@@ -17,10 +17,10 @@ inline constexpr int kBorder = 9;  ///< of the constants: see ConstantIndex
 using System = ArrowSystem<kState, kBorder>;
 
 /// Where the parts of a node's error lie; that of the attitude is phi with q_true = q_WI Exp(phi).
-enum Index { kPhi = 0, kRate = 3, kAngular = 6, kHand = 9, kVelocity = 12, kPlace = 15 };
+enum Index { kPhi = 0, kRate = 3, kAngular = 6, kHand = 9, kVelocity = 12, kPosition = 15 };
 enum ConstantIndex { kGyroBias = 0, kAccelBias = 3, kLever = 6 };
 
-/// One node. The carried point is what the hand holds; its acceleration, velocity and place are bounded.
+/// One node. The carried point is what the hand holds; its acceleration, velocity and position are bounded.
 struct Node {
   Eigen::Quaterniond q_WI = Eigen::Quaterniond::Identity();
   Eigen::Vector3d w_WI_I_rad_s = Eigen::Vector3d::Zero();
@@ -87,7 +87,7 @@ double add_force(const NodeReadings& readings, const Eigen::Vector3d& g_W_m_s2, 
 double add_rest(const ReadingNoise& noise, const Node& node, System::Block& block);
 
 /// The motion from one node to the next, per step of `h` seconds: white angular jerk; the hand's acceleration a bounded
-/// process of its own memory, its velocity and place about zero over theirs.
+/// process of its own memory, its velocity and position about zero over theirs.
 class Motion {
  public:
   struct Params {
@@ -104,7 +104,7 @@ class Motion {
   /// density of the angular jerk.
   double add_step(const Node& from, const Node& to, double hand, System::Block& block, System::Block& next,
                   double jerk = 1.0) const;
-  /// Velocity and place about zero: the share of one node.
+  /// Velocity and position about zero: the share of one node.
   double add_bounds(const Node& node, System::Block& block) const;
   /// The first node: heading 0 as it stands, everything else as wide as the process.
   double add_first(const Node& node, System::Block& block) const;
@@ -114,7 +114,7 @@ class Motion {
 
   Params params_;
   Eigen::Matrix4d jerk_;                    // information of (rate, angular acceleration) here and next, one axis
-  Eigen::Matrix<double, 6, 6> hand_, way_;  // of (acceleration, velocity, place) here and next, one axis
+  Eigen::Matrix<double, 6, 6> hand_, way_;  // of (acceleration, velocity, position) here and next, one axis
   double phi_variance_;
 };
 

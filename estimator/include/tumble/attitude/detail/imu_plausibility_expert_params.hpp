@@ -25,7 +25,8 @@ struct GravityTurningParams {
   double slope_min = 0.65, slope_max = 1.5;
   double turned_min_rad2 = 0.5;  ///< sum of squares below which nothing is said of it
   double turn_least_rad = 0.15;  ///< of a window, to count as turning
-  /// So many of them: in one or two a push may pass for gravity, or what a rig that spins in flight feels at its place.
+  /// So many of them: in one or two a push may pass for gravity, or what a rig that spins in flight feels at its
+  /// position.
   double turned_windows_min = 5.0;
   /// Of what the gyro leaves unexplained, by one of the slope's scale, where that is not between 0 and 1.
   double unexplained_share_max = 0.75;
