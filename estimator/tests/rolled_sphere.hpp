@@ -54,6 +54,6 @@ inline RollingOdometry::Params params_of(const std::vector<Eigen::Vector3d>& pos
 }
 
 inline const std::vector<Eigen::Vector3d> kPositions = {{0.03, 0.0, 0.0}, {-0.02, 0.03, 0.01}, {0.0, -0.03, -0.02}};
-inline const double kWay_m = kTurns * 2.0 * M_PI * kRadius_m;
+inline const double kPathLength_m = kTurns * 2.0 * M_PI * kRadius_m;
 
 }  // namespace tumble::test

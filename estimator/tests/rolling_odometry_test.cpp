@@ -15,7 +15,7 @@
 namespace tumble {
 namespace {
 
-using test::kPositions, test::kRadius_m, test::kWay_m, test::params_of, test::unit_at;
+using test::kPositions, test::kRadius_m, test::kPathLength_m, test::params_of, test::unit_at;
 
 TEST(RollingOdometry, RollsTwoTurnsWithOneUnitOrThree) {
   for (const std::size_t count : {std::size_t{1}, std::size_t{3}}) {
@@ -33,14 +33,14 @@ TEST(RollingOdometry, RollsTwoTurnsWithOneUnitOrThree) {
       while (const std::optional<RollingOdometry::Pose> pose = odometry.take()) poses.push_back(*pose);
     }
     ASSERT_TRUE(odometry.newest());
-    EXPECT_NEAR(odometry.newest()->pose.p_WA_m.x(), kWay_m, 0.01 * kWay_m) << count;
+    EXPECT_NEAR(odometry.newest()->pose.p_WA_m.x(), kPathLength_m, 0.01 * kPathLength_m) << count;
     EXPECT_TRUE(odometry.newest()->at_rest);
     const std::size_t before = poses.size();
     odometry.finish();
     while (const std::optional<RollingOdometry::Pose> pose = odometry.take()) poses.push_back(*pose);
     EXPECT_GT(poses.size(), before);  // those within the lag
     EXPECT_EQ(poses.size(), units[0].size());
-    EXPECT_NEAR(poses.back().pose.p_WA_m.x(), kWay_m, 0.005 * kWay_m);
+    EXPECT_NEAR(poses.back().pose.p_WA_m.x(), kPathLength_m, 0.005 * kPathLength_m);
     EXPECT_LT(poses.back().pose.p_WA_m.tail<2>().norm(), 0.01);
   }
 }
@@ -50,7 +50,7 @@ TEST(RollingOdometry, AnotherRadiusEndsElsewhere) {  // negative control
   params.radius_m = 1.1 * kRadius_m;
   RollingOdometry odometry(params);
   for (const ImuSample& sample : unit_at(kPositions[0])) ASSERT_TRUE(odometry.add_imu(sample).ok());
-  EXPECT_GT(std::abs(odometry.newest()->pose.p_WA_m.x() - kWay_m), 0.05 * kWay_m);
+  EXPECT_GT(std::abs(odometry.newest()->pose.p_WA_m.x() - kPathLength_m), 0.05 * kPathLength_m);
 }
 
 TEST(RollingOdometry, WithoutALagEachLivePoseIsGivenOnce) {
@@ -106,7 +106,7 @@ Ended end_of_clipped(std::size_t count, double stated_rad_s) {
     EXPECT_TRUE(odometry.add_imus(now).ok());
   }
   const RollingOdometry::Pose end = *odometry.newest();
-  return {std::abs(end.pose.p_WA_m.x() - kWay_m), std::sqrt(end.pose.covariance(0, 0))};
+  return {std::abs(end.pose.p_WA_m.x() - kPathLength_m), std::sqrt(end.pose.covariance(0, 0))};
 }
 
 TEST(RollingOdometry, ARailThatNoFlagTellsIsSeenByTheReadings) {
@@ -144,8 +144,8 @@ TEST(RollingOdometry, AUnitOfWhichAnAxisFreezesIsLeftOutAndNamed) {
   for (std::size_t k = 0; k < units[0].size(); ++k)
     ASSERT_TRUE(harmed.add_imus(std::vector<ImuSample>{units[0][k], units[1][k], units[2][k]}).ok());
   EXPECT_NE(harmed.doubt().message().find("unit 2's gyro y"), std::string::npos) << harmed.doubt().message();
-  EXPECT_NEAR(sound.newest()->pose.p_WA_m.x(), kWay_m, 0.02 * kWay_m);
-  EXPECT_NEAR(harmed.newest()->pose.p_WA_m.x(), kWay_m, 0.05 * kWay_m);
+  EXPECT_NEAR(sound.newest()->pose.p_WA_m.x(), kPathLength_m, 0.02 * kPathLength_m);
+  EXPECT_NEAR(harmed.newest()->pose.p_WA_m.x(), kPathLength_m, 0.05 * kPathLength_m);
 }
 
 TEST(RollingOdometry, TheOnlyUnitIsRefusedWithTheNameOfItsFrozenAxis) {
@@ -178,7 +178,7 @@ TEST(RollingOdometry, TroubleIsAValue) {
   RollingOdometry fresh(params_of({kPositions[0]}));
   EXPECT_EQ(fresh.add_imu(weightless).trouble, Trouble::degenerate);
   for (const ImuSample& sample : samples) ASSERT_TRUE(fresh.add_imu(sample).ok());
-  EXPECT_NEAR(fresh.newest()->pose.p_WA_m.x(), kWay_m, 0.01 * kWay_m);
+  EXPECT_NEAR(fresh.newest()->pose.p_WA_m.x(), kPathLength_m, 0.01 * kPathLength_m);
 }
 
 TEST(RollingOdometry, RefusesParametersOutOfTheirBounds) {

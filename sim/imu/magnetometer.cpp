@@ -22,23 +22,23 @@ Eigen::Vector3d random_direction(Stream& stream) {
   return {radius * std::cos(turn), radius * std::sin(turn), z};
 }
 
-double distance_to_way(std::span<const Eigen::Vector3d> way, const Eigen::Vector3d& position) {
-  const std::size_t stride = std::max<std::size_t>(1, way.size() / kPositions);
+double distance_to_path(std::span<const Eigen::Vector3d> path, const Eigen::Vector3d& position) {
+  const std::size_t stride = std::max<std::size_t>(1, path.size() / kPositions);
   double nearest = std::numeric_limits<double>::infinity();
-  for (std::size_t k = 0; k < way.size(); k += stride) nearest = std::min(nearest, (way[k] - position).norm());
+  for (std::size_t k = 0; k < path.size(); k += stride) nearest = std::min(nearest, (path[k] - position).norm());
   return nearest;
 }
 
 /// A position beside the path; of the tries that all come too near, the farthest.
-Eigen::Vector3d draw_position(std::span<const Eigen::Vector3d> way, double nearest_m, double farthest_m,
+Eigen::Vector3d draw_position(std::span<const Eigen::Vector3d> path, double nearest_m, double farthest_m,
                               Stream& stream) {
   Eigen::Vector3d best = Eigen::Vector3d::Zero();
   double best_m = -1.0;
   for (int i = 0; i < kTries && best_m < nearest_m; ++i) {
-    const auto k = static_cast<std::size_t>(stream.uniform() * static_cast<double>(way.size()));
+    const auto k = static_cast<std::size_t>(stream.uniform() * static_cast<double>(path.size()));
     const Eigen::Vector3d direction = random_direction(stream);
-    const Eigen::Vector3d position = way[k] + stream.uniform(nearest_m, farthest_m) * direction;
-    const double distance_m = distance_to_way(way, position);
+    const Eigen::Vector3d position = path[k] + stream.uniform(nearest_m, farthest_m) * direction;
+    const double distance_m = distance_to_path(path, position);
     if (distance_m <= best_m) continue;
     best = position;
     best_m = distance_m;

@@ -16,7 +16,7 @@ namespace {
 constexpr std::array kStrollParameters = {
     Parameter{"rest_s", 1.75, 0.5, 30.0, "s", "held still before the first step"},
     Parameter{"height_m", 1.0, 0.1, 10.0, "m", "of the lowest point of the held robot above the ground at the start"},
-    Parameter{"heading_rad", 0.0, -3.2, 3.2, "rad", "turn of the whole way about the vertical"},
+    Parameter{"heading_rad", 0.0, -3.2, 3.2, "rad", "turn of the whole path about the vertical"},
     Parameter{"half_length_m", 2.4, 0.2, 20.0, "m",
               "of the eight x = a sin u, y = b sin 2u that is walked, from its crossing on: a"},
     Parameter{"half_width_m", 1.2, 0.1, 20.0, "m", "the same: b"},
@@ -52,7 +52,7 @@ class Stroll : public Motion {
   BodyState start() const override { return hand_.start(); }
 
   Wrench wrench(const BodyState& state) override {
-    return carry_along(hand_, inertia_B_kg_m2_, state, [this](double time_s) { return way(time_s); });
+    return carry_along(hand_, inertia_B_kg_m2_, state, [this](double time_s) { return path(time_s); });
   }
 
  private:
@@ -68,14 +68,14 @@ class Stroll : public Motion {
     return phase_rate_rad_s_ * (walk_s_ - ease_s_ - begun_s(walk_s_ - t_s));
   }
 
-  /// Along the way at a phase.
+  /// Along the path at a phase.
   Eigen::Quaterniond heading(double phase_rad) const {
     const double yaw_rad =
         std::atan2(2.0 * half_width_m_ * std::cos(2.0 * phase_rad), half_length_m_ * std::cos(phase_rad));
     return Eigen::Quaterniond(Eigen::AngleAxisd(values_.at("heading_rad") + yaw_rad, Eigen::Vector3d::UnitZ()));
   }
 
-  CarriedPose way(double time_s) const {
+  CarriedPose path(double time_s) const {
     const double walked_s = time_s - values_.at("rest_s"), phase = phase_rad(walked_s);
     // the unsteadiness sets in and ends within a second, without a jump of acceleration
     const double share = eased(walked_s) * eased(walk_s_ - walked_s);

@@ -66,8 +66,8 @@ std::vector<Stroke> plan_strokes(const Values& values, Stream& stream) {
   return strokes;
 }
 
-/// Carried by a point of it and twirled about x, stroke by stroke: a spring and a damper hold it to a way that the hand
-/// means to go, the forces that this takes added beforehand. The hand is no body.
+/// Carried by a point of it and twirled about x, stroke by stroke: a spring and a damper hold it to a path that the
+/// hand means to go, the forces that this takes added beforehand. The hand is no body.
 class Twirl : public Motion {
  public:
   Twirl(const Values& values, const engine::World& world)
@@ -88,12 +88,12 @@ class Twirl : public Motion {
   BodyState start() const override { return hand_.start(); }
 
   Wrench wrench(const BodyState& state) override {
-    return carry_along(hand_, inertia_B_kg_m2_, state, [this](double time_s) { return way(time_s); });
+    return carry_along(hand_, inertia_B_kg_m2_, state, [this](double time_s) { return path(time_s); });
   }
 
  private:
   /// Where the hand means the robot to be.
-  CarriedPose way(double time_s) const {
+  CarriedPose path(double time_s) const {
     double spun_rad = 0.0;
     for (const Stroke& stroke : strokes_) {
       if (time_s <= stroke.start_s) break;

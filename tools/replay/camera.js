@@ -47,12 +47,12 @@ class Camera {
   }
 }
 
-// Where the camera begins: across the way, so that a slope shows as one.
+// Where the camera begins: across the path, so that a slope shows as one.
 function firstCamera(replay) {
   const moving = replay.actors.find((actor) => actor.track && actor.track.span());
   const [first, last] = moving.track.span();
-  const from = moving.track.position(first), to = moving.track.position(last), way = minus(to, from);
-  const azimuth = Math.hypot(way[0], way[1]) < 0.2 ? -1.2 : Math.atan2(way[1], way[0]) - 1.15;
+  const from = moving.track.position(first), to = moving.track.position(last), moved = minus(to, from);
+  const azimuth = Math.hypot(moved[0], moved[1]) < 0.2 ? -1.2 : Math.atan2(moved[1], moved[0]) - 1.15;
   const distance_m = Math.max(2.2, 10 * replay.head.robot_radius_m);
   return new Camera(moving.track.position(Math.min(last, Math.max(first, Math.round(replay.head.from_s / replay.head.pose_step_s)))),
     distance_m, azimuth);

@@ -1,5 +1,5 @@
-// The ways as bands: two corners a sample, each with the direction ahead, its side and its time.
-// A way ends where it leaves `box`: one that runs away would cross the whole picture.
+// The paths as bands: two corners a sample, each with the direction ahead, its side and its time.
+// A path ends where it leaves `box`: one that runs away would cross the whole picture.
 function ribbonOf(track, least_m, box) {
   const kept = [];
   for (let k = 0; k < track.count; ++k) {
@@ -24,7 +24,7 @@ function ribbonOf(track, least_m, box) {
   return new Float32Array(numbers);
 }
 
-// The first way's box, wider on every side by half of its diagonal and 1 m at least.
+// The first path's box, wider on every side by half of its diagonal and 1 m at least.
 function surroundings(replay) {
   const { low, high } = boxOf(replay.actors.find((actor) => actor.track && actor.track.span()).track);
   const margin = Math.max(1, 0.5 * distance(low, high));

@@ -81,7 +81,7 @@ void append(const Vector3d& v, double scale, std::vector<std::int16_t>& out) {
   for (int axis = 0; axis < 3; ++axis) out.push_back(whole(v[axis], scale));
 }
 
-/// Where the positions of the page begin: in the middle of the first way, so that a float holds it well.
+/// Where the positions of the page begin: in the middle of the first path, so that a float holds it well.
 Vector3d origin_of(const Replay& replay) {
   for (const ReplayActor& actor : replay.actors) {
     for (const Vector3d& p : actor.track.p_WB_m) {

@@ -98,7 +98,7 @@ const SHADERS = {
     void main() { gl_Position = u_camera * u_body * vec4(a_position, 1.0); }`, `
     void main() {}`],
 
-  // a way: a band that faces the eye, at least as wide as a line on the screen
+  // a path: a band that faces the eye, at least as wide as a line on the screen
   ribbon: [`
     layout(location = 0) in vec3 a_position;
     layout(location = 1) in vec3 a_ahead;

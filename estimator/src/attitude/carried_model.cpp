@@ -255,10 +255,10 @@ Motion::Motion(const Params& params) : params_(params) {
   row << -decay, 0.0, 0.0, 1.0, 0.0, 0.0;
   hand_ = row.transpose() * row / (density * h);
   row << -0.5 * h, -1.0, 0.0, -0.5 * h, 1.0, 0.0;
-  way_ = row.transpose() * row / (density * h * h * h / 12.0 + 1e-10);
+  kinematics_ = row.transpose() * row / (density * h * h * h / 12.0 + 1e-10);
   const double leak = std::exp(-h / params.position_leak_s);
   row << 0.0, -0.5 * h, -leak, 0.0, -0.5 * h, 1.0;
-  way_ += row.transpose() * row / (density * std::pow(h, 5) / 120.0 + 1e-10);
+  kinematics_ += row.transpose() * row / (density * std::pow(h, 5) / 120.0 + 1e-10);
 }
 
 // carried.md (C4), (C5)
@@ -295,10 +295,10 @@ double Motion::add_step(const Node& from, const Node& to, double hand, System::B
   Eigen::Matrix<double, 3, 4> turn;
   turn << from.w_WI_I_rad_s, from.angular_acceleration_rad_s2, to.w_WI_I_rad_s, to.angular_acceleration_rad_s2;
   cost += add_chain<2>(jerk_, 1.0 / (jerk * jerk), kRate, turn, block, next);
-  Eigen::Matrix<double, 3, 6> way;
-  way << from.a_W_m_s2, from.v_W_m_s, from.p_W_m, to.a_W_m_s2, to.v_W_m_s, to.p_W_m;
-  cost += add_chain<3>(hand_, 1.0 / hand, kHand, way, block, next);
-  cost += add_chain<3>(way_, 1.0, kHand, way, block, next);
+  Eigen::Matrix<double, 3, 6> ends;
+  ends << from.a_W_m_s2, from.v_W_m_s, from.p_W_m, to.a_W_m_s2, to.v_W_m_s, to.p_W_m;
+  cost += add_chain<3>(hand_, 1.0 / hand, kHand, ends, block, next);
+  cost += add_chain<3>(kinematics_, 1.0, kHand, ends, block, next);
   return cost;
 }
 

@@ -61,7 +61,7 @@ class Segments {
   }
   /// Ends the segment that is open, which counts when it is half as long as a whole one.
   void close() {
-    if (length_s_ >= 0.5 * params_.segment_s && turned_rad_ >= params_.turned_least_rad) take();
+    if (length_s_ >= 0.5 * params_.segment_s && turned_rad_ >= params_.rotation_least_rad) take();
     sums_ = {};
     length_s_ = turned_rad_ = 0.0;
   }

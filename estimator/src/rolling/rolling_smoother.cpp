@@ -95,7 +95,7 @@ void start_window(const RollingParams& filter, const RollingParams& path, const 
   start.reading = start_cursor(sample);
 }
 
-/// Which nodes lie in events whose way became uncertain.
+/// Which nodes lie in events whose position became uncertain.
 struct Events {
   std::vector<bool> uncertain;
   double committed_m2 = 0.0;  ///< RollingSmoother::Committed::event_variance_m2 after the node `emitted`

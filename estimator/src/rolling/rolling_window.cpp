@@ -147,11 +147,11 @@ Reported measure_distance(const RollingParams& params, double distance_m, double
   const RollingNominal& nominal = filter.nominal;
   const Eigen::Matrix3d R = nominal.q_WI.toRotationMatrix();
   const Eigen::Vector3d arm_W = R * (params.lever_arm_m + nominal.lever_arm_error_m);
-  Eigen::Vector3d way = nominal.p_WI_m - arm_W;
-  way.z() = 0.0;
-  const double length_m = way.norm();
+  Eigen::Vector3d from_start = nominal.p_WI_m - arm_W;
+  from_start.z() = 0.0;
+  const double length_m = from_start.norm();
   if (length_m < kNoDirection_m) return Reported::Zero();
-  const Eigen::RowVector3d along = (way / length_m).transpose();
+  const Eigen::RowVector3d along = (from_start / length_m).transpose();
   Row H = Row::Zero();
   H.segment<3>(kAttitude) = along * so3::hat(arm_W);
   H.segment<3>(kPosition) = along;

@@ -105,7 +105,7 @@ void write_by_column(const std::filesystem::path& from, const std::filesystem::p
   }
 }
 
-TEST_P(SphereLog, EveryFormOfTheFileGivesTheSameWay) {
+TEST_P(SphereLog, EveryFormOfTheFileGivesTheSamePath) {
   const auto folder = std::filesystem::path(::testing::TempDir()) / "sphere_log_forms";
   std::filesystem::create_directories(folder);
   write_by_column(path_, folder / "g.csv", 1.0);

@@ -126,7 +126,7 @@ struct CarriedParams {
     visit(p.accel_bias_sigma_m_s2,
           {"accel_bias_sigma_m_s2", "m/s^2", 1e-6, 10.0, "prior of the accelerometer's bias", Rank::first});
     visit(p.lever_arm_sigma_m,
-          {"lever_arm_sigma_m", "m", 1e-6, 10.0, "prior of the way from the carried point", Rank::first});
+          {"lever_arm_sigma_m", "m", 1e-6, 10.0, "prior of the lever arm from the carried point", Rank::first});
     visit(p.jerk_rad_s3_sqrts,
           {"jerk_rad_s3_sqrts", "rad/s^3 sqrt(s)", 1e-2, 1e6, "root density of the angular jerk", Rank::first});
     visit(p.hand_m_s2, {"hand_m_s2", "m/s^2", 1e-3, 1e3, "deviation of the carried point's acceleration", Rank::first});

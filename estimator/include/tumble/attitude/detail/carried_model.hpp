@@ -113,8 +113,8 @@ class Motion {
   double add_attitude(const Node& from, const Node& to, double jerk, System::Block& block, System::Block& next) const;
 
   Params params_;
-  Eigen::Matrix4d jerk_;                    // information of (rate, angular acceleration) here and next, one axis
-  Eigen::Matrix<double, 6, 6> hand_, way_;  // of (acceleration, velocity, position) here and next, one axis
+  Eigen::Matrix4d jerk_;  // information of (rate, angular acceleration) here and next, one axis
+  Eigen::Matrix<double, 6, 6> hand_, kinematics_;  // of (acceleration, velocity, position) here and next, one axis
   double phi_variance_;
 };
 
