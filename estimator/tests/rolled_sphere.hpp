@@ -10,12 +10,12 @@
 /// A sphere that rolls without slip along x, from rest to rest, in closed form.
 namespace tumble::test {
 
-inline constexpr double kRadius_m = 0.145, kGravity_m_s2 = 9.80665, kRest_s = 1.5, kRoll_s = 2.0, kTurns = 2.0;
+inline constexpr double kRadius_m = 0.145, kGravity_m_s2 = 9.80665, kRest_s = 1.5, kRoll_s = 2.0, kRevolutions = 2.0;
 
 /// Turned so far [rad]: from rest to rest, two turns about y.
 inline double angle_rad(double t_s) {
   const double u = std::clamp((t_s - kRest_s) / kRoll_s, 0.0, 1.0);
-  return kTurns * 2.0 * M_PI * u * u * u * (10.0 + u * (-15.0 + 6.0 * u));
+  return kRevolutions * 2.0 * M_PI * u * u * u * (10.0 + u * (-15.0 + 6.0 * u));
 }
 
 /// What a unit at p_B of a sphere that rolls without slip along x reads at 250 Hz: means of windows by differences of
@@ -54,6 +54,6 @@ inline RollingOdometry::Params params_of(const std::vector<Eigen::Vector3d>& pos
 }
 
 inline const std::vector<Eigen::Vector3d> kPositions = {{0.03, 0.0, 0.0}, {-0.02, 0.03, 0.01}, {0.0, -0.03, -0.02}};
-inline const double kPathLength_m = kTurns * 2.0 * M_PI * kRadius_m;
+inline const double kPathLength_m = kRevolutions * 2.0 * M_PI * kRadius_m;
 
 }  // namespace tumble::test

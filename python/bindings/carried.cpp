@@ -59,9 +59,10 @@ void bind_smoother(nb::module_& m) {
       .def_ro("converged", &Report::converged)
       .def_ro("cost", &Report::cost)
       .def_ro("hand_mahalanobis", &Report::hand_mahalanobis, "2 and more: thrown, or a rough hand")
-      .def_ro("turns_asked", &Report::turns_asked)
-      .def_ro("turns_taken", &Report::turns_taken)
-      .def_ro("turns_open", &Report::turns_open, "clipped segments in which another number of turns stays possible");
+      .def_ro("revolutions_asked", &Report::revolutions_asked)
+      .def_ro("revolutions_taken", &Report::revolutions_taken)
+      .def_ro("revolutions_open", &Report::revolutions_open,
+              "clipped segments in which another number of turns stays possible");
   nb::class_<Carried>(
       m, "CarriedSmoother",
       "Attitude and angular velocity of a body that is carried (held, swung, twirled), also where its gyro\n"

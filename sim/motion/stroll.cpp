@@ -45,7 +45,7 @@ class Stroll : public Motion {
         hand_(world, heading(0.0), Eigen::Vector3d::Zero(), values.at("height_m")),
         inertia_B_kg_m2_(carried_inertia_B_kg_m2(hand_)) {
     Stream stream(static_cast<std::uint64_t>(values.at("hand_seed")), "hand.stroll");
-    for (int i = 0; i < 3; ++i) turns_.emplace_back(stream, values.at("sway_rad"), kSwayLow_hz, kSwayHigh_hz);
+    for (int i = 0; i < 3; ++i) rotations_.emplace_back(stream, values.at("sway_rad"), kSwayLow_hz, kSwayHigh_hz);
     for (int i = 0; i < 3; ++i) positions_.emplace_back(stream, values.at("sway_m"), kSwayLow_hz, kSwayHigh_hz);
   }
 
@@ -85,16 +85,16 @@ class Stroll : public Motion {
     const Eigen::Vector3d sway_m(positions_[0].at(time_s), positions_[1].at(time_s), positions_[2].at(time_s));
     return {hand_.start().p_WB_m + Eigen::AngleAxisd(values_.at("heading_rad"), Eigen::Vector3d::UnitZ()) * eight_m +
                 share * sway_m,
-            heading(phase) * Eigen::AngleAxisd(share * turns_[0].at(time_s), Eigen::Vector3d::UnitZ()) *
-                Eigen::AngleAxisd(share * turns_[1].at(time_s), Eigen::Vector3d::UnitY()) *
-                Eigen::AngleAxisd(share * turns_[2].at(time_s), Eigen::Vector3d::UnitX())};
+            heading(phase) * Eigen::AngleAxisd(share * rotations_[0].at(time_s), Eigen::Vector3d::UnitZ()) *
+                Eigen::AngleAxisd(share * rotations_[1].at(time_s), Eigen::Vector3d::UnitY()) *
+                Eigen::AngleAxisd(share * rotations_[2].at(time_s), Eigen::Vector3d::UnitX())};
   }
 
   Values values_;
   double half_length_m_, half_width_m_, phase_rate_rad_s_, ease_s_, walk_s_;
   HoldingHand hand_;
   Eigen::Matrix3d inertia_B_kg_m2_;
-  std::vector<Tremor> turns_, positions_;  ///< about z, y and x; along x, y and z
+  std::vector<Tremor> rotations_, positions_;  ///< about z, y and x; along x, y and z
 };
 
 std::unique_ptr<Motion> make_stroll(const Values& values, const engine::World& world) {

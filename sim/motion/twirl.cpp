@@ -79,8 +79,9 @@ class Twirl : public Motion {
         inertia_B_kg_m2_(carried_inertia_B_kg_m2(hand_)) {
     Stream stream(static_cast<std::uint64_t>(values.at("hand_seed")), "hand.twirl");
     strokes_ = plan_strokes(values, stream);
-    turns_.emplace_back(stream, values.at("twist_rad"), kTwirlSwayLow_hz, kTwirlSwayHigh_hz);
-    for (int i = 0; i < 2; ++i) turns_.emplace_back(stream, values.at("sway_rad"), kTwirlSwayLow_hz, kTwirlSwayHigh_hz);
+    rotations_.emplace_back(stream, values.at("twist_rad"), kTwirlSwayLow_hz, kTwirlSwayHigh_hz);
+    for (int i = 0; i < 2; ++i)
+      rotations_.emplace_back(stream, values.at("sway_rad"), kTwirlSwayLow_hz, kTwirlSwayHigh_hz);
     for (int i = 0; i < 3; ++i)
       positions_.emplace_back(stream, values.at("sway_m"), kTwirlSwayLow_hz, kTwirlSwayHigh_hz);
   }
@@ -104,9 +105,9 @@ class Twirl : public Motion {
     const Eigen::Vector3d sway_m(positions_[0].at(time_s), positions_[1].at(time_s), positions_[2].at(time_s));
     const BodyState start = hand_.start();
     CarriedPose pose;
-    pose.q = start.q_WB * Eigen::AngleAxisd(share * turns_[1].at(time_s), Eigen::Vector3d::UnitZ()) *
-             Eigen::AngleAxisd(share * turns_[2].at(time_s), Eigen::Vector3d::UnitY()) *
-             Eigen::AngleAxisd(spun_rad + share * turns_[0].at(time_s), Eigen::Vector3d::UnitX());
+    pose.q = start.q_WB * Eigen::AngleAxisd(share * rotations_[1].at(time_s), Eigen::Vector3d::UnitZ()) *
+             Eigen::AngleAxisd(share * rotations_[2].at(time_s), Eigen::Vector3d::UnitY()) *
+             Eigen::AngleAxisd(spun_rad + share * rotations_[0].at(time_s), Eigen::Vector3d::UnitX());
     pose.p_m = start.p_WB_m + start.q_WB * grip_B_m_ + share * sway_m - pose.q * grip_B_m_;
     return pose;
   }
@@ -116,7 +117,7 @@ class Twirl : public Motion {
   Eigen::Vector3d grip_B_m_;
   Eigen::Matrix3d inertia_B_kg_m2_;
   std::vector<Stroke> strokes_;
-  std::vector<Tremor> turns_, positions_;  ///< about x, z and y; along x, y and z
+  std::vector<Tremor> rotations_, positions_;  ///< about x, z and y; along x, y and z
 };
 
 std::unique_ptr<Motion> make_twirl(const Values& values, const engine::World& world) {

@@ -278,7 +278,7 @@ double Motion::add_attitude(const Node& from, const Node& to, double jerk, Syste
   J1.leftCols<3>() = by_next;
   J1.middleCols<3>(kRate) = by_omega * (0.5 * h * Matrix3d::Identity() + h * h / 12.0 * hat(from.w_WI_I_rad_s));
   J1.middleCols<3>(kAngular) = -h * h / 12.0 * by_omega;
-  const double error_2 = params_.turn_error_sqrts * params_.turn_error_sqrts * omega.squaredNorm() / h;
+  const double error_2 = params_.rotation_error_sqrts * params_.rotation_error_sqrts * omega.squaredNorm() / h;
   const double w = 1.0 / (jerk * jerk * phi_variance_ + error_2);
   block.diagonal.topLeftCorner<9, 9>().noalias() += w * J0.transpose() * J0;
   block.coupling.topLeftCorner<9, 9>().noalias() += w * J0.transpose() * J1;

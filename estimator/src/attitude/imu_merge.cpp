@@ -15,10 +15,10 @@ namespace tumble {
 namespace {
 
 constexpr double kBiasSigma_rad_s = 0.01, kScaleSigma = 0.01;
-constexpr double kTurning_rad_s2 = 1.0;  // an angular acceleration that tells a time offset from noise
-constexpr double kBeyondDoubt = 4.0;     // sigmas
-constexpr int kRecovering = 3;           // so many units tell the rate by their accelerometers
-constexpr double kUnharmed = 0.8;        // of the accelerometer's range, up to which its errors are learnt
+constexpr double kRotating_rad_s2 = 1.0;  // an angular acceleration that tells a time offset from noise
+constexpr double kBeyondDoubt = 4.0;      // sigmas
+constexpr int kRecovering = 3;            // so many units tell the rate by their accelerometers
+constexpr double kUnharmed = 0.8;         // of the accelerometer's range, up to which its errors are learnt
 constexpr int kOffset = ImuMerge::kErrors - 1;
 constexpr double kArmSquareMin_m2_s3 = 1.0;  // 1 m/s^2 for a second: a bias of 0.05 makes 0.05 of the share
 constexpr double kHeld_s = 0.03;
@@ -350,11 +350,11 @@ void ImuMerge::learn(const Vectors& rates, State& state) const {
   }
   const Eigen::Matrix3d by_position = so3::hat(acceleration) + so3::hat(mean) * so3::hat(mean);
   for (std::size_t k = 0; k < count; ++k) {
-    const Eigen::Vector3d by_turning = by_position * (params_.T_CI[k].translation() - p_C_m_);
-    state.arm_product += state.length_s * by_turning.dot(forces[k]);  // the mean of all drops out of the sum
-    state.arm_square_m2_s3 += state.length_s * by_turning.squaredNorm();
+    const Eigen::Vector3d by_rotation = by_position * (params_.T_CI[k].translation() - p_C_m_);
+    state.arm_product += state.length_s * by_rotation.dot(forces[k]);  // the mean of all drops out of the sum
+    state.arm_square_m2_s3 += state.length_s * by_rotation.squaredNorm();
   }
-  if (acceleration.norm() < kTurning_rad_s2) return;
+  if (acceleration.norm() < kRotating_rad_s2) return;
   const double variance = params_.rate_noise_rad_s * params_.rate_noise_rad_s;
   for (std::size_t k = 0; k < count; ++k) {
     Unit& unit = state.units[k];

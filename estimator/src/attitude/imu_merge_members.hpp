@@ -67,7 +67,7 @@ void members(Self& s, Visitor& visit) {
   visit("merge.recovery", s.recovery);
   visit("merge.rate_rad_s", s.rate_rad_s);
   visit("merge.rate_before_rad_s", s.rate_before_rad_s);
-  visit("merge.turning_rad_s", s.turning_rad_s);
+  visit("merge.rotation_rate_rad_s", s.rotation_rate_rad_s);
   visit("merge.window_s", s.window_s);
   visit("merge.length_s", s.length_s);
   visit("merge.length_before_s", s.length_before_s);

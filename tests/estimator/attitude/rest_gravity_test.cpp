@@ -27,9 +27,10 @@ struct Span {
 
 // Of the world, for three whole periods on each axis: what it adds to the velocity it takes again.
 Eigen::Vector3d shaken_m_s2(double share_of_turn) {
-  constexpr double kTurn_rad = 6.283185307179586;
-  return {20.0 * std::sin(3.0 * kTurn_rad * share_of_turn), 30.0 * std::cos(3.0 * kTurn_rad * share_of_turn),
-          -15.0 * std::sin(6.0 * kTurn_rad * share_of_turn)};
+  constexpr double kRevolution_rad = 6.283185307179586;
+  return {20.0 * std::sin(3.0 * kRevolution_rad * share_of_turn),
+          30.0 * std::cos(3.0 * kRevolution_rad * share_of_turn),
+          -15.0 * std::sin(6.0 * kRevolution_rad * share_of_turn)};
 }
 
 // At rest, turning at a constant rate while it is shaken, and at rest again: R is known in closed form.

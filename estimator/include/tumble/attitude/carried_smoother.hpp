@@ -66,10 +66,10 @@ class CarriedSmoother {
     /// long and unknown enough to be asked, in how many another number of turns was the better one and was taken (a
     /// segment counts anew in each round), and in how many others stay possible, at odds of 1 to 1000 or better: there
     /// the covariance holds their spread.
-    int turns_asked = 0, turns_taken = 0, turns_open = 0;
+    int revolutions_asked = 0, revolutions_taken = 0, revolutions_open = 0;
     /// Turns that were to be taken and from which the whole could not be solved: the answer without them stands, and
     /// they count as possible.
-    int turns_failed = 0;
+    int revolutions_failed = 0;
   };
 
   /// Throws InvalidParams when a parameter is outside of its bound.

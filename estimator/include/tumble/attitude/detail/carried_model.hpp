@@ -92,8 +92,8 @@ class Motion {
  public:
   struct Params {
     double step_s = 0.01;
-    double jerk_rad_s3_sqrts = 0.0;  ///< root of the density of the angular jerk
-    double turn_error_sqrts = 0.0;   ///< random walk of the attitude per rad/s turned: scale, misalignment
+    double jerk_rad_s3_sqrts = 0.0;     ///< root of the density of the angular jerk
+    double rotation_error_sqrts = 0.0;  ///< random walk of the attitude per rad/s turned: scale, misalignment
     double hand_m_s2 = 0.0, hand_tau_s = 0.0;
     double velocity_m_s = 0.0, velocity_tau_s = 0.0;
     double position_m = 0.0, position_tau_s = 0.0, position_leak_s = 10.0;
