@@ -71,7 +71,7 @@ void report_health(const RateReport& report, std::map<std::string, double>& heal
   health["calibration_mahalanobis"] = report.calibration_mahalanobis;
   health["calibration_at_prior"] = report.calibration_at_prior ? 1.0 : 0.0;
   health["flight_share"] = report.flight_share;
-  health["readings_void"] = static_cast<double>(report.void_readings);
+  health["readings_missing"] = static_cast<double>(report.missing_readings);
   health["rails_disagreeing"] =
       static_cast<double>(std::count(report.rail_disagrees.begin(), report.rail_disagrees.end(), true));
   constexpr int kDelay = SensorErrors::kDelay;

@@ -23,14 +23,14 @@ ElementRows KnownRails::rows(Triad triad, double unknown_sigma) const {
 
 ElementReading element_reading(const ImuSample& sample, const Clipping& clipping, Triad triad, int axis) {
   const std::uint8_t clipped = triad == Triad::gyro ? clipping.gyro : clipping.accel;
-  if (triad == Triad::gyro && (clipping.void_gyro >> axis & 1u) != 0) return ElementReading::unreadable;
+  if (triad == Triad::gyro && (clipping.missing_gyro >> axis & 1u) != 0) return ElementReading::unreadable;
   if ((clipped >> axis & 1u) == 0) return ElementReading::measured;
   return reading_of(sample, triad)[axis] < 0.0 ? ElementReading::clipped_low : ElementReading::clipped_high;
 }
 
 std::uint8_t clip_flags(const Clipping& clipping) {
   constexpr int kAccelFirst = 3;
-  return static_cast<std::uint8_t>(clipping.gyro | clipping.void_gyro | clipping.accel << kAccelFirst);
+  return static_cast<std::uint8_t>(clipping.gyro | clipping.missing_gyro | clipping.accel << kAccelFirst);
 }
 
 std::uint8_t HeardRails::flags(const ImuSample& sample, const Clipping& judged) const {

@@ -44,9 +44,10 @@ RailPlanes without_plateaus(const RailPlanes& planes, const RailDetector::State&
 Clipping clip_by_planes(const RailPlanes& planes, Triad triad, const Clipping& by_upright_rails,
                         const ImuSample* before, const ImuSample& now, const ImuSample* after);
 
-/// Finds partial axes as mark_partial() does, with the rail of each element where its plane is known.
-void mark_partial(const RailPlanes& planes, const RailDetector& rails, const RailDetector::State& state,
-                  double noise_rad_s, const ImuSample* before, RateObservation& now, const ImuSample* after);
+/// Finds such axes as mark_subsample_saturation() does, with the rail of each element where its plane is known.
+void mark_subsample_saturation(const RailPlanes& planes, const RailDetector& rails, const RailDetector::State& state,
+                               double noise_rad_s, const ImuSample* before, RateObservation& now,
+                               const ImuSample* after);
 
 /// What rails tell of the slopes of an element, in the order of RigConstants::elements.
 struct ToldSlopes {

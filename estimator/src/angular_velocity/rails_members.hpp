@@ -56,7 +56,7 @@ template <StateOf<Clipping> Self, class Visitor>
 void members(Self& s, Visitor& visit) {
   visit("clipping.gyro", s.gyro);
   visit("clipping.accel", s.accel);
-  visit("clipping.void_gyro", s.void_gyro);
+  visit("clipping.missing_gyro", s.missing_gyro);
 }
 
 template <StateOf<RailDetector::Channel> Self, class Visitor>

@@ -58,7 +58,7 @@ void members(Self& s, Visitor& visit) {
   visit("observation.sample", s.sample);
   visit("observation.clipping", s.clipping);
   visit("observation.at_rest", s.at_rest);
-  visit("observation.partial", s.partial);
+  visit("observation.subsample_saturated", s.subsample_saturated);
   visit("observation.lone", s.lone);
   visit("observation.doubted", s.doubted);
   visit("observation.lost_rad_s", s.lost_rad_s);

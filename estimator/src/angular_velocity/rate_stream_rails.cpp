@@ -101,7 +101,7 @@ void RateStream::judge(bool all, State& state) const {
     now.clipping =
         clip_by_planes(accel_planes, Triad::accelerometer, now.clipping, sample_before, now.sample, sample_after);
     now.accel_rows = accel_rows;
-    mark_partial(planes, rails_.upright_rails(), rails.upright_rails, noise, before, now, after);
+    mark_subsample_saturation(planes, rails_.upright_rails(), rails.upright_rails, noise, before, now, after);
     knot.near = rails.upright ? std::uint8_t{0} : may_meet_rails(before, now.sample, after, planes);
     doubt_unseen(k, state);
     const bool newest = k + 1 == state.window.size();
@@ -204,7 +204,7 @@ void RateStream::doubt_run(int axis, std::size_t first, std::size_t last, State&
   if (cut < kKink * (highest - lowest) || cut < kPossibleNoise * noise) return;
   for (std::size_t k = first; k <= last; ++k) {
     RateObservation& observation = state.window[k].observation;
-    if (((observation.clipping.gyro | observation.clipping.void_gyro) & bit) != 0) continue;
+    if (((observation.clipping.gyro | observation.clipping.missing_gyro) & bit) != 0) continue;
     observation.lone = static_cast<std::uint8_t>(observation.lone & ~bit);
     observation.doubted = static_cast<std::uint8_t>(observation.doubted | bit);
     // all of the run are cut off together: what they say is one reading's word

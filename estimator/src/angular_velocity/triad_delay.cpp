@@ -64,7 +64,7 @@ TriadReadings readings_of(std::span<const ImuSample> samples, std::span<const Cl
     const double at_s = seconds(samples[k].time_ns - samples[0].time_ns) - (held ? held->behind_s(k) : 0.0);
     if (out.size() > 0 && !(at_s > out.time_s.back() + kApart_s)) continue;
     if (triad == Triad::gyro) {
-      out.add(at_s, samples[k].angular_velocity_rad_s, (clippings[k].gyro | clippings[k].void_gyro) != 0);
+      out.add(at_s, samples[k].angular_velocity_rad_s, (clippings[k].gyro | clippings[k].missing_gyro) != 0);
     } else {
       out.add(at_s, samples[k].specific_force_m_s2, clippings[k].accel != 0);
     }

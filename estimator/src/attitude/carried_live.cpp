@@ -37,7 +37,7 @@ Status CarriedLive::push(const ImuSample& sample, State& state, std::optional<Ra
   const Clipping judged = watch_.judge(latest, sample, state.rails);
   state.signs.push_back(clip_signs(sample, judged));
   HoldWatch::State holds = state.holds;
-  HoldWatch().observe(sample, (judged.gyro | judged.void_gyro) != 0, holds);
+  HoldWatch().observe(sample, (judged.gyro | judged.missing_gyro) != 0, holds);
   const ClippedElements known{rows_of(state.rails.known.planes), state.signs};
   const Status status = stream_.push(sample, known, state.stream, out, true, holds);
   if (!status.ok()) return status;

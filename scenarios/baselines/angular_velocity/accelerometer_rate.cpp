@@ -80,7 +80,7 @@ Status AccelerometerRate::estimate(std::span<const ImuSample> samples,
   for (std::size_t k = 0; k < samples.size(); ++k) {
     if (k > 0) filter.predict(seconds(samples[k].time_ns - samples[k - 1].time_ns), params_.jerk_psd);
     const Vector3d &reading = samples[k].angular_velocity_rad_s, &force = samples[k].specific_force_m_s2;
-    const int clipped = clippings[k].gyro | clippings[k].void_gyro;
+    const int clipped = clippings[k].gyro | clippings[k].missing_gyro;
     for (int j = 0; j < 3 && params_.use_gyro; ++j) {
       if ((clipped >> j & 1) == 0) filter.measure_axis(j, reading[j], gyro_variance);
     }

@@ -236,13 +236,13 @@ Status ClippedBaseline::estimate(std::span<const ImuSample> samples, std::vector
   for (axis.index = 0; axis.index < 3; ++axis.index) {
     const int bit = 1 << axis.index;
     for (std::size_t k = 0; k < count; ++k) {
-      axis.overflown[k] = (clippings[k].void_gyro & bit) != 0;
+      axis.overflown[k] = (clippings[k].missing_gyro & bit) != 0;
       axis.clipped[k] = axis.overflown[k] || (clippings[k].gyro & bit) != 0;
     }
     const std::vector<Value> values = bridge(axis, params_);
     for (std::size_t k = 0; k < count; ++k) {
       double rate = axis.reading(k);
-      if ((clippings[k].void_gyro & bit) != 0) {
+      if ((clippings[k].missing_gyro & bit) != 0) {
         rate = std::clamp(values[k].rate, -params_.rate_max_rad_s, params_.rate_max_rad_s);
       } else if (axis.clipped[k]) {
         const double low = std::abs(rate), side = std::copysign(1.0, rate);
@@ -254,7 +254,7 @@ Status ClippedBaseline::estimate(std::span<const ImuSample> samples, std::vector
   }
   for (std::size_t k = 0; k < count; ++k) {
     out[k].time_ns = samples[k].time_ns;
-    out[k].clipped_axes = clippings[k].gyro | clippings[k].void_gyro;
+    out[k].clipped_axes = clippings[k].gyro | clippings[k].missing_gyro;
     out[k].source = out[k].clipped_axes == 0 ? RateSource::measured : RateSource::bounded_only;
   }
   return {};

@@ -312,7 +312,7 @@ TEST(RailJudgement, TellsWhatAReadingIsWorth) {
   sample.specific_force_m_s2 = {1.0, -50.0, 2.0};
   Clipping clipping;
   clipping.gyro = 3;
-  clipping.void_gyro = 4;
+  clipping.missing_gyro = 4;
   clipping.accel = 2;
   EXPECT_EQ(element_reading(sample, clipping, Triad::gyro, 0), ElementReading::clipped_high);
   EXPECT_EQ(element_reading(sample, clipping, Triad::gyro, 1), ElementReading::clipped_low);

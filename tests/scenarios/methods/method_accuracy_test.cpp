@@ -246,7 +246,7 @@ TEST(MethodAccuracy, SlamOracleEndsWhereTheTruthEnds) {
   EXPECT_GT(oracle.at("map_coverage"), 0.8);
 }
 
-// A pendulum whose level tops look like a rail and are no clear one: they are doubted and not called clipped. What
+// A pendulum whose plateaus look like a rail and are no clear one: they are doubted and not called clipped. What
 // stands for them is what the smoother says, not the reading: an attitude by the readings is 0.6 rad off from the first
 // on.
 TEST(MethodAccuracy, AnAttitudeIsNotTurnedByReadingsThatAreDoubted) {

@@ -18,9 +18,9 @@
 namespace tumble {
 
 /// Which elements of an IMU stand at a rail in one sample: -1 the negative one, 1 the positive one, 0 free; of the gyro
-/// kVoid where the reading says nothing (one that has wrapped over the rail): neither measurement nor bound.
+/// kMissing where the reading says nothing (one that has wrapped over the rail): neither measurement nor bound.
 struct ClipSigns {
-  static constexpr std::int8_t kVoid = 2;
+  static constexpr std::int8_t kMissing = 2;
   std::array<std::int8_t, 3> gyro{}, accel{};
 };
 /// Those of a judged sample.
