@@ -86,11 +86,11 @@ TEST(Allocation, NoneForASampleAfterTheSecondPassTookOver) {
 }
 
 TEST(Allocation, NoneForASampleOfARollingSphereOnceItHasBegun) {
-  RollingOdometry::Params params = test::params_of({test::kPlaces[0]});
+  RollingOdometry::Params params = test::params_of({test::kPositions[0]});
   params.lag_s = 0.0;
   RollingOdometry odometry(params);
   std::size_t later = 0, in_all = 0;
-  for (const ImuSample& sample : test::unit_at(test::kPlaces[0])) {
+  for (const ImuSample& sample : test::unit_at(test::kPositions[0])) {
     const std::size_t before = g_allocations;
     ASSERT_TRUE(odometry.add_imu(sample).ok());
     while (odometry.take()) continue;

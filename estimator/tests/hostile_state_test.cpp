@@ -72,18 +72,18 @@ struct Rolling {
   using Door = RollingOdometry;
   static constexpr std::size_t kTrials = 400;
   static RollingOdometry::Params params() {
-    RollingOdometry::Params out = test::params_of({test::kPlaces[0]});
+    RollingOdometry::Params out = test::params_of({test::kPositions[0]});
     out.lag_s = 0.1;
     return out;
   }
   static Door some() {
     Door door(params());
-    const std::vector<ImuSample> samples = test::unit_at(test::kPlaces[0]);
+    const std::vector<ImuSample> samples = test::unit_at(test::kPositions[0]);
     for (std::size_t k = 0; k < 100; ++k) EXPECT_TRUE(door.add_imu(samples[k]).ok());
     return door;
   }
   static void go_on(Door& door) {
-    const std::vector<ImuSample> samples = test::unit_at(test::kPlaces[0]);
+    const std::vector<ImuSample> samples = test::unit_at(test::kPositions[0]);
     for (std::size_t k = 100; k < 120; ++k) (void)door.add_imu(samples[k]);
     (void)door.newest();
     while (door.take()) continue;

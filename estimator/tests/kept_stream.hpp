@@ -23,7 +23,7 @@ inline std::vector<ImuSample> thrown_samples() {
 
 /// A sphere, which is not heard for half a second while it rolls.
 inline std::vector<ImuSample> rolled_samples() {
-  std::vector<ImuSample> out = unit_at(kPlaces[0]);
+  std::vector<ImuSample> out = unit_at(kPositions[0]);
   std::erase_if(out, [](const ImuSample& s) { return s.time_ns > 2'700'000'000 && s.time_ns < 3'200'000'000; });
   return out;
 }
@@ -40,7 +40,7 @@ typename Stream::Params params_of_stream() {
   if constexpr (std::same_as<Stream, RegimeStream>) set_rate(out.rate);
   const auto set_sphere = [](RollingParams& sphere) {
     sphere.radius_m = kRadius_m;
-    sphere.lever_arm_m = kPlaces[0];
+    sphere.lever_arm_m = kPositions[0];
   };
   if constexpr (std::same_as<Stream, RollingFilter>) set_sphere(out);
   if constexpr (std::same_as<Stream, RollingSmoother>) {

@@ -15,14 +15,15 @@
 namespace tumble {
 namespace {
 
-using test::kPlaces, test::kRadius_m, test::kWay_m, test::params_of, test::unit_at;
+using test::kPositions, test::kRadius_m, test::kPathLength_m, test::params_of, test::unit_at;
 
 TEST(RollingOdometry, RollsTwoTurnsWithOneUnitOrThree) {
   for (const std::size_t count : {std::size_t{1}, std::size_t{3}}) {
-    const std::vector<Eigen::Vector3d> places_m(kPlaces.begin(), kPlaces.begin() + static_cast<std::ptrdiff_t>(count));
+    const std::vector<Eigen::Vector3d> positions_m(kPositions.begin(),
+                                                   kPositions.begin() + static_cast<std::ptrdiff_t>(count));
     std::vector<std::vector<ImuSample>> units;
-    for (const Eigen::Vector3d& place_m : places_m) units.push_back(unit_at(place_m));
-    RollingOdometry odometry(params_of(places_m));
+    for (const Eigen::Vector3d& position_m : positions_m) units.push_back(unit_at(position_m));
+    RollingOdometry odometry(params_of(positions_m));
     EXPECT_FALSE(odometry.newest());
     std::vector<RollingOdometry::Pose> poses;
     for (std::size_t k = 0; k < units[0].size(); ++k) {
@@ -32,32 +33,32 @@ TEST(RollingOdometry, RollsTwoTurnsWithOneUnitOrThree) {
       while (const std::optional<RollingOdometry::Pose> pose = odometry.take()) poses.push_back(*pose);
     }
     ASSERT_TRUE(odometry.newest());
-    EXPECT_NEAR(odometry.newest()->pose.p_WA_m.x(), kWay_m, 0.01 * kWay_m) << count;
+    EXPECT_NEAR(odometry.newest()->pose.p_WA_m.x(), kPathLength_m, 0.01 * kPathLength_m) << count;
     EXPECT_TRUE(odometry.newest()->at_rest);
     const std::size_t before = poses.size();
     odometry.finish();
     while (const std::optional<RollingOdometry::Pose> pose = odometry.take()) poses.push_back(*pose);
     EXPECT_GT(poses.size(), before);  // those within the lag
     EXPECT_EQ(poses.size(), units[0].size());
-    EXPECT_NEAR(poses.back().pose.p_WA_m.x(), kWay_m, 0.005 * kWay_m);
+    EXPECT_NEAR(poses.back().pose.p_WA_m.x(), kPathLength_m, 0.005 * kPathLength_m);
     EXPECT_LT(poses.back().pose.p_WA_m.tail<2>().norm(), 0.01);
   }
 }
 
 TEST(RollingOdometry, AnotherRadiusEndsElsewhere) {  // negative control
-  RollingOdometry::Params params = params_of({kPlaces[0]});
+  RollingOdometry::Params params = params_of({kPositions[0]});
   params.radius_m = 1.1 * kRadius_m;
   RollingOdometry odometry(params);
-  for (const ImuSample& sample : unit_at(kPlaces[0])) ASSERT_TRUE(odometry.add_imu(sample).ok());
-  EXPECT_GT(std::abs(odometry.newest()->pose.p_WA_m.x() - kWay_m), 0.05 * kWay_m);
+  for (const ImuSample& sample : unit_at(kPositions[0])) ASSERT_TRUE(odometry.add_imu(sample).ok());
+  EXPECT_GT(std::abs(odometry.newest()->pose.p_WA_m.x() - kPathLength_m), 0.05 * kPathLength_m);
 }
 
 TEST(RollingOdometry, WithoutALagEachLivePoseIsGivenOnce) {
-  RollingOdometry::Params params = params_of({kPlaces[0]});
+  RollingOdometry::Params params = params_of({kPositions[0]});
   params.lag_s = 0.0;
   RollingOdometry odometry(params);
   std::size_t given = 0;
-  const std::vector<ImuSample> samples = unit_at(kPlaces[0]);
+  const std::vector<ImuSample> samples = unit_at(kPositions[0]);
   for (const ImuSample& sample : samples) {
     ASSERT_TRUE(odometry.add_imu(sample).ok());
     while (const std::optional<RollingOdometry::Pose> pose = odometry.take()) {
@@ -70,10 +71,10 @@ TEST(RollingOdometry, WithoutALagEachLivePoseIsGivenOnce) {
 }
 
 TEST(RollingOdometry, ACopyGoesOnWithTheSameBits) {
-  const std::vector<ImuSample> samples = unit_at(kPlaces[0]);
-  RollingOdometry whole(params_of({kPlaces[0]}));
+  const std::vector<ImuSample> samples = unit_at(kPositions[0]);
+  RollingOdometry whole(params_of({kPositions[0]}));
   for (const ImuSample& sample : samples) ASSERT_TRUE(whole.add_imu(sample).ok());
-  RollingOdometry first(params_of({kPlaces[0]}));
+  RollingOdometry first(params_of({kPositions[0]}));
   const std::size_t split = samples.size() / 2 + 7;
   for (std::size_t k = 0; k < split; ++k) ASSERT_TRUE(first.add_imu(samples[k]).ok());
   RollingOdometry second(first);
@@ -88,12 +89,13 @@ struct Ended {
 
 /// After two turns whose fastest readings the gyros held at 8 rad/s of 11.8, without a flag.
 Ended end_of_clipped(std::size_t count, double stated_rad_s) {
-  const std::vector<Eigen::Vector3d> places_m(kPlaces.begin(), kPlaces.begin() + static_cast<std::ptrdiff_t>(count));
-  RollingOdometry::Params params = params_of(places_m);
+  const std::vector<Eigen::Vector3d> positions_m(kPositions.begin(),
+                                                 kPositions.begin() + static_cast<std::ptrdiff_t>(count));
+  RollingOdometry::Params params = params_of(positions_m);
   std::vector<std::vector<ImuSample>> units;
   for (std::size_t k = 0; k < count; ++k) {
     params.units[k].sheet.gyro_range_rad_s = stated_rad_s;
-    units.push_back(unit_at(places_m[k]));
+    units.push_back(unit_at(positions_m[k]));
     for (ImuSample& sample : units[k])
       sample.angular_velocity_rad_s = sample.angular_velocity_rad_s.cwiseMin(8.0).cwiseMax(-8.0);
   }
@@ -104,7 +106,7 @@ Ended end_of_clipped(std::size_t count, double stated_rad_s) {
     EXPECT_TRUE(odometry.add_imus(now).ok());
   }
   const RollingOdometry::Pose end = *odometry.newest();
-  return {std::abs(end.pose.p_WA_m.x() - kWay_m), std::sqrt(end.pose.covariance(0, 0))};
+  return {std::abs(end.pose.p_WA_m.x() - kPathLength_m), std::sqrt(end.pose.covariance(0, 0))};
 }
 
 TEST(RollingOdometry, ARailThatNoFlagTellsIsSeenByTheReadings) {
@@ -130,10 +132,10 @@ std::vector<ImuSample> frozen_y(std::vector<ImuSample> unit) {
 }
 
 TEST(RollingOdometry, AUnitOfWhichAnAxisFreezesIsLeftOutAndNamed) {
-  const std::vector<Eigen::Vector3d> places_m(kPlaces.begin(), kPlaces.end());
+  const std::vector<Eigen::Vector3d> positions_m(kPositions.begin(), kPositions.end());
   std::vector<std::vector<ImuSample>> units;
-  for (const Eigen::Vector3d& place_m : places_m) units.push_back(test::noisy(unit_at(place_m)));
-  RollingOdometry sound(params_of(places_m)), harmed(params_of(places_m));
+  for (const Eigen::Vector3d& position_m : positions_m) units.push_back(test::noisy(unit_at(position_m)));
+  RollingOdometry sound(params_of(positions_m)), harmed(params_of(positions_m));
   for (std::size_t k = 0; k < units[0].size(); ++k) {
     ASSERT_TRUE(sound.add_imus(std::vector<ImuSample>{units[0][k], units[1][k], units[2][k]}).ok());
     EXPECT_TRUE(sound.doubt().ok()) << sound.doubt().message();
@@ -142,14 +144,14 @@ TEST(RollingOdometry, AUnitOfWhichAnAxisFreezesIsLeftOutAndNamed) {
   for (std::size_t k = 0; k < units[0].size(); ++k)
     ASSERT_TRUE(harmed.add_imus(std::vector<ImuSample>{units[0][k], units[1][k], units[2][k]}).ok());
   EXPECT_NE(harmed.doubt().message().find("unit 2's gyro y"), std::string::npos) << harmed.doubt().message();
-  EXPECT_NEAR(sound.newest()->pose.p_WA_m.x(), kWay_m, 0.02 * kWay_m);
-  EXPECT_NEAR(harmed.newest()->pose.p_WA_m.x(), kWay_m, 0.05 * kWay_m);
+  EXPECT_NEAR(sound.newest()->pose.p_WA_m.x(), kPathLength_m, 0.02 * kPathLength_m);
+  EXPECT_NEAR(harmed.newest()->pose.p_WA_m.x(), kPathLength_m, 0.05 * kPathLength_m);
 }
 
 TEST(RollingOdometry, TheOnlyUnitIsRefusedWithTheNameOfItsFrozenAxis) {
-  RollingOdometry odometry(params_of({kPlaces[0]}));
+  RollingOdometry odometry(params_of({kPositions[0]}));
   Status status;
-  for (const ImuSample& sample : frozen_y(test::noisy(unit_at(kPlaces[0])))) {
+  for (const ImuSample& sample : frozen_y(test::noisy(unit_at(kPositions[0])))) {
     if (!(status = odometry.add_imu(sample)).ok()) break;
   }
   EXPECT_EQ(status.trouble, Trouble::out_of_range);
@@ -157,10 +159,10 @@ TEST(RollingOdometry, TheOnlyUnitIsRefusedWithTheNameOfItsFrozenAxis) {
 }
 
 TEST(RollingOdometry, TroubleIsAValue) {
-  RollingOdometry odometry(params_of(kPlaces));
-  EXPECT_EQ(odometry.add_imu(unit_at(kPlaces[0])[0]).trouble, Trouble::too_few);
-  RollingOdometry one(params_of({kPlaces[0]}));
-  const std::vector<ImuSample> samples = unit_at(kPlaces[0]);
+  RollingOdometry odometry(params_of(kPositions));
+  EXPECT_EQ(odometry.add_imu(unit_at(kPositions[0])[0]).trouble, Trouble::too_few);
+  RollingOdometry one(params_of({kPositions[0]}));
+  const std::vector<ImuSample> samples = unit_at(kPositions[0]);
   ASSERT_TRUE(one.add_imu(samples[5]).ok());
   EXPECT_EQ(one.add_imu(samples[4]).trouble, Trouble::time_order);
   ImuSample late = samples[6];
@@ -173,22 +175,22 @@ TEST(RollingOdometry, TroubleIsAValue) {
   EXPECT_TRUE(one.add_imu(samples[7]).ok());
   ImuSample weightless = samples[5];
   weightless.specific_force_m_s2.setZero();
-  RollingOdometry fresh(params_of({kPlaces[0]}));
+  RollingOdometry fresh(params_of({kPositions[0]}));
   EXPECT_EQ(fresh.add_imu(weightless).trouble, Trouble::degenerate);
   for (const ImuSample& sample : samples) ASSERT_TRUE(fresh.add_imu(sample).ok());
-  EXPECT_NEAR(fresh.newest()->pose.p_WA_m.x(), kWay_m, 0.01 * kWay_m);
+  EXPECT_NEAR(fresh.newest()->pose.p_WA_m.x(), kPathLength_m, 0.01 * kPathLength_m);
 }
 
 TEST(RollingOdometry, RefusesParametersOutOfTheirBounds) {
-  RollingOdometry::Params params = params_of(kPlaces);
+  RollingOdometry::Params params = params_of(kPositions);
   params.radius_m = 0.0;
   EXPECT_THROW(RollingOdometry{params}, InvalidParams);
   params = params_of(std::vector<Eigen::Vector3d>{});
   EXPECT_THROW(RollingOdometry{params}, InvalidParams);
-  params = params_of(kPlaces);
+  params = params_of(kPositions);
   params.lag_s = -1.0;
   EXPECT_THROW(RollingOdometry{params}, InvalidParams);
-  params = params_of(kPlaces);
+  params = params_of(kPositions);
   params.units[0].T_BI.translation() = Eigen::Vector3d(0.0, 0.0, 1.01 * params.radius_m);
   EXPECT_THROW(RollingOdometry{params}, InvalidParams) << "an IMU outside of the sphere";
   params.units[0].T_BI.translation().z() = 0.99 * params.radius_m;

@@ -10,7 +10,7 @@
 namespace tumble {
 namespace {
 
-using test::kPlaces, test::params_of, test::unit_at;
+using test::kPositions, test::params_of, test::unit_at;
 
 using Poses = std::vector<RollingOdometry::Pose>;
 
@@ -22,11 +22,11 @@ struct Sphere {
 /// Whose gyros clip in the fastest part of the way, and which is not heard for half a second.
 Sphere three_units(double lag_s) {
   Sphere out;
-  out.params = params_of(kPlaces);
+  out.params = params_of(kPositions);
   out.params.lag_s = lag_s;
   for (RollingOdometry::Unit& unit : out.params.units) unit.sheet.gyro_range_rad_s = 10.0;
-  for (const Eigen::Vector3d& place_m : kPlaces) {
-    std::vector<ImuSample>& samples = out.units.emplace_back(unit_at(place_m));
+  for (const Eigen::Vector3d& position_m : kPositions) {
+    std::vector<ImuSample>& samples = out.units.emplace_back(unit_at(position_m));
     std::erase_if(samples, [](const ImuSample& s) { return s.time_ns > 2'700'000'000 && s.time_ns < 3'200'000'000; });
     for (ImuSample& sample : samples) {
       double& rate = sample.angular_velocity_rad_s.y();
@@ -133,7 +133,7 @@ TEST(SavedRollingOdometry, AnEndAfterAGapIsKept) {
 }
 
 TEST(SavedRollingOdometry, OtherParametersAreNamed) {
-  const RollingOdometry::Params params = params_of(kPlaces);
+  const RollingOdometry::Params params = params_of(kPositions);
   const std::vector<std::byte> saved = RollingOdometry(params).save();
   const auto refusal = [&](const RollingOdometry::Params& other) {
     const Status status = RollingOdometry(other).load(saved);

@@ -58,7 +58,7 @@ TYPED_TEST(SavedStreams, BytesTellTheirParameters) {
     params.model.calibration.emplace().constants.lever_arm_m.x() = 0.1;
     params.learnt_errors = std::make_shared<KnownSensorErrors>();
   }
-  if constexpr (std::is_same_v<TypeParam, CarriedLive>) params.rails.clipping.walls.stated_gyro_rad_s = 10.0;
+  if constexpr (std::is_same_v<TypeParam, CarriedLive>) params.rails.clipping.upright_rails.stated_gyro_rad_s = 10.0;
   if constexpr (std::is_same_v<TypeParam, RollingFilter>) params.q_WI_start = Eigen::Quaterniond(0.6, 0.8, 0.0, 0.0);
   Kept<TypeParam> first(params);
   for (const ImuSample& sample : test::samples_of_stream<TypeParam>()) (void)first.push(sample);
@@ -106,10 +106,10 @@ TEST(SavedDoors, TellTheirParameters) {
   for (const ImuSample& sample : body.imu()) ASSERT_TRUE(door.add_imu(sample).ok());
   expect_params_of(params, door);
 
-  const RollingOdometry::Params rolling = test::params_of(test::kPlaces);
+  const RollingOdometry::Params rolling = test::params_of(test::kPositions);
   RollingOdometry sphere(rolling);
   std::vector<std::vector<ImuSample>> units;
-  for (const Eigen::Vector3d& place_m : test::kPlaces) units.push_back(test::unit_at(place_m));
+  for (const Eigen::Vector3d& position_m : test::kPositions) units.push_back(test::unit_at(position_m));
   for (std::size_t k = 0; k < 400; ++k)
     ASSERT_TRUE(sphere.add_imus(std::vector{units[0][k], units[1][k], units[2][k]}).ok());
   expect_params_of(rolling, sphere);

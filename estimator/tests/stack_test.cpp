@@ -81,7 +81,7 @@ TEST_F(Stack, NegativeControl) {
 
 void roll(RollingOdometry& odometry) {
   std::vector<std::vector<ImuSample>> readings;
-  for (const Eigen::Vector3d& place : test::kPlaces) readings.push_back(test::unit_at(place));
+  for (const Eigen::Vector3d& position : test::kPositions) readings.push_back(test::unit_at(position));
   std::vector<ImuSample> now(readings.size());
   for (std::size_t i = 0; i < readings[0].size(); ++i) {
     for (std::size_t k = 0; k < now.size(); ++k) {
@@ -99,7 +99,7 @@ void roll(RollingOdometry& odometry) {
 
 TEST_F(Stack, OfARollingSphereLiveAndSmoothed) {
   for (const double lag_s : {0.0, 0.5}) {
-    RollingOdometry::Params params = test::params_of(test::kPlaces);
+    RollingOdometry::Params params = test::params_of(test::kPositions);
     params.lag_s = lag_s;
     std::unique_ptr<RollingOdometry> odometry;
     std::vector<std::byte> bytes;

@@ -151,7 +151,7 @@ TEST(StateMembers, AllOfAMapper) {
 }
 
 TEST(StateMembers, AllOfARollingOdometry) {
-  const RollingOdometry door(test::params_of(test::kPlaces));
+  const RollingOdometry door(test::params_of(test::kPositions));
   expect_whole(ImuMerge::State{}, "merge");
   const auto state = std::make_unique<RollingSmoother::State>();
   expect_whole(*state, "rolling");
@@ -161,7 +161,7 @@ TEST(StateMembers, AllOfARollingOdometry) {
 
 TEST(StateMembers, AllOfTheParametersWithinAState) {
   expect_whole_params(RailPlaneFinder::Params{}, "rails");
-  expect_whole_params(RailDetector::Params{}, "walls");
+  expect_whole_params(RailDetector::Params{}, "upright_rails");
   expect_whole_params(RateStream::Params{}, "rate");
   expect_whole_params(RegimeStream::Params{}, "regimes");
   expect_whole_params(CarriedStream::Params{}, "carried");

@@ -28,7 +28,7 @@ namespace {
 /// CarriedSmoother with what its data sheet says of the rails.
 struct Carried {
   CarriedSmoother smoother;
-  RailDetector::Params walls;
+  RailDetector::Params upright_rails;
 };
 
 std::tuple<Rates, Attitudes, CarriedSmoother::Report> carried(const Carried& self, nb::handle time_ns, nb::handle gyro,
@@ -42,7 +42,7 @@ std::tuple<Rates, Attitudes, CarriedSmoother::Report> carried(const Carried& sel
     status = check_recording(samples, 2, 1.0);
     if (status.ok()) {
       ClippingFinder::Params finding;
-      finding.walls = self.walls;
+      finding.upright_rails = self.upright_rails;
       const CarriedElements known = carried_elements(samples, ClippingFinder(finding).find(samples));
       status = self.smoother.estimate(samples, known.clipped(), rates, std::get<1>(out).rows, std::get<2>(out));
       if (status.ok()) known.mark_near(rates);
@@ -59,9 +59,10 @@ void bind_smoother(nb::module_& m) {
       .def_ro("converged", &Report::converged)
       .def_ro("cost", &Report::cost)
       .def_ro("hand_mahalanobis", &Report::hand_mahalanobis, "2 and more: thrown, or a rough hand")
-      .def_ro("turns_asked", &Report::turns_asked)
-      .def_ro("turns_taken", &Report::turns_taken)
-      .def_ro("turns_open", &Report::turns_open, "clipped segments in which another number of turns stays possible");
+      .def_ro("revolutions_asked", &Report::revolutions_asked)
+      .def_ro("revolutions_taken", &Report::revolutions_taken)
+      .def_ro("revolutions_open", &Report::revolutions_open,
+              "clipped segments in which another number of turns stays possible");
   nb::class_<Carried>(
       m, "CarriedSmoother",
       "Attitude and angular velocity of a body that is carried (held, swung, twirled), also where its gyro\n"
@@ -72,11 +73,11 @@ void bind_smoother(nb::module_& m) {
           [](Carried* self, const nb::kwargs& options) {
             Keywords keywords("CarriedSmoother", options);
             CarriedSmoother::Params params;
-            RailDetector::Params walls;
-            read_ranges(keywords, walls);
+            RailDetector::Params upright_rails;
+            read_ranges(keywords, upright_rails);
             read_fields(keywords, params);
             keywords.done();
-            new (self) Carried{CarriedSmoother(params), walls};
+            new (self) Carried{CarriedSmoother(params), upright_rails};
           },
           nb::arg("options"), takes_options())
       .def("estimate", &carried, nb::arg("time_ns"), nb::arg("gyro"), nb::arg("accel"),
@@ -102,7 +103,7 @@ void bind_stream(nb::module_& m) {
           [](Object* self, const nb::kwargs& options) {
             Keywords keywords("CarriedStream", options);
             CarriedLive::Params params;
-            read_ranges(keywords, params.rails.clipping.walls);
+            read_ranges(keywords, params.rails.clipping.upright_rails);
             read_fields(keywords, params.stream, kWithoutMeaning);
             keywords.done();
             new (self) Object(Live(params));

@@ -35,7 +35,7 @@ Found find_rails(nb::handle time_ns, nb::handle gyro, nb::handle accel, nb::hand
                  const nb::kwargs& given) {
   Keywords keywords("find_rails", given);
   ClippingFinder::Params params;
-  read_ranges(keywords, params.walls);
+  read_ranges(keywords, params.upright_rails);
   read_fields(keywords, params);
   keywords.done();
   const std::vector<ImuSample> samples = samples_of(time_ns, gyro, accel, clip_flags);
@@ -94,7 +94,7 @@ void bind_rails(nb::module_& m) {
           "(N,) uint8, bit j: axis j at its rail, the truth lies at or beyond the reading")
       .def_prop_ro("clipped_accel", [](const Found& f) { return bits(f, &Clipping::accel); })
       .def_prop_ro(
-          "void_gyro", [](const Found& f) { return bits(f, &Clipping::void_gyro); },
+          "missing_gyro", [](const Found& f) { return bits(f, &Clipping::missing_gyro); },
           "(N,) uint8, bit j: the reading of axis j says nothing (its sign flipped at the rail)");
   m.def(
       "find_rails", &find_rails, nb::arg("time_ns"), nb::arg("gyro"), nb::arg("accel"),

@@ -12,15 +12,15 @@ namespace {
 
 constexpr double kMoving_m_s = 0.05;
 
-/// Way of the centre while the sphere grips and moves, and by how much r w x n misses it.
-struct Ways {
-  double way_m = 0.0, missed_m = 0.0;
+/// Length of the centre's path while the sphere grips and moves, and by how much r w x n misses it.
+struct Lengths {
+  double path_length_m = 0.0, missed_m = 0.0;
 };
 
 /// `n` is the normal of the contact that carries most at the sample; a sample without contact (they chatter) says
 /// nothing.
-Ways compare(const sim::Truth& truth, double radius_m) {
-  Ways ways;
+Lengths compare(const sim::Truth& truth, double radius_m) {
+  Lengths lengths;
   const double dt_s = static_cast<double>(truth.period_ns) * 1e-9;
   for (std::size_t i = 0; i < truth.contacts.size();) {
     const std::int64_t time_ns = truth.contacts[i].time_ns;
@@ -34,10 +34,10 @@ Ways compare(const sim::Truth& truth, double radius_m) {
     const Eigen::Vector3d v_G_m_s = truth.v_WB_m_s[k] + w_W.cross(truth.q_WB[k] * truth.p_BG_m);
     const Eigen::Vector3d along = v_G_m_s - v_G_m_s.dot(strongest->normal_W) * strongest->normal_W;
     if (along.norm() < kMoving_m_s) continue;
-    ways.way_m += along.norm() * dt_s;
-    ways.missed_m += (along - radius_m * w_W.cross(strongest->normal_W)).norm() * dt_s;
+    lengths.path_length_m += along.norm() * dt_s;
+    lengths.missed_m += (along - radius_m * w_W.cross(strongest->normal_W)).norm() * dt_s;
   }
-  return ways;
+  return lengths;
 }
 
 CertificateEntry entry(const CertificateInput& input, const RollingSetup& setup,
@@ -46,15 +46,15 @@ CertificateEntry entry(const CertificateInput& input, const RollingSetup& setup,
   const sim::BuiltSituation built(situation.without_sensors(every), input.data.models());
   const sim::Recording recording = sim::simulate(built);
   const double own_m = recording.sensors.sphere_radius_m;
-  const Ways ways = compare(recording.truth, setup.stated_radius_m > 0.0 ? setup.stated_radius_m : own_m);
+  const Lengths lengths = compare(recording.truth, setup.stated_radius_m > 0.0 ? setup.stated_radius_m : own_m);
   return {"rolling_law",
           subject,
-          "while the sphere grips its centre moves at r w x n: share of its way by which it does not",
+          "while the sphere grips its centre moves at r w x n: share of its path by which it does not",
           "1",
-          ways.missed_m / ways.way_m,
+          lengths.missed_m / lengths.path_length_m,
           0.0,
           high,
-          ways.way_m > 0.0 ? "" : "the sphere never rolled"};
+          lengths.path_length_m > 0.0 ? "" : "the sphere never rolled"};
 }
 
 }  // namespace

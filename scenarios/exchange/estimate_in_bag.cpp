@@ -67,7 +67,7 @@ PoseState moved_by(const Alignment& alignment, const PoseState& pose) {
   return out;
 }
 
-/// The body's pose by that of A; an error phi of the attitude moves the body's place by phi x (lever in W).
+/// The body's pose by that of A; an error phi of the attitude moves the body's position by phi x (lever in W).
 BagTrack::Pose body_pose(const PoseState& moved, const Eigen::Isometry3d& T_AB) {
   const Eigen::Quaterniond q_WA = moved.q_WA.normalized();
   BagTrack::Pose out;
@@ -111,9 +111,10 @@ BagCloud cloud_of(const BagTrack& track, const sim::LidarRecord& sweep, const st
   for (std::size_t k = 0; k < sweep.position_L_m.size(); ++k) {
     Eigen::Isometry3d T_WB;
     if (!body_at(sweep.sweep_start_ns[0] + sweep.offset_ns[k], T_WB)) continue;
-    const Eigen::Vector3d place_W_m = T_WB * (sweep.T_BL * sweep.position_L_m[k].cast<double>());
-    cloud.position_W_m.push_back(place_W_m.cast<float>());
-    if (!hit_W_m.empty()) cloud.error_m.push_back(static_cast<float>((place_W_m - hit_W_m[k].cast<double>()).norm()));
+    const Eigen::Vector3d position_W_m = T_WB * (sweep.T_BL * sweep.position_L_m[k].cast<double>());
+    cloud.position_W_m.push_back(position_W_m.cast<float>());
+    if (!hit_W_m.empty())
+      cloud.error_m.push_back(static_cast<float>((position_W_m - hit_W_m[k].cast<double>()).norm()));
   }
   return cloud;
 }

@@ -72,8 +72,8 @@ Estimate run_rig(const sim::Sensors& sensors, const sim::Values& parameters) {
     turned[k].covariance_rad2_s2 = recovered.covariances_rad2_s2[k];
     turned[k].source = recovered.sources[k];
   }
-  (void)check_turning_between_rests(sensors, read, turned, estimate);
-  (void)check_turning_about_pivots(sensors, read, turned, estimate);
+  (void)check_rotation_between_rests(sensors, read, turned, estimate);
+  (void)check_rotation_about_pivots(sensors, read, turned, estimate);
   return estimate;
 }
 

@@ -46,7 +46,7 @@ void check_readings(const sim::Sensors& sensors, const std::vector<ImuSample>& s
     read[k].covariance_rad2_s2 = told.covariances_rad2_s2[k];
     read[k].source = told.sources[k];
   }
-  (void)check_turning_between_rests(sensors, samples, read, estimate);
+  (void)check_rotation_between_rests(sensors, samples, read, estimate);
 }
 
 Estimate run_attitude_tumble_batch(const sim::Sensors& sensors, const sim::Values& parameters, const OracleInput&) {
@@ -68,7 +68,7 @@ Estimate run_attitude_tumble_batch(const sim::Sensors& sensors, const sim::Value
   }
   if (!estimate.status.ok()) return estimate;
   check_readings(sensors, samples, recovered, told, estimate);
-  (void)check_turning_about_pivots(sensors, samples, rates, estimate);
+  (void)check_rotation_about_pivots(sensors, samples, rates, estimate);
   return estimate;
 }
 
@@ -79,7 +79,8 @@ Method attitude_tumble_batch() {
   info.name = "tumble_batch";
   info.kind = Kind::attitude;
   info.doc =
-      "A smoother over the whole recording of a body that is carried: bounded acceleration, velocity and place, rest, "
+      "A smoother over the whole recording of a body that is carried: bounded acceleration, velocity and position, "
+      "rest, "
       "clipped gyro axes as bounds, or with the rates of rate/tumble where nobody held the body meanwhile.";
   info.ours = true;
   info.settings = {&carried_settings()};

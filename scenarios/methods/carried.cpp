@@ -14,7 +14,7 @@ const Settings<CarriedSmoother::Params>& carried_settings() {
 
 CarriedElements find_clipped(const sim::ImuRecord& record, std::span<const ImuSample> samples) {
   ClippingFinder::Params params;
-  params.walls = stated_rails(record);
+  params.upright_rails = stated_rails(record);
   return carried_elements(samples, ClippingFinder(params).find(samples));
 }
 
@@ -43,10 +43,10 @@ void report_carried(const CarriedSmoother::Report& report, std::map<std::string,
   health["iterations"] = report.iterations;
   health["converged"] = report.converged ? 1.0 : 0.0;
   health["hand_mahalanobis"] = report.hand_mahalanobis;
-  health["turns_asked"] = report.turns_asked;
-  health["turns_taken"] = report.turns_taken;
-  health["turns_open"] = report.turns_open;
-  health["turns_failed"] = report.turns_failed;
+  health["revolutions_asked"] = report.revolutions_asked;
+  health["revolutions_taken"] = report.revolutions_taken;
+  health["revolutions_open"] = report.revolutions_open;
+  health["revolutions_failed"] = report.revolutions_failed;
 }
 
 }  // namespace tumble::scenarios

@@ -85,9 +85,9 @@ Status check_imu(const sim::Sensors& sensors, std::span<const ImuSample> samples
   ImuPlausibility::State state;
   for (const ImuSample& sample : samples) plausibility.step(sample, state);
   estimate.health["imu_force_share"] = plausibility.force_share(state);
-  estimate.health["imu_turning_unexplained"] = plausibility.unexplained_share(state);
-  estimate.health["imu_turning_slope"] = plausibility.turning_slope(state);
-  estimate.health["imu_turning_agreement"] = plausibility.turning_agreement(state);
+  estimate.health["imu_rotation_unexplained"] = plausibility.unexplained_share(state);
+  estimate.health["imu_rotation_slope"] = plausibility.rotation_slope(state);
+  estimate.health["imu_rotation_agreement"] = plausibility.rotation_agreement(state);
   if (plausibility.frozen_s(state) > 0.0) estimate.health["imu_frozen_s"] = plausibility.frozen_s(state);
   if (const auto labels = plausibility.other_labels(state)) {
     constexpr const char* kKeys[] = {"imu_accel_x_is", "imu_accel_y_is", "imu_accel_z_is"};
@@ -123,8 +123,8 @@ Status check_flights(const sim::Sensors& sensors, std::span<const ImuSample> sam
   return status;
 }
 
-Status check_turning_between_rests(const sim::Sensors& sensors, std::span<const ImuSample> samples,
-                                   std::span<const RateState> rates, Estimate& estimate) {
+Status check_rotation_between_rests(const sim::Sensors& sensors, std::span<const ImuSample> samples,
+                                    std::span<const RateState> rates, Estimate& estimate) {
   const RestGravity gravity = rest_gravity(sensors);
   RestGravity::State state;
   for (std::size_t k = 0; k < std::min(samples.size(), rates.size()); ++k) gravity.step(samples[k], rates[k], state);
@@ -135,8 +135,8 @@ Status check_turning_between_rests(const sim::Sensors& sensors, std::span<const 
   return told(gravity.verdict(state), estimate);
 }
 
-Status check_turning_about_pivots(const sim::Sensors& sensors, std::span<const ImuSample> samples,
-                                  std::span<const RateState> rates, Estimate& estimate) {
+Status check_rotation_about_pivots(const sim::Sensors& sensors, std::span<const ImuSample> samples,
+                                   std::span<const RateState> rates, Estimate& estimate) {
   PivotCheck::Params params;
   params.gravity_m_s2 = sensors.gravity_m_s2;
   params.accel_range_m_s2 = sensors.imus.front().stated_accel_range_m_s2;
@@ -154,8 +154,8 @@ Status check_turning_about_pivots(const sim::Sensors& sensors, std::span<const I
 void check_rates(const sim::Sensors& sensors, std::span<const ImuSample> samples, Estimate& estimate) {
   const Status of_flights = check_flights(sensors, samples, estimate);
   const Status of_readings = check_imu(sensors, samples, estimate);
-  const Status of_rates = check_turning_between_rests(sensors, samples, estimate.rates, estimate);
-  const Status of_pivots = check_turning_about_pivots(sensors, samples, estimate.rates, estimate);
+  const Status of_rates = check_rotation_between_rests(sensors, samples, estimate.rates, estimate);
+  const Status of_pivots = check_rotation_about_pivots(sensors, samples, estimate.rates, estimate);
   if (of_flights.ok() && of_readings.ok() && of_rates.ok() && of_pivots.ok()) return;
   for (RateState& rate : estimate.rates) rate.covariance_rad2_s2 += square_of_rate(rate);
   estimate.health[kRatesDoubted] = 1.0;

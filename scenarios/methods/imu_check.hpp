@@ -12,7 +12,7 @@
 namespace tumble::scenarios {
 
 /// Puts what was found into the estimate's health (`imu_force_share`, `imu_rest_force_share`,
-/// `imu_turning_unexplained`, `imu_turning_slope`, `imu_turning_agreement`, `imu_frozen_s`, `imu_stamps_rounded_s`,
+/// `imu_rotation_unexplained`, `imu_rotation_slope`, `imu_rotation_agreement`, `imu_frozen_s`, `imu_stamps_rounded_s`,
 /// `imu_implausible`) and returns the verdict: `out_of_range` with what was seen, where the readings contradict each
 /// other or gravity. O(N).
 Status check_imu(const sim::Sensors& sensors, std::span<const ImuSample> samples, Estimate& estimate);
@@ -21,7 +21,7 @@ Status check_imu(const sim::Sensors& sensors, std::span<const ImuSample> samples
 Status check_imus(const sim::Sensors& sensors, const MergedImus& imus, Estimate& estimate);
 
 /// The same of a rig's primary IMU whose rates the estimate holds, one for each sample, with what gravity at its rests
-/// says of them (check_turning_between_rests) and what its turning about a point does (check_turning_about_pivots).
+/// says of them (check_rotation_between_rests) and what its turning about a point does (check_rotation_about_pivots).
 /// Where one of them speaks against the readings, the covariance of every rate grows by the square of the rate
 /// (`imu_rates_doubted`). O(N).
 void check_rates(const sim::Sensors& sensors, std::span<const ImuSample> samples, Estimate& estimate);
@@ -29,15 +29,15 @@ void check_rates(const sim::Sensors& sensors, std::span<const ImuSample> samples
 /// Whether `rates`, one for each sample, those of an estimate of rates or what an attitude was turned by, lead gravity
 /// from one rest to the next (RestGravity): `rest_gravity_missed_rad` with its deviation, `rest_velocity_share` with
 /// its bound, and `imu_implausible`. O(N).
-Status check_turning_between_rests(const sim::Sensors& sensors, std::span<const ImuSample> samples,
-                                   std::span<const RateState> rates, Estimate& estimate);
+Status check_rotation_between_rests(const sim::Sensors& sensors, std::span<const ImuSample> samples,
+                                    std::span<const RateState> rates, Estimate& estimate);
 
 /// Whether a body that is held turns as `rates` say, one for each sample, those of an estimate of rates or what an
 /// attitude was turned by (PivotCheck): `pivot_evidence` for another reading of the gyro and from how many segments,
 /// `pivot_scale` by which the rates explain most, with its deviation, and `imu_implausible`. Rates that are not
 /// `measured` do not count. O(N), a millisecond for a second at 100 Hz.
-Status check_turning_about_pivots(const sim::Sensors& sensors, std::span<const ImuSample> samples,
-                                  std::span<const RateState> rates, Estimate& estimate);
+Status check_rotation_about_pivots(const sim::Sensors& sensors, std::span<const ImuSample> samples,
+                                   std::span<const RateState> rates, Estimate& estimate);
 
 /// Whether flights of a rig show forces of the other sense than its lever arm makes, or of twice the rate
 /// (FlightSense): `imu_implausible` and the seconds of it, as `imu_flight_against_s`. O(N).

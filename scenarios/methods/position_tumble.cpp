@@ -20,7 +20,7 @@ constexpr double kRecoveredSigmaRadS = 1.0;
 constexpr double kUnknownRadiusShare = 0.05;  // prior of a radius that a known distance is to tell
 // priors of a device that no data sheet is named for, put anywhere in the sphere
 constexpr double kUnknownGyroBiasRadS = 5e-3, kUnknownAccelBiasMS2 = 0.4, kUnknownScale = 0.01, kUnknownDelayS = 5e-3,
-                 kUnknownPlaceM = 0.05;
+                 kUnknownLeverArmM = 0.05;
 constexpr double kUnknownInclinePerS = 1e-9;  // its bias passes for a slope: the floor is taken for level
 
 /// The library's defaults, for the sphere of the models, but for the prior of the lever arm: the centre of mass, which
@@ -81,7 +81,7 @@ void widen_unknown(const sim::Sensors& sensors, RollingParams& params) {
   params.expert.prior.accel_scale_sigma = std::max(params.expert.prior.accel_scale_sigma, kUnknownScale);
   params.expert.prior.gyro_scale_sigma = std::max(params.expert.prior.gyro_scale_sigma, kUnknownScale);
   params.expert.prior.accel_delay_sigma_s = std::max(params.expert.prior.accel_delay_sigma_s, kUnknownDelayS);
-  params.lever_arm_sigma_m = std::max(params.lever_arm_sigma_m, kUnknownPlaceM);
+  params.lever_arm_sigma_m = std::max(params.lever_arm_sigma_m, kUnknownLeverArmM);
   params.expert.modes.incline_begins_per_s = std::min(params.expert.modes.incline_begins_per_s, kUnknownInclinePerS);
 }
 

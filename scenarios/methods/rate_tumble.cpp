@@ -50,7 +50,7 @@ Status auxiliary_readings(const sim::Sensors& sensors, std::span<const ImuSample
     if (record.accel_noise_m_s2_sqrt_hz > 0.0) auxiliary_imu.accel_noise_density = record.accel_noise_m_s2_sqrt_hz;
     std::vector<AuxiliaryReading> aligned;
     ClippingFinder::Params clipping;
-    clipping.walls = stated_rails(record);
+    clipping.upright_rails = stated_rails(record);
     const ClippingFinder::Found found = ClippingFinder(clipping).find(readings);
     auxiliary_imu.gyro_elements = found.rails.rows(Triad::gyro, model.element_sigma);
     auxiliary_imu.accel_elements = found.rails.rows(Triad::accelerometer, model.element_sigma);
@@ -71,7 +71,7 @@ void report_health(const RateReport& report, std::map<std::string, double>& heal
   health["calibration_mahalanobis"] = report.calibration_mahalanobis;
   health["calibration_at_prior"] = report.calibration_at_prior ? 1.0 : 0.0;
   health["flight_share"] = report.flight_share;
-  health["readings_void"] = static_cast<double>(report.void_readings);
+  health["readings_missing"] = static_cast<double>(report.missing_readings);
   health["rails_disagreeing"] =
       static_cast<double>(std::count(report.rail_disagrees.begin(), report.rail_disagrees.end(), true));
   constexpr int kDelay = SensorErrors::kDelay;

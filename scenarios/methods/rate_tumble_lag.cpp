@@ -59,11 +59,11 @@ RegimeStream::Params stream_params(const sim::Sensors& sensors, const sim::Value
 
 LearntRig learnt_by(const RateStream& stream, const RateStream::Params& params, const RateStream::State& state) {
   LearntRig rig{stream.calibration(state), {}};
-  const RailDetector walls(params.rails);
+  const RailDetector upright_rails(params.rails);
   const KnownRails& known = state.rails.known;
   for (int c = 0; c < 6; ++c) {
     std::optional<double>& rail = rig.rail[static_cast<std::size_t>(c)];
-    rail = walls.rail(known.walls, c);
+    rail = upright_rails.rail(known.upright_rails, c);
     const auto& plane = (c < 3 ? known.planes : known.accel_planes).element[static_cast<std::size_t>(c % 3)];
     if (plane) rail = plane->distance_rad_s;
   }

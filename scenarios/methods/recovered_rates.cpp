@@ -23,7 +23,7 @@ bool does_not_clip(const RateState& rate) {
   return rate.clipped_axes == 0;
 }
 
-/// And nothing makes it doubtful either, as the level tops of a motion do that are no clear rail.
+/// And nothing makes it doubtful either, as the plateaus of a motion do that are no clear rail.
 bool is_read(const RateState& rate) {
   return does_not_clip(rate) && rate.source == RateSource::measured;
 }

@@ -209,18 +209,18 @@ class SeedMapper {
  private:
   // compared with the old map only, not with each other
   void extend(std::span<const baselines::TrimmedIcp::Point> points, const Eigen::Isometry3d& T, SweepReport& report) {
-    const Eigen::Isometry3f place = T.cast<float>();
+    const Eigen::Isometry3f T_WL = T.cast<float>();
     std::vector<std::uint32_t> fresh;
     Neighbours found;
     for (std::uint32_t i = 0; i < points.size(); ++i) {
-      map_.nearest(place * points[i].position_m, 1, static_cast<float>(kMapSpacingM), found);
+      map_.nearest(T_WL * points[i].position_m, 1, static_cast<float>(kMapSpacingM), found);
       if (found.count == 0) fresh.push_back(i);
     }
     for (const std::uint32_t i : fresh) {
-      report.map_points_added += map_.insert(place * points[i].position_m, std::sqrt(points[i].variance_m2),
+      report.map_points_added += map_.insert(T_WL * points[i].position_m, std::sqrt(points[i].variance_m2),
                                              static_cast<std::uint32_t>(seen_from_.size()));
     }
-    seen_from_.push_back(place.translation());
+    seen_from_.push_back(T_WL.translation());
     icp_.forget_normals();
   }
 

@@ -11,7 +11,7 @@
 
 namespace tumble::scenarios {
 
-/// What of the published chain may be varied; the traps as launched.
+/// What of the published chain may be varied; the known errors as launched.
 struct SeedParams {
   double skew_sigma_m_s = 0.25;
   baselines::TrimmedIcp::Params icp;

@@ -252,7 +252,7 @@ Estimate run_passes(const sim::LidarRecord& lidar, std::span<const ImuSample> sa
 /// What a rail of the accelerometer hides is no reading: flags as the device should have set them.
 void flag_railed_forces(const sim::ImuRecord& record, std::vector<ImuSample>& samples) {
   ClippingFinder::Params params;
-  params.walls = stated_rails(record);
+  params.upright_rails = stated_rails(record);
   const std::vector<Clipping> clippings = ClippingFinder(params).find(samples).clippings;
   for (std::size_t k = 0; k < samples.size(); ++k) {
     const unsigned forces = clip_flags({.accel = clippings[k].accel});

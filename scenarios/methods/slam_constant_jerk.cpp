@@ -56,11 +56,11 @@ class ConstantJerk : public TrajectoryModel {
     if (report.verdict == SweepVerdict::rejected) return;
     const double span_s = std::min(seconds(registered_.time_ns - from_ns_), kSpanMaxS);
     const Eigen::Vector3d away = registered_.p_WI_m - observer_.p_WI_m;
-    const Eigen::Vector3d turned_I = so3::log(observer_.q_WI.conjugate() * registered_.q_WI);
+    const Eigen::Vector3d rotated_I = so3::log(observer_.q_WI.conjugate() * registered_.q_WI);
     observer_.p_WI_m += span_s * kGainPosition * away;
     observer_.v_WI_m_s += span_s * kGainVelocity * away;
-    observer_.q_WI = (observer_.q_WI * so3::exp(span_s * kGainAttitude * turned_I)).normalized();
-    gyro_bias_ = (gyro_bias_ - span_s * kGainGyroBias * turned_I).cwiseMax(-kBiasMax).cwiseMin(kBiasMax);
+    observer_.q_WI = (observer_.q_WI * so3::exp(span_s * kGainAttitude * rotated_I)).normalized();
+    gyro_bias_ = (gyro_bias_ - span_s * kGainGyroBias * rotated_I).cwiseMax(-kBiasMax).cwiseMin(kBiasMax);
     accel_bias_ = (accel_bias_ - span_s * kGainAccelBias * (registered_.q_WI.conjugate() * away))
                       .cwiseMax(-kBiasMax)
                       .cwiseMin(kBiasMax);

@@ -64,7 +64,7 @@ struct AlongParams {
     visit(p.loose_correction_m,
           {"along_loose_correction_m", "m", 0.0, 100.0, "so much more is believed while the radius is in doubt"});
     visit(p.segment_m,
-          {"along_segment_m", "m", 0.01, 100.0, "of rolled way, over which the lidar measures the radius"});
+          {"along_segment_m", "m", 0.01, 100.0, "of rolled path, over which the lidar measures the radius"});
     visit(p.segment_sigma_m, {"along_segment_sigma_m", "m", 1e-6, 10.0,
                               "of a segment at the least: neither the centre nor the registration is better known"});
     visit(p.mended_sigmas, {"along_mended_sigmas", "1", 0.0, 1e3,

@@ -28,7 +28,7 @@ Estimate run_slam_tumble_gyro_only(const sim::Sensors& sensors, const sim::Value
 
 Status railed_rates(const sim::Sensors& sensors, std::span<const ImuSample> samples, std::vector<RateState>& out) {
   ClippingFinder::Params params;
-  params.walls = stated_rails(sensors.imus.front());
+  params.upright_rails = stated_rails(sensors.imus.front());
   const std::vector<Clipping> clipping = ClippingFinder(params).find(samples).clippings;
 
   if (const Status status = raw_rates(sensors, samples, out); !status.ok()) return status;

@@ -58,7 +58,7 @@ std::vector<ImuSample> readings_of(const sim::ImuRecord& record, Status& status,
 /// have frozen.
 void judge(const sim::ImuRecord& record, std::vector<ImuSample>& samples, ElementRows& gyro, ElementRows& accel) {
   ClippingFinder::Params params;
-  params.walls = stated_rails(record);
+  params.upright_rails = stated_rails(record);
   const ClippingFinder::Found found = ClippingFinder(params).find(samples);
   const HeardRails heard{.gyro = found.rails.planes_in_use(),
                          .accel = found.rails.planes_in_use(Triad::accelerometer),

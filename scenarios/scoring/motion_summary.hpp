@@ -13,7 +13,7 @@ namespace tumble::scenarios {
 struct MotionSummary {
   double moving_s = 0.0;            ///< from the first to the last instant above 0.1 m/s or 0.3 rad/s
   double rest_at_end_s = 0.0;       ///< from the last such instant to the end of the recording
-  double path_m = 0.0;              ///< length of the way of the centre of mass
+  double path_m = 0.0;              ///< length of the path of the centre of mass
   double peak_rate_rad_s = 0.0;     ///< largest norm of the true mean rate over a sample of the primary IMU
   double peak_accel_m_s2 = 0.0;     ///< largest norm of a reading before the rail, after the bandwidth, over all IMUs
   double flight_share = 0.0;        ///< share of moving_s without any contact

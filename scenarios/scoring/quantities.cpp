@@ -28,7 +28,7 @@ bool is_cost(std::string_view name) {
 std::vector<MetricInfo> motion_quantities() {
   return {
       {"motion_moving_s", Unit::s, "time between first and last movement"},
-      {"motion_path_m", Unit::m, "way of the centre of mass"},
+      {"motion_path_m", Unit::m, "length of the path of the centre of mass"},
       {"motion_peak_rate_rad_s", Unit::rad_s, "largest rate"},
       {"motion_peak_accel_m_s2", Unit::m_s2, "largest reading before the rail"},
       {"motion_flight_share", Unit::share, "of the moving time, without contact"},

@@ -14,7 +14,7 @@ namespace {
 
 /// A sample is far from the rail when every axis reads less than this share of its extreme; it turns when it reads more
 /// than so much.
-constexpr double kFarShare = 0.9, kTurning_rad_s = 0.5;
+constexpr double kFarShare = 0.9, kRotating_rad_s = 0.5;
 
 double error_norm(const Eigen::Vector3d& estimate, const Eigen::Vector3d& reference) {
   return (estimate - reference).norm();
@@ -55,7 +55,7 @@ bool reference_error(const ScoredEstimate& scored, double& value) {
   std::vector<double> errors;
   for (std::size_t k = 0; k < reading.size(); ++k) {
     const bool far = (reading[k].cwiseAbs().array() < kFarShare * extreme.array()).all();
-    if (!far || !truth.known(k) || truth.clipped_axes(k) != 0 || reading[k].norm() < kTurning_rad_s) continue;
+    if (!far || !truth.known(k) || truth.clipped_axes(k) != 0 || reading[k].norm() < kRotating_rad_s) continue;
     errors.push_back(kError(scored.truth().imus.front().rate_rad_s[k], reading[k]));
   }
   return quantile_of(errors, 0.01 * kPercent, value);
@@ -68,7 +68,7 @@ Eigen::Vector3d reference_variance(const ScoredEstimate& scored, const ClippingT
   for (int j = 0; j < 3; ++j) {
     std::vector<double> sizes;
     for (std::size_t k = 0; k < reading.size(); ++k) {
-      if (truth.known(k) && truth.clipped_axes(k) == 0 && reading[k].norm() >= kTurning_rad_s)
+      if (truth.known(k) && truth.clipped_axes(k) == 0 && reading[k].norm() >= kRotating_rad_s)
         sizes.push_back(std::abs(scored.truth().imus.front().rate_rad_s[k][j] - reading[k][j]));
     }
     const double sigma = sizes.empty() ? 0.0 : 1.4826 * quantile(sizes, 0.5);

@@ -10,12 +10,12 @@
 namespace tumble::sim::engine {
 
 /// Contacts of a capsule with the prisms of a height field, as the engine makes them: at most one a prism, in the order
-/// of rows and columns, its place midway between the two surfaces, its normal from ground to axis; within the engine's
-/// tolerance of its own (1e-6 m). `contacts` has room for mjMAXCONPAIR of them; returns how many there are. None is
-/// said where a search is needed, and the engine's own is the one to make it: an axis that is in the ground, which goes
-/// deeper than the radius there, a field that is turned, a strut as low as its foot. `field` and `capsule` are geoms;
-/// their poses are up to date. What the engine finds of an axis that lies along a face, anywhere along it, is here at
-/// an end.
+/// of rows and columns, its position midway between the two surfaces, its normal from ground to axis; within the
+/// engine's tolerance of its own (1e-6 m). `contacts` has room for mjMAXCONPAIR of them; returns how many there are.
+/// None is said where a search is needed, and the engine's own is the one to make it: an axis that is in the ground,
+/// which goes deeper than the radius there, a field that is turned, a strut as low as its foot. `field` and `capsule`
+/// are geoms; their poses are up to date. What the engine finds of an axis that lies along a face, anywhere along it,
+/// is here at an end.
 std::optional<int> field_contacts(const mjModel& model, const mjData& data, int field, int capsule,
                                   mjPreContact* contacts);
 

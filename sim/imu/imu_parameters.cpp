@@ -133,10 +133,10 @@ constexpr std::array kParameters = {
     Parameter{"earth_field_t", 4.9e-5, 0.0, 1e-3, "T", "strength of the Earth's field where the robot is"},
     Parameter{"earth_inclination_rad", 1.14, -1.5708, 1.5708, "rad", "angle of the Earth's field below the horizon"},
     Parameter{"earth_north_rad", 0.0, -3.1416, 3.1416, "rad", "magnetic north, from the world's x axis towards y"},
-    Parameter{"magnetic_sources", 0.0, 0.0, 100.0, "1", "dipoles that disturb the field beside the way; 0: none"},
+    Parameter{"magnetic_sources", 0.0, 0.0, 100.0, "1", "dipoles that disturb the field beside the path; 0: none"},
     Parameter{"magnetic_source_moment_a_m2", 5.0, 0.0, 1e4, "A m^2",
               "moment of a dipole, log-uniform within a factor of 3; 5: some kilograms of steel"},
-    Parameter{"magnetic_source_nearest_m", 0.4, 0.05, 100.0, "m", "no dipole comes nearer to the way"},
+    Parameter{"magnetic_source_nearest_m", 0.4, 0.05, 100.0, "m", "no dipole comes nearer to the path"},
     Parameter{"magnetic_source_farthest_m", 1.5, 0.05, 100.0, "m", "farthest from the place that it stands beside"},
 };
 

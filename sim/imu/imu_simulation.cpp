@@ -160,11 +160,11 @@ Ideal ideal_between(const BodyState& before, const BodyState& after, const Eigen
 /// The rotation between two attitudes has many vectors, whole turns apart: the one that the steps of the window made.
 /// Below half a turn in a window this is the vector as it is.
 Eigen::Vector3d unwound(const Eigen::Vector3d& rate_rad_s, const Eigen::Vector3d& mean_of_steps_rad_s, double time_s) {
-  constexpr double kTurn_rad = 6.283185307179586;
+  constexpr double kRevolution_rad = 6.283185307179586;
   const double norm = rate_rad_s.norm();
   if (norm == 0.0) return rate_rad_s;
-  const double turns = std::round((mean_of_steps_rad_s.dot(rate_rad_s) / norm - norm) * time_s / kTurn_rad);
-  return turns == 0.0 ? rate_rad_s : Eigen::Vector3d(rate_rad_s * (1.0 + turns * kTurn_rad / (norm * time_s)));
+  const double turns = std::round((mean_of_steps_rad_s.dot(rate_rad_s) / norm - norm) * time_s / kRevolution_rad);
+  return turns == 0.0 ? rate_rad_s : Eigen::Vector3d(rate_rad_s * (1.0 + turns * kRevolution_rad / (norm * time_s)));
 }
 
 void describe(const SensorSpec& sensor, std::int64_t period_ns, ImuRecord& record) {

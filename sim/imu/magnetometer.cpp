@@ -14,7 +14,7 @@ namespace {
 
 constexpr double kMu0Over4Pi = 1e-7;  // T m / A
 constexpr int kTries = 200;
-constexpr std::size_t kPlaces = 500;  // of the way, against which distances are held
+constexpr std::size_t kPositions = 500;  // of the path, against which distances are held
 
 Eigen::Vector3d random_direction(Stream& stream) {
   const double z = stream.uniform(-1.0, 1.0), turn = stream.uniform(0.0, 2.0 * std::numbers::pi);
@@ -22,24 +22,25 @@ Eigen::Vector3d random_direction(Stream& stream) {
   return {radius * std::cos(turn), radius * std::sin(turn), z};
 }
 
-double distance_to_way(std::span<const Eigen::Vector3d> way, const Eigen::Vector3d& place) {
-  const std::size_t stride = std::max<std::size_t>(1, way.size() / kPlaces);
+double distance_to_path(std::span<const Eigen::Vector3d> path, const Eigen::Vector3d& position) {
+  const std::size_t stride = std::max<std::size_t>(1, path.size() / kPositions);
   double nearest = std::numeric_limits<double>::infinity();
-  for (std::size_t k = 0; k < way.size(); k += stride) nearest = std::min(nearest, (way[k] - place).norm());
+  for (std::size_t k = 0; k < path.size(); k += stride) nearest = std::min(nearest, (path[k] - position).norm());
   return nearest;
 }
 
-/// A place beside the way; of the tries that all come too near, the farthest.
-Eigen::Vector3d draw_place(std::span<const Eigen::Vector3d> way, double nearest_m, double farthest_m, Stream& stream) {
+/// A position beside the path; of the tries that all come too near, the farthest.
+Eigen::Vector3d draw_position(std::span<const Eigen::Vector3d> path, double nearest_m, double farthest_m,
+                              Stream& stream) {
   Eigen::Vector3d best = Eigen::Vector3d::Zero();
   double best_m = -1.0;
   for (int i = 0; i < kTries && best_m < nearest_m; ++i) {
-    const auto k = static_cast<std::size_t>(stream.uniform() * static_cast<double>(way.size()));
+    const auto k = static_cast<std::size_t>(stream.uniform() * static_cast<double>(path.size()));
     const Eigen::Vector3d direction = random_direction(stream);
-    const Eigen::Vector3d place = way[k] + stream.uniform(nearest_m, farthest_m) * direction;
-    const double distance_m = distance_to_way(way, place);
+    const Eigen::Vector3d position = path[k] + stream.uniform(nearest_m, farthest_m) * direction;
+    const double distance_m = distance_to_path(path, position);
     if (distance_m <= best_m) continue;
-    best = place;
+    best = position;
     best_m = distance_m;
   }
   return best;
@@ -66,10 +67,10 @@ MagneticField draw_magnetic_field(const Values& values, std::span<const Eigen::V
   Stream stream(seed, "magnetic.sources");
   const int count = static_cast<int>(std::lround(values.at("magnetic_sources")));
   for (int i = 0; i < count && !p_W_m.empty(); ++i) {
-    const Eigen::Vector3d place =
-        draw_place(p_W_m, values.at("magnetic_source_nearest_m"), values.at("magnetic_source_farthest_m"), stream);
+    const Eigen::Vector3d position =
+        draw_position(p_W_m, values.at("magnetic_source_nearest_m"), values.at("magnetic_source_farthest_m"), stream);
     const double moment = values.at("magnetic_source_moment_a_m2") * std::pow(3.0, stream.uniform(-1.0, 1.0));
-    field.dipoles.push_back({place, moment * random_direction(stream)});
+    field.dipoles.push_back({position, moment * random_direction(stream)});
   }
   return field;
 }

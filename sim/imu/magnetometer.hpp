@@ -29,7 +29,7 @@ struct MagneticField {
 
 /// The field of one draw: earth_field_t, dipping by earth_inclination_rad, its horizontal part earth_north_rad from the
 /// world's x axis towards y; magnetic_sources dipoles around the way `p_W_m`, none nearer to it than
-/// magnetic_source_nearest_m, each beside a random place of it by at most magnetic_source_farthest_m, their moments
+/// magnetic_source_nearest_m, each beside a random position of it by at most magnetic_source_farthest_m, their moments
 /// log-uniform within a factor of 3 of magnetic_source_moment_a_m2, in random directions. Equal numbers and seed give
 /// the same field to every magnetometer.
 MagneticField draw_magnetic_field(const Values& values, std::span<const Eigen::Vector3d> p_W_m, std::uint64_t seed);

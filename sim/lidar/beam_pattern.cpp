@@ -10,7 +10,7 @@ namespace tumble::sim {
 
 namespace {
 
-constexpr double kTurn_rad = 6.283185307179586;
+constexpr double kRevolution_rad = 6.283185307179586;
 constexpr int kAzimuthCells = 2048;  // 3 mrad: a strut of 4 cm at 0.3 m spans forty of them
 
 std::int64_t period_ns(const Values& values, const char* name) {
@@ -20,7 +20,7 @@ std::int64_t period_ns(const Values& values, const char* name) {
 }  // namespace
 
 SpinningPattern::SpinningPattern(const Values& values)
-    : turn_rad_ns_(kTurn_rad * values.at("spin_rate_hz") * 1e-9),
+    : rate_rad_ns_(kRevolution_rad * values.at("spin_rate_hz") * 1e-9),
       sense_(values.at("clockwise") != 0.0 ? -1.0 : 1.0),
       mirror_radius_m_(values.at("mirror_radius_m")),
       mirror_drop_m_(values.at("mirror_drop_m")),
@@ -39,7 +39,7 @@ SpinningPattern::SpinningPattern(const Values& values)
     elevation_rad[c] = values.at(name);
     cos_elevation_[c] = std::cos(elevation_rad[c]);
     sin_elevation_[c] = std::sin(elevation_rad[c]);
-    const double lag_rad = turn_rad_ns_ * static_cast<double>(lag_ns(c));
+    const double lag_rad = rate_rad_ns_ * static_cast<double>(lag_ns(c));
     cos_lag_[c] = std::cos(lag_rad);
     sin_lag_[c] = std::sin(lag_rad);
   }
@@ -90,8 +90,8 @@ void SpinningPattern::fire(std::int64_t sweep, std::int64_t slot, int slots, Fir
   for (int s = 0; s < kLanes; ++s) {
     block.start_ns[s] = (slot + s) * slot_period_ns_;
     block.reported_ns[s] = reported_start_ns(sweep, slot + s);
-    azimuth_rad[s] = turn_rad_ns_ * static_cast<double>(block.start_ns[s] - sweep * sweep_period_ns_);
-    block.cell[s] = static_cast<int>(azimuth_rad[s] * (kAzimuthCells / kTurn_rad)) % kAzimuthCells;
+    azimuth_rad[s] = rate_rad_ns_ * static_cast<double>(block.start_ns[s] - sweep * sweep_period_ns_);
+    block.cell[s] = static_cast<int>(azimuth_rad[s] * (kAzimuthCells / kRevolution_rad)) % kAzimuthCells;
   }
   aim(azimuth_rad, block);
 }
@@ -101,12 +101,12 @@ int SpinningPattern::cells() const {
 }
 
 double SpinningPattern::cell_half_angle_rad() const {
-  return 0.5 * kTurn_rad / kAzimuthCells;
+  return 0.5 * kRevolution_rad / kAzimuthCells;
 }
 
 void SpinningPattern::fire_cells(int first, FiringBlock& block) const {
   std::array<double, kLanes> azimuth_rad;
-  for (int s = 0; s < kLanes; ++s) azimuth_rad[s] = (first + s + 0.5) * (kTurn_rad / kAzimuthCells);
+  for (int s = 0; s < kLanes; ++s) azimuth_rad[s] = (first + s + 0.5) * (kRevolution_rad / kAzimuthCells);
   aim(azimuth_rad, block);
 }
 
@@ -123,9 +123,9 @@ RosettePattern::RosettePattern(const Values& values) {
   for (int k = 0; k < 3; ++k) {
     Term& term = terms_[k];
     term.amplitude = amplitude[k];
-    term.turn_rad_ns = kTurn_rad * rate_hz[k] * 1e-9;
+    term.rate_rad_ns = kRevolution_rad * rate_hz[k] * 1e-9;
     for (int i = 0; i < kLanes; ++i) {
-      const double lag_rad = term.turn_rad_ns * static_cast<double>(i * slot_period_ns_);
+      const double lag_rad = term.rate_rad_ns * static_cast<double>(i * slot_period_ns_);
       term.cos_lag[i] = std::cos(lag_rad);
       term.sin_lag[i] = std::sin(lag_rad);
     }
@@ -145,7 +145,7 @@ RosettePattern::RosettePattern(const Values& values) {
   const std::int64_t start_ns = slot * slot_period_ns_;
   alignas(64) double x[kLanes], y[kLanes] = {}, z[kLanes] = {};  // of the beam of an unit without yaw
   for (const Term& term : terms_) {
-    const double phase_rad = term.turn_rad_ns * static_cast<double>(start_ns);
+    const double phase_rad = term.rate_rad_ns * static_cast<double>(start_ns);
     const double cos_start = term.amplitude * std::cos(phase_rad), sin_start = term.amplitude * std::sin(phase_rad);
     for (int s = 0; s < kLanes; ++s) {
       y[s] += cos_start * term.cos_lag[s] - sin_start * term.sin_lag[s];

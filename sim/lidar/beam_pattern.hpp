@@ -80,7 +80,7 @@ class SpinningPattern final : public BeamPattern {
   /// Fills all channels from the azimuth at the start of each lane's slot.
   void aim(const std::array<double, kLanes>& azimuth_rad, FiringBlock& block) const;
 
-  double turn_rad_ns_, sense_, mirror_radius_m_, mirror_drop_m_;
+  double rate_rad_ns_, sense_, mirror_radius_m_, mirror_drop_m_;
   bool driver_stamp_fault_;
   std::array<double, kMaxChannels> cos_elevation_, sin_elevation_, cos_lag_,
       sin_lag_;  ///< lag: azimuth since the sequence's start
@@ -96,7 +96,7 @@ class RosettePattern final : public BeamPattern {
 
  private:
   struct Term {
-    double amplitude, turn_rad_ns;
+    double amplitude, rate_rad_ns;
     std::array<double, kLanes> cos_lag, sin_lag;  ///< phase since the block's first slot
   };
   std::array<Term, 3> terms_;

@@ -19,7 +19,7 @@ struct Shares {
   alignas(64) double angle2[kLanes], sinc[kLanes], cosc[kLanes];
   double largest2 = 0.0;
   for (int s = 0; s < kLanes; ++s) {
-    angle2[s] = shares.share[s] * shares.share[s] * now.turn2;
+    angle2[s] = shares.share[s] * shares.share[s] * now.angle2;
     sinc[s] = TrackCursor::sinc_of_small(angle2[s]);
     cosc[s] = TrackCursor::cosc_of_small(angle2[s]);
   }
@@ -38,12 +38,12 @@ struct Shares {
 /// One number of the pose, and its rate of change per second, of the lanes that the interval is for.
 [[gnu::target("avx2")]] void follow_number(const TrackCursor::Interval& now, const Shares& shares, int row, int column,
                                            double (&pose)[kLanes], double (&rate)[kLanes]) {
-  const double start = now.start(row, column), turned = now.turned(row, column), twice = now.turned_twice(row, column);
-  const double per_s = now.per_s, turn2 = now.turn2;
+  const double start = now.start(row, column), turned = now.turned(row, column), twice = now.rotated_twice(row, column);
+  const double per_s = now.per_s, angle2 = now.angle2;
   alignas(64) double to[kLanes], to_rate[kLanes];
   for (int s = 0; s < kLanes; ++s) {
     to[s] = start + shares.first[s] * turned + shares.second[s] * twice;
-    to_rate[s] = per_s * ((1.0 - shares.second[s] * turn2) * turned + shares.first[s] * twice);
+    to_rate[s] = per_s * ((1.0 - shares.second[s] * angle2) * turned + shares.first[s] * twice);
   }
   if (column == 3) {
     const double step_m = now.step_m[row];

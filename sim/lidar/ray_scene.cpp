@@ -53,7 +53,7 @@ struct MeshLabel {
   }
 };
 
-/// What the callbacks are given; Embree hands its first member on. A lane's place is in the ray's id.
+/// What the callbacks are given; Embree hands its first member on. A lane's index is in the ray's id.
 struct CastContext {
   RTCIntersectContext embree;
   const std::vector<MeshLabel>* meshes;

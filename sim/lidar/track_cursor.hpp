@@ -21,14 +21,14 @@ using Pose34 = Eigen::Matrix<double, 3, 4>;
 class TrackCursor {
  public:
   /// Between two samples. `x`, the share of it that is over, has turned the body by a = x |turn| [rad]; with
-  /// first = x sin(a)/a and second = x^2 (1 - cos(a))/a^2 the pose is start + first turned + second turned_twice, and
+  /// first = x sin(a)/a and second = x^2 (1 - cos(a))/a^2 the pose is start + first turned + second rotated_twice, and
   /// x step_m farther on (Rodrigues: exp(x K) = I + first K + second K^2).
   struct Interval {
     std::int64_t start_ns = 0, end_ns = 0;
     double per_ns = 0.0, per_s = 0.0;
-    double turn2 = 0.0;  ///< of the angle turned over the whole of it
+    double angle2 = 0.0;  ///< of the angle turned over the whole of it
     Eigen::Vector3d step_m = Eigen::Vector3d::Zero();
-    Pose34 start = Pose34::Zero(), turned = Pose34::Zero(), turned_twice = Pose34::Zero();
+    Pose34 start = Pose34::Zero(), turned = Pose34::Zero(), rotated_twice = Pose34::Zero();
 
     bool holds(std::int64_t time_ns) const { return time_ns >= start_ns && time_ns < end_ns; }
     double share(std::int64_t time_ns) const { return static_cast<double>(time_ns - start_ns) * per_ns; }
@@ -60,11 +60,11 @@ class TrackCursor {
   /// Pose at a time.
   Pose34 at(std::int64_t time_ns) {
     const Interval& now = interval(time_ns);
-    const double share = now.share(time_ns), angle2 = share * share * now.turn2;
+    const double share = now.share(time_ns), angle2 = share * share * now.angle2;
     const bool small = angle2 < kSmall2;
     const double first = share * (small ? sinc_of_small(angle2) : sinc_of(angle2));
     const double second = share * share * (small ? cosc_of_small(angle2) : cosc_of(angle2));
-    Pose34 T_WL = now.start + first * now.turned + second * now.turned_twice;
+    Pose34 T_WL = now.start + first * now.turned + second * now.rotated_twice;
     T_WL.col(3) += share * now.step_m;
     return T_WL;
   }
@@ -83,16 +83,17 @@ class TrackCursor {
     if (relative.w() < 0.0) relative.coeffs() = -relative.coeffs();
     // atan2 keeps its precision at small angles, where acos loses it
     const double sine = relative.vec().norm();
-    const Eigen::Vector3d turn_rad =
+    const Eigen::Vector3d rotation_rad =
         sine > 0.0 ? Eigen::Vector3d(relative.vec() * (2.0 * std::atan2(sine, relative.w()) / sine))
                    : Eigen::Vector3d::Zero();
-    now_.turn2 = turn_rad.squaredNorm();
+    now_.angle2 = rotation_rad.squaredNorm();
     Eigen::Matrix3d K;
-    K << 0.0, -turn_rad.z(), turn_rad.y(), turn_rad.z(), 0.0, -turn_rad.x(), -turn_rad.y(), turn_rad.x(), 0.0;
+    K << 0.0, -rotation_rad.z(), rotation_rad.y(), rotation_rad.z(), 0.0, -rotation_rad.x(), -rotation_rad.y(),
+        rotation_rad.x(), 0.0;
     const Eigen::Matrix3d R_WB = motion_.q_WB[i].toRotationMatrix();
     now_.start = R_WB * T_BL_;
     now_.turned = R_WB * K * T_BL_;
-    now_.turned_twice = R_WB * K * K * T_BL_;
+    now_.rotated_twice = R_WB * K * K * T_BL_;
     now_.start.col(3) += motion_.p_WB_m[i];
   }
 

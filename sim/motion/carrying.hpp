@@ -16,12 +16,12 @@ struct CarriedPose {
 };
 
 /// A smooth way in time, at any time, also before 0. It is differenced twice: no jumps of velocity.
-using CarriedWay = std::function<CarriedPose(double time_s)>;
+using CarriedPath = std::function<CarriedPose(double time_s)>;
 
 /// The wrench of a hand that carries a robot along a way: a spring and a damper hold it there, the forces that the way
 /// takes added beforehand. The hand is no body. `inertia_B_kg_m2` is about the centre of mass, B axes.
 Wrench carry_along(const HoldingHand& hand, const Eigen::Matrix3d& inertia_B_kg_m2, const BodyState& state,
-                   const CarriedWay& way);
+                   const CarriedPath& path);
 
 /// Moment of inertia of the robot that `hand` holds, about its centre of mass, B axes [kg m^2].
 Eigen::Matrix3d carried_inertia_B_kg_m2(const HoldingHand& hand);

@@ -17,7 +17,7 @@ struct Reference {
 
 /// Numbers that every motion by hand takes.
 inline constexpr std::array kHandParameters = {
-    Parameter{"stiffness_n_m", 400.0, 1.0, 5000.0, "N/m", "of the hand about its way, level; assumed"},
+    Parameter{"stiffness_n_m", 400.0, 1.0, 5000.0, "N/m", "of the hand about its path, level; assumed"},
     Parameter{"damping_n_s_m", 90.0, 0.0, 1000.0, "N s/m", "of the hand, level; assumed"},
     Parameter{"twist_damping_nm_s", 0.03, 0.0, 10.0, "N m s", "of the hand against spin about the vertical; assumed"},
     Parameter{"tremor_n", 0.0, 0.0, 20.0, "N",

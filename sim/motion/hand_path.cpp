@@ -12,17 +12,17 @@ namespace tumble::sim {
 namespace {
 
 constexpr std::array kHandPathParameters = with_hand(std::array{
-    Parameter{"rest_s", 1.5, 0.0, 30.0, "s", "rest before the way"},
+    Parameter{"rest_s", 1.5, 0.0, 30.0, "s", "rest before the path"},
     Parameter{"shape", 0.0, 0.0, kPathShapes - 1.0, "1",
               "0: line along +x; 1: L, two equal legs; 2: eight; 3: free, smooth and random"},
-    Parameter{"length_m", 4.0, 0.05, 100.0, "m", "of the way; its bounding box is centred in the world"},
-    Parameter{"heading_rad", 0.0, -3.2, 3.2, "rad", "turn of the way about the vertical"},
+    Parameter{"length_m", 4.0, 0.05, 100.0, "m", "of the path; its bounding box is centred in the world"},
+    Parameter{"heading_rad", 0.0, -3.2, 3.2, "rad", "turn of the path about the vertical"},
     Parameter{"sway_m", 0.0, 0.0, 2.0, "m", "amplitude with which a line sways from side to side"},
     Parameter{"sway_length_m", 4.0, 0.5, 50.0, "m", "wavelength of that"},
     Parameter{"speed_m_s", 0.6, 0.02, 5.0, "m/s", "speed that the hand aims at between start and end"},
     Parameter{"acceleration_m_s2", 1.0, 0.05, 20.0, "m/s^2", "of starting and stopping"},
     Parameter{"smooth_s", 0.15, 0.01, 2.0, "s",
-              "the way in time is averaged twice over as long: corners are rounded, no force jumps"},
+              "the path in time is averaged twice over as long: corners are rounded, no force jumps"},
     Parameter{"stroke_share", 0.0, 0.0, 0.5, "1",
               "root mean square of the speed's unsteadiness, 0.3 to 1.5 Hz: a hand pushes in strokes; assumed"},
     Parameter{"patch_1_push_ratio", 1.0, 0.2, 5.0, "1",
@@ -42,9 +42,9 @@ class Schedule {
                         values.at("heading_rad"), values.at("sway_m"), values.at("sway_length_m")},
                        stream);
     for (Eigen::Vector2d& node : nodes_) node += world.start_W_m.head<2>();
-    way_m_ = {0.0};
+    arc_length_m_ = {0.0};
     for (std::size_t i = 1; i < nodes_.size(); ++i)
-      way_m_.push_back(way_m_.back() + (nodes_[i] - nodes_[i - 1]).norm());
+      arc_length_m_.push_back(arc_length_m_.back() + (nodes_[i] - nodes_[i - 1]).norm());
     const int width = std::max(1, static_cast<int>(std::lround(values.at("smooth_s") / kTick_s)));
     start_s_ = values.at("rest_s");
     ticks_ = averaged(averaged(travel(values, world, stream), width), width);
@@ -69,10 +69,10 @@ class Schedule {
 
  private:
   Eigen::Vector2d point(double s_m) const {
-    const auto after = std::upper_bound(way_m_.begin(), way_m_.end(), s_m);
-    if (after == way_m_.end()) return nodes_.back();
-    const auto i = static_cast<std::size_t>(after - way_m_.begin());  // way_m_[0] = 0 <= s_m, so i >= 1
-    const double u = (s_m - way_m_[i - 1]) / (way_m_[i] - way_m_[i - 1]);
+    const auto after = std::upper_bound(arc_length_m_.begin(), arc_length_m_.end(), s_m);
+    if (after == arc_length_m_.end()) return nodes_.back();
+    const auto i = static_cast<std::size_t>(after - arc_length_m_.begin());  // arc_length_m_[0] = 0 <= s_m, so i >= 1
+    const double u = (s_m - arc_length_m_[i - 1]) / (arc_length_m_[i] - arc_length_m_[i - 1]);
     return nodes_[i - 1] + u * (nodes_[i] - nodes_[i - 1]);
   }
 
@@ -85,10 +85,10 @@ class Schedule {
       push[i] = values.at("patch_" + std::to_string(i + 1) + "_push_ratio");
 
     std::vector<Eigen::Vector2d> ticks = {point(0.0)};
-    const double length_m = way_m_.back();
+    const double length_m = arc_length_m_.back();
     double s_m = 0.0, v_m_s = 0.0;
     for (double time_s = 0.0; length_m - s_m > 1e-3; time_s += kTick_s) {
-      if (time_s > kPathLongest_s) throw InvalidSituation("motion.hand_path: the way takes longer than 600 s");
+      if (time_s > kPathLongest_s) throw InvalidSituation("motion.hand_path: the path takes longer than 600 s");
       double aim_m_s = speed_m_s * std::max(1.0 + strokes.at(time_s), 0.2);
       bool pushed = false;
       for (std::size_t i = 0; i < std::min(world.patches.size(), kHandPatches); ++i) {
@@ -125,7 +125,7 @@ class Schedule {
   }
 
   std::vector<Eigen::Vector2d> nodes_, ticks_;
-  std::vector<double> way_m_;
+  std::vector<double> arc_length_m_;
   double start_s_ = 0.0;
 };
 
@@ -164,7 +164,7 @@ std::unique_ptr<Motion> make_hand_path(const Values& values, const engine::World
 const MotionType& hand_path_motion() {
   static const MotionType kType{
       {"hand_path",
-       "a hand leads a sphere along a line, an L, an eight or a free way, with pushes and bursts on patches",
+       "a hand leads a sphere along a line, an L, an eight or a free path, with pushes and bursts on patches",
        kHandPathParameters},
       make_hand_path};
   return kType;

@@ -13,21 +13,21 @@ namespace {
 constexpr std::array kHandRollParameters = with_hand(std::array{
     Parameter{"rest_s", 1.5, 0.0, 30.0, "s", "rest before the first leg"},
     Parameter{"leg_1_m", 1.0, 0.0, 20.0, "m", "first leg, along +x"},
-    Parameter{"leg_2_m", 1.0, 0.0, 20.0, "m", "second leg; 0: a straight way"},
+    Parameter{"leg_2_m", 1.0, 0.0, 20.0, "m", "second leg; 0: a straight path"},
     Parameter{"turn_rad", std::numbers::pi / 2, -3.2, 3.2, "rad", "turn to the left between the legs"},
     Parameter{"speed_m_s", 0.6, 0.02, 5.0, "m/s",
               "largest speed on a leg; each leg is a minimum-jerk motion from rest to rest"},
     Parameter{"pause_s", 0.3, 0.0, 30.0, "s", "stop between the legs"},
 });
 
-/// Straight way from rest to rest of least jerk: s = L (10 u^3 - 15 u^4 + 6 u^5), peak speed 15/8 of the mean.
+/// Straight path from rest to rest of least jerk: s = L (10 u^3 - 15 u^4 + 6 u^5), peak speed 15/8 of the mean.
 class Leg {
  public:
   Leg(const Eigen::Vector3d& along_m, double speed_m_s, double start_s)
       : along_m_(along_m), start_s_(start_s), length_s_(1.875 * along_m.norm() / speed_m_s) {}
   double end_s() const { return start_s_ + length_s_; }
 
-  /// Adds the part of the way covered at `time_s`.
+  /// Adds the part of the path covered at `time_s`.
   void add_to(double time_s, Reference& reference) const {
     if (length_s_ <= 0.0) return;
     const double u = std::clamp((time_s - start_s_) / length_s_, 0.0, 1.0);

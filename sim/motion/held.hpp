@@ -9,7 +9,7 @@
 
 namespace tumble::sim {
 
-/// A hand that holds a robot still in the air: a critically damped spring and a turning spring about the place of
+/// A hand that holds a robot still in the air: a critically damped spring and a turning spring about the position of
 /// holding, and the weight. The force acts at the centre of mass.
 class HoldingHand {
  public:

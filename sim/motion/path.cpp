@@ -48,7 +48,7 @@ Nodes eight(int count) {
 }
 
 /// The heading is a sum of slow sinusoids: bends of all sides, none sharper than the shortest of them.
-Nodes free_way(const PathPlan& plan, int count, Stream& stream) {
+Nodes free_path(const PathPlan& plan, int count, Stream& stream) {
   struct Bend {
     double turns, phase_rad, amplitude_rad;
   };
@@ -91,7 +91,7 @@ Nodes shaped(const PathPlan& plan, Stream& stream) {
     case PathShape::free:
       break;
   }
-  return free_way(plan, count, stream);
+  return free_path(plan, count, stream);
 }
 
 }  // namespace

@@ -16,7 +16,7 @@ namespace {
 constexpr std::array kStrollParameters = {
     Parameter{"rest_s", 1.75, 0.5, 30.0, "s", "held still before the first step"},
     Parameter{"height_m", 1.0, 0.1, 10.0, "m", "of the lowest point of the held robot above the ground at the start"},
-    Parameter{"heading_rad", 0.0, -3.2, 3.2, "rad", "turn of the whole way about the vertical"},
+    Parameter{"heading_rad", 0.0, -3.2, 3.2, "rad", "turn of the whole path about the vertical"},
     Parameter{"half_length_m", 2.4, 0.2, 20.0, "m",
               "of the eight x = a sin u, y = b sin 2u that is walked, from its crossing on: a"},
     Parameter{"half_width_m", 1.2, 0.1, 20.0, "m", "the same: b"},
@@ -26,7 +26,7 @@ constexpr std::array kStrollParameters = {
     Parameter{"step_hz", 1.8, 0.2, 4.0, "Hz", "steps a second; those of a walker, assumed"},
     Parameter{"step_m", 0.015, 0.0, 0.1, "m", "amplitude with which the steps lift the robot; assumed"},
     Parameter{"sway_rad", 0.08, 0.0, 0.5, "rad", "root mean square of roll, pitch and yaw, 0.2 to 1.2 Hz; assumed"},
-    Parameter{"sway_m", 0.02, 0.0, 0.2, "m", "the same of the place, per axis; assumed"},
+    Parameter{"sway_m", 0.02, 0.0, 0.2, "m", "the same of the position, per axis; assumed"},
     Parameter{"hand_seed", 0.0, 0.0, 1e9, "1", "what is random about the hand belongs to this number, rounded down"},
 };
 
@@ -45,14 +45,14 @@ class Stroll : public Motion {
         hand_(world, heading(0.0), Eigen::Vector3d::Zero(), values.at("height_m")),
         inertia_B_kg_m2_(carried_inertia_B_kg_m2(hand_)) {
     Stream stream(static_cast<std::uint64_t>(values.at("hand_seed")), "hand.stroll");
-    for (int i = 0; i < 3; ++i) turns_.emplace_back(stream, values.at("sway_rad"), kSwayLow_hz, kSwayHigh_hz);
-    for (int i = 0; i < 3; ++i) places_.emplace_back(stream, values.at("sway_m"), kSwayLow_hz, kSwayHigh_hz);
+    for (int i = 0; i < 3; ++i) rotations_.emplace_back(stream, values.at("sway_rad"), kSwayLow_hz, kSwayHigh_hz);
+    for (int i = 0; i < 3; ++i) positions_.emplace_back(stream, values.at("sway_m"), kSwayLow_hz, kSwayHigh_hz);
   }
 
   BodyState start() const override { return hand_.start(); }
 
   Wrench wrench(const BodyState& state) override {
-    return carry_along(hand_, inertia_B_kg_m2_, state, [this](double time_s) { return way(time_s); });
+    return carry_along(hand_, inertia_B_kg_m2_, state, [this](double time_s) { return path(time_s); });
   }
 
  private:
@@ -68,33 +68,33 @@ class Stroll : public Motion {
     return phase_rate_rad_s_ * (walk_s_ - ease_s_ - begun_s(walk_s_ - t_s));
   }
 
-  /// Along the way at a phase.
+  /// Along the path at a phase.
   Eigen::Quaterniond heading(double phase_rad) const {
     const double yaw_rad =
         std::atan2(2.0 * half_width_m_ * std::cos(2.0 * phase_rad), half_length_m_ * std::cos(phase_rad));
     return Eigen::Quaterniond(Eigen::AngleAxisd(values_.at("heading_rad") + yaw_rad, Eigen::Vector3d::UnitZ()));
   }
 
-  CarriedPose way(double time_s) const {
+  CarriedPose path(double time_s) const {
     const double walked_s = time_s - values_.at("rest_s"), phase = phase_rad(walked_s);
     // the unsteadiness sets in and ends within a second, without a jump of acceleration
     const double share = eased(walked_s) * eased(walk_s_ - walked_s);
     const double step_rad = 2.0 * std::numbers::pi * values_.at("step_hz") * walked_s;
     const Eigen::Vector3d eight_m(half_length_m_ * std::sin(phase), half_width_m_ * std::sin(2.0 * phase),
                                   share * values_.at("step_m") * std::sin(step_rad));
-    const Eigen::Vector3d sway_m(places_[0].at(time_s), places_[1].at(time_s), places_[2].at(time_s));
+    const Eigen::Vector3d sway_m(positions_[0].at(time_s), positions_[1].at(time_s), positions_[2].at(time_s));
     return {hand_.start().p_WB_m + Eigen::AngleAxisd(values_.at("heading_rad"), Eigen::Vector3d::UnitZ()) * eight_m +
                 share * sway_m,
-            heading(phase) * Eigen::AngleAxisd(share * turns_[0].at(time_s), Eigen::Vector3d::UnitZ()) *
-                Eigen::AngleAxisd(share * turns_[1].at(time_s), Eigen::Vector3d::UnitY()) *
-                Eigen::AngleAxisd(share * turns_[2].at(time_s), Eigen::Vector3d::UnitX())};
+            heading(phase) * Eigen::AngleAxisd(share * rotations_[0].at(time_s), Eigen::Vector3d::UnitZ()) *
+                Eigen::AngleAxisd(share * rotations_[1].at(time_s), Eigen::Vector3d::UnitY()) *
+                Eigen::AngleAxisd(share * rotations_[2].at(time_s), Eigen::Vector3d::UnitX())};
   }
 
   Values values_;
   double half_length_m_, half_width_m_, phase_rate_rad_s_, ease_s_, walk_s_;
   HoldingHand hand_;
   Eigen::Matrix3d inertia_B_kg_m2_;
-  std::vector<Tremor> turns_, places_;  ///< about z, y and x; along x, y and z
+  std::vector<Tremor> rotations_, positions_;  ///< about z, y and x; along x, y and z
 };
 
 std::unique_ptr<Motion> make_stroll(const Values& values, const engine::World& world) {

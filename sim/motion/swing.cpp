@@ -19,10 +19,11 @@ constexpr std::array kSwingParameters = {
     Parameter{"release_s", 0.03, 0.005, 1.0, "s", "in which its grip ends"},
     Parameter{"interval_s", 19.0, 2.0, 120.0, "s",
               "mean time from one letting go to the next, give or take a tenth; at least lift and hold"},
-    Parameter{"aside_m", 0.4, 0.0, 3.0, "m", "mean way aside, across the hinges"},
-    Parameter{"up_m", 0.45, 0.0, 3.0, "m", "mean way up"},
+    Parameter{"aside_m", 0.4, 0.0, 3.0, "m", "mean distance aside, across the hinges"},
+    Parameter{"up_m", 0.45, 0.0, 3.0, "m", "mean distance up"},
     Parameter{"spread_m", 0.05, 0.0, 0.5, "m", "standard deviation of both from swing to swing, within 2 of them"},
-    Parameter{"sideways_m", 0.02, 0.0, 0.5, "m", "standard deviation of the way along the hinges, within 2 of them"},
+    Parameter{"sideways_m", 0.02, 0.0, 0.5, "m",
+              "standard deviation of the distance along the hinges, within 2 of them"},
     Parameter{"other_side_share", 0.3, 0.0, 1.0, "1", "of the swings, that begin on the other side"},
     Parameter{"hand_seed", 0.0, 0.0, 1e9, "1", "what is random about the hand belongs to this number, rounded down"},
 };
@@ -32,7 +33,7 @@ constexpr double kSwingLongest_s = 3600.0;
 /// One swing: taken hold of, led away, held, let go.
 struct Lift {
   double start_s;
-  Eigen::Vector3d way_W_m;
+  Eigen::Vector3d lift_W_m;
 };
 
 double bounded(Stream& stream, double sigma) {
@@ -87,7 +88,7 @@ class Swing : public Motion {
     const double grip = smooth(since_s / kGrip_s) * (1.0 - smooth((since_s - lift_s_ - hold_s_) / release_s_));
     if (grip <= 0.0) return {};
 
-    const Eigen::Vector3d aim_m = start_.p_WB_m + smooth(since_s / lift_s_) * lift.way_W_m;
+    const Eigen::Vector3d aim_m = start_.p_WB_m + smooth(since_s / lift_s_) * lift.lift_W_m;
     constexpr double kStep_s = 1e-3;
     const double pace_1_s =
         (smooth((since_s + kStep_s) / lift_s_) - smooth((since_s - kStep_s) / lift_s_)) / (2.0 * kStep_s);
@@ -95,7 +96,7 @@ class Swing : public Motion {
     const double damping_n_s_m = 2.0 * mass_kg_ * kFrequency_rad_s;
     Wrench out;
     out.force_W_n =
-        grip * (stiffness_n_m * (aim_m - state.p_WB_m) + damping_n_s_m * (pace_1_s * lift.way_W_m - state.v_WB_m_s));
+        grip * (stiffness_n_m * (aim_m - state.p_WB_m) + damping_n_s_m * (pace_1_s * lift.lift_W_m - state.v_WB_m_s));
     return out;
   }
 

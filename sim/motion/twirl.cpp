@@ -27,7 +27,7 @@ constexpr std::array kTwirlParameters = {
               "root mean square of the unsteady turn about x, beside the strokes, 0.3 to 4 Hz; as on the real wand"},
     Parameter{"sway_rad", 0.03, 0.0, 0.5, "rad",
               "root mean square of the unsteady pitch and yaw, 0.3 to 4 Hz; assumed"},
-    Parameter{"sway_m", 0.01, 0.0, 0.2, "m", "the same of the place of the grip, per axis; assumed"},
+    Parameter{"sway_m", 0.01, 0.0, 0.2, "m", "the same of the position of the grip, per axis; assumed"},
     Parameter{"grip_x_m", 0.0, -0.5, 0.5, "m", "what the hand carries, in the robot's design frame, B axes"},
     Parameter{"grip_y_m", 0.0, -0.5, 0.5, "m", "the same along y"},
     Parameter{"grip_z_m", 0.0, -0.5, 0.5, "m", "the same along z"},
@@ -66,8 +66,8 @@ std::vector<Stroke> plan_strokes(const Values& values, Stream& stream) {
   return strokes;
 }
 
-/// Carried by a point of it and twirled about x, stroke by stroke: a spring and a damper hold it to a way that the hand
-/// means to go, the forces that this takes added beforehand. The hand is no body.
+/// Carried by a point of it and twirled about x, stroke by stroke: a spring and a damper hold it to a path that the
+/// hand means to go, the forces that this takes added beforehand. The hand is no body.
 class Twirl : public Motion {
  public:
   Twirl(const Values& values, const engine::World& world)
@@ -79,20 +79,22 @@ class Twirl : public Motion {
         inertia_B_kg_m2_(carried_inertia_B_kg_m2(hand_)) {
     Stream stream(static_cast<std::uint64_t>(values.at("hand_seed")), "hand.twirl");
     strokes_ = plan_strokes(values, stream);
-    turns_.emplace_back(stream, values.at("twist_rad"), kTwirlSwayLow_hz, kTwirlSwayHigh_hz);
-    for (int i = 0; i < 2; ++i) turns_.emplace_back(stream, values.at("sway_rad"), kTwirlSwayLow_hz, kTwirlSwayHigh_hz);
-    for (int i = 0; i < 3; ++i) places_.emplace_back(stream, values.at("sway_m"), kTwirlSwayLow_hz, kTwirlSwayHigh_hz);
+    rotations_.emplace_back(stream, values.at("twist_rad"), kTwirlSwayLow_hz, kTwirlSwayHigh_hz);
+    for (int i = 0; i < 2; ++i)
+      rotations_.emplace_back(stream, values.at("sway_rad"), kTwirlSwayLow_hz, kTwirlSwayHigh_hz);
+    for (int i = 0; i < 3; ++i)
+      positions_.emplace_back(stream, values.at("sway_m"), kTwirlSwayLow_hz, kTwirlSwayHigh_hz);
   }
 
   BodyState start() const override { return hand_.start(); }
 
   Wrench wrench(const BodyState& state) override {
-    return carry_along(hand_, inertia_B_kg_m2_, state, [this](double time_s) { return way(time_s); });
+    return carry_along(hand_, inertia_B_kg_m2_, state, [this](double time_s) { return path(time_s); });
   }
 
  private:
   /// Where the hand means the robot to be.
-  CarriedPose way(double time_s) const {
+  CarriedPose path(double time_s) const {
     double spun_rad = 0.0;
     for (const Stroke& stroke : strokes_) {
       if (time_s <= stroke.start_s) break;
@@ -100,12 +102,12 @@ class Twirl : public Motion {
     }
     // the unsteadiness sets in within a second, without a jump of acceleration
     const double share = eased(time_s - rest_s_);
-    const Eigen::Vector3d sway_m(places_[0].at(time_s), places_[1].at(time_s), places_[2].at(time_s));
+    const Eigen::Vector3d sway_m(positions_[0].at(time_s), positions_[1].at(time_s), positions_[2].at(time_s));
     const BodyState start = hand_.start();
     CarriedPose pose;
-    pose.q = start.q_WB * Eigen::AngleAxisd(share * turns_[1].at(time_s), Eigen::Vector3d::UnitZ()) *
-             Eigen::AngleAxisd(share * turns_[2].at(time_s), Eigen::Vector3d::UnitY()) *
-             Eigen::AngleAxisd(spun_rad + share * turns_[0].at(time_s), Eigen::Vector3d::UnitX());
+    pose.q = start.q_WB * Eigen::AngleAxisd(share * rotations_[1].at(time_s), Eigen::Vector3d::UnitZ()) *
+             Eigen::AngleAxisd(share * rotations_[2].at(time_s), Eigen::Vector3d::UnitY()) *
+             Eigen::AngleAxisd(spun_rad + share * rotations_[0].at(time_s), Eigen::Vector3d::UnitX());
     pose.p_m = start.p_WB_m + start.q_WB * grip_B_m_ + share * sway_m - pose.q * grip_B_m_;
     return pose;
   }
@@ -115,7 +117,7 @@ class Twirl : public Motion {
   Eigen::Vector3d grip_B_m_;
   Eigen::Matrix3d inertia_B_kg_m2_;
   std::vector<Stroke> strokes_;
-  std::vector<Tremor> turns_, places_;  ///< about x, z and y; along x, y and z
+  std::vector<Tremor> rotations_, positions_;  ///< about x, z and y; along x, y and z
 };
 
 std::unique_ptr<Motion> make_twirl(const Values& values, const engine::World& world) {

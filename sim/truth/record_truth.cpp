@@ -13,7 +13,7 @@ namespace {
 
 constexpr double kSettle_s = 1.0;
 constexpr double kRestSpeed_m_s = 0.005;
-constexpr double kLeastWay_m = 0.05;
+constexpr double kLeastDistance_m = 0.05;
 
 /// Lets the robot sink into its contacts under gravity and a drag that ends before the recording begins.
 void settle(engine::Physics& physics, const mjModel& model, int body, Motion& motion) {
@@ -61,17 +61,18 @@ Truth record_truth(engine::World& world, Motion& motion, double duration_s) {
   BodyState before = physics.state();
   append(before, truth);
   physics.append_contacts(0, truth.contacts);
-  double way_m = 0.0;
+  double distance_m = 0.0;
   for (std::int64_t k = 1; k <= steps; ++k) {
     physics.step(motion.wrench(before));
     const BodyState after = physics.state();
     append(after, truth);
     truth.f_B_m_s2.push_back(specific_force_B(before, after, Eigen::Vector3d::Zero(), gravity_m_s2));
     physics.append_contacts(k * truth.period_ns, truth.contacts);
-    way_m = std::max(way_m, (after.p_WB_m - truth.p_WB_m.front()).norm());
+    distance_m = std::max(distance_m, (after.p_WB_m - truth.p_WB_m.front()).norm());
     before = after;
   }
-  if (way_m < kLeastWay_m) throw SimulationFailure("the robot never moved, until " + std::to_string(duration_s) + " s");
+  if (distance_m < kLeastDistance_m)
+    throw SimulationFailure("the robot never moved, until " + std::to_string(duration_s) + " s");
   // no step ends at time 0: the robot is at rest there as in the first step
   truth.f_B_m_s2.insert(truth.f_B_m_s2.begin(), truth.f_B_m_s2.front());
   truth.label = label_contacts(truth);

@@ -200,7 +200,7 @@ void judge(const scenarios::Method& method, const scenarios::SimulatedDraw& draw
       judged.error, judged.deviations, judged.before, judged.root_chi2, wrong ? "wrong" : "good", says ? "told" : "-",
       health("lidar_calibration_mahalanobis"), health("innovation_median"), health("innovation_90"),
       health("calibration_mahalanobis"), health("well_constrained_share"), overlap, coverage, health("lidar_scale"),
-      health("lidar_scale_sigma"), health("imu_turning_slope"), health("imu_rest_force_share"),
+      health("lidar_scale_sigma"), health("imu_rotation_slope"), health("imu_rest_force_share"),
       health("rest_gravity_missed_rad"), health("rest_gravity_missed_sigma_rad"), health("rest_velocity_share"),
       health("rest_velocity_allowed_share"), health("pivot_evidence"), health("pivot_segments"), health("pivot_scale"),
       health("pivot_scale_sigma"),

@@ -80,7 +80,7 @@ std::vector<Line> lines_of(const std::string& text) {
 }
 
 /// How far a point that is fixed in the body went from the start to `time_ns` [m].
-double way_m(const sim::Truth& truth, const Eigen::Vector3d& p_B_m, std::int64_t time_ns) {
+double distance_m(const sim::Truth& truth, const Eigen::Vector3d& p_B_m, std::int64_t time_ns) {
   const auto k = std::min(static_cast<std::size_t>(time_ns / truth.period_ns), truth.p_WB_m.size() - 1);
   const auto at = [&](std::size_t i) { return Eigen::Vector3d(truth.p_WB_m[i] + truth.q_WB[i] * p_B_m); };
   return (at(k) - at(0)).norm();
@@ -111,9 +111,9 @@ TEST(Door, TheTumblingExampleFollowsATumbleAndABagSaysTheSame) {
   const std::vector<Line> lines = lines_of(output_of(std::string(TUMBLE_TUMBLING) + " < " + hill_1.messages.string()));
   ASSERT_GT(lines.size(), 30u);
   const Line& end = lines.back();
-  const double way = way_m(hill_1.truth, hill_1.truth.imus.front().T_BI.translation(), end.time_ns);
-  EXPECT_GT(way, 1.0) << "a tumble that goes nowhere tells nothing";
-  EXPECT_NEAR(end.p_m.norm(), way, 0.3);
+  const double distance = distance_m(hill_1.truth, hill_1.truth.imus.front().T_BI.translation(), end.time_ns);
+  EXPECT_GT(distance, 1.0) << "a tumble that goes nowhere tells nothing";
+  EXPECT_NEAR(end.p_m.norm(), distance, 0.3);
   EXPECT_GT(end.sigma_m, 0.0);
 
   const fs::path bag = hill_1.file.parent_path() / "hill.bag";
@@ -128,8 +128,8 @@ TEST(Door, TheRollingExampleFollowsARoll) {
   const Recorded roll_1 = record("roll");
   const std::vector<Line> lines = lines_of(output_of(std::string(TUMBLE_ROLLING) + " < " + roll_1.messages.string()));
   ASSERT_GT(lines.size(), 100u);
-  const double way = way_m(roll_1.truth, roll_1.truth.p_BG_m, lines.back().time_ns);
-  EXPECT_NEAR(lines.back().p_m.norm(), way, 0.02 * std::max(1.0, way));
+  const double distance = distance_m(roll_1.truth, roll_1.truth.p_BG_m, lines.back().time_ns);
+  EXPECT_NEAR(lines.back().p_m.norm(), distance, 0.02 * std::max(1.0, distance));
 }
 
 std::string text_of(const fs::path& file) {

@@ -20,17 +20,17 @@ constexpr double kLogPeriod_s = 0.008, kRadius_m = 0.145;
 constexpr double kSphereGyroNoise_rad_s = 0.002, kSphereAccelNoise_m_s2 = 0.02;
 
 /// Rolls 3 m along x between 3 and 28 s, faster and slower on the way: the centre of the sphere, where the sensor is.
-double way_m(double t) {
+double path_length_m(double t) {
   const double u = smooth_step(t, 3.0, 25.0);
   return kStandInSphereNet_m * u + 0.08 * std::sin(2.0 * M_PI * 3.0 * u);
 }
 
 KnownMotion rolling() {
   return {[](double t) {
-            return so3::exp({0.0, way_m(t) / kRadius_m, 0.0}) * so3::exp({0.9, -0.3, 0.5});
+            return so3::exp({0.0, path_length_m(t) / kRadius_m, 0.0}) * so3::exp({0.9, -0.3, 0.5});
           },
           [](double t) -> Eigen::Vector3d {
-            return {way_m(t), 0.0, kRadius_m};
+            return {path_length_m(t), 0.0, kRadius_m};
           }};
 }
 

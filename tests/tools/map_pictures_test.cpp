@@ -30,7 +30,7 @@ const sim::Surface& surface() {
 }
 
 /// A body that goes from the origin along x.
-sim::Truth straight_way() {
+sim::Truth straight_path() {
   sim::Truth truth;
   truth.period_ns = 10'000'000;
   for (int k = 0; k <= 100; ++k) {
@@ -79,7 +79,7 @@ int count(const sim::Picture& picture, const Rgb& colour, int left, int right, i
 }
 
 TEST(ErrorMap, IsHeldToTheTrueSurfaceInTheTruthsWorld) {
-  const sim::Truth truth = straight_way();
+  const sim::Truth truth = straight_path();
   const ErrorMap map = map_by_error("slam/test", estimate_elsewhere(truth), truth, surface());
   ASSERT_EQ(map.points_W_m.size(), 4u) << "the point that is none is left out";
   EXPECT_NEAR((map.points_W_m[3] - Eigen::Vector3f(1.0f, 0.5f, 0.4f)).norm(), 0.0f, 1e-5f);
@@ -104,7 +104,7 @@ TEST(ErrorColour, GoesFromBlueToRed) {
 }
 
 TEST(MapPicture, ShowsEachMapInItsPanelNearerPointsInFront) {
-  const sim::Truth truth = straight_way();
+  const sim::Truth truth = straight_path();
   // the middle of the way is in the middle of the panel
   ErrorMap good, bad;
   good.points_W_m = {{0.5f, 0.0f, 0.5f}};

@@ -55,14 +55,14 @@ TEST(PackedReplay, AKnownPoseAtAKnownTimeComesBackWithinItsQuantum) {
   const json head = json::parse(data.head);
   const double step_s = head.at("pose_step_s");
   for (const std::string actor : {"actor0", "actor1"}) {
-    const auto places = unpacked<float>(data, actor + ".places");
+    const auto positions = unpacked<float>(data, actor + ".positions");
     const auto attitudes = unpacked<std::int16_t>(data, actor + ".attitudes");
-    ASSERT_EQ(places.size() / 3, attitudes.size() / 4);
-    for (const std::size_t k : {std::size_t{0}, std::size_t{17}, places.size() / 3 - 1}) {
+    ASSERT_EQ(positions.size() / 3, attitudes.size() / 4);
+    for (const std::size_t k : {std::size_t{0}, std::size_t{17}, positions.size() / 3 - 1}) {
       const Isometry3d truth = known_pose(std::llround(1e9 * step_s * static_cast<double>(k)));
       for (int axis = 0; axis < 3; ++axis) {
         const double origin = head.at("origin_W_m").at(static_cast<std::size_t>(axis));
-        EXPECT_NEAR(places[3 * k + static_cast<std::size_t>(axis)] + origin, truth.translation()[axis], 1e-6);
+        EXPECT_NEAR(positions[3 * k + static_cast<std::size_t>(axis)] + origin, truth.translation()[axis], 1e-6);
       }
       Eigen::Quaterniond q;
       for (int i = 0; i < 4; ++i) q.coeffs()[i] = attitudes[4 * k + static_cast<std::size_t>(i)] / 32767.0;
@@ -77,13 +77,13 @@ TEST(PackedReplay, PointsTimesErrorsAndRatesComeBackWithinTheirQuanta) {
   const PackedReplay data = packed(replay);
   const json head = json::parse(data.head);
   const double scale = head.at("points").at("scale_m"), rate_scale = head.at("strip").at("scale_rad_s");
-  const auto places = unpacked<std::int16_t>(data, "points.places");
+  const auto positions = unpacked<std::int16_t>(data, "points.positions");
   const auto times = unpacked<std::uint32_t>(data, "points.times");
   const auto errors = unpacked<std::uint8_t>(data, "actor1.errors");
   ASSERT_EQ(times.size(), replay.points.time_ns.size());
   ASSERT_GT(times.size(), 600u);
   for (std::size_t i = 0; i < times.size(); ++i) {
-    EXPECT_NEAR(scale * places[3 * i + 2], replay.points.p_B_m[i].z(), 0.5001 * scale);
+    EXPECT_NEAR(scale * positions[3 * i + 2], replay.points.p_B_m[i].z(), 0.5001 * scale);
     EXPECT_NEAR(1e3 * times[i], static_cast<double>(replay.points.time_ns[i]), 500.0);
     EXPECT_NEAR(errors[i] / 254.0, replay.actors[1].error_m[i], 0.51 / 254.0);
   }
@@ -103,7 +103,7 @@ TEST(PackedReplay, WhatIsNotKnownIsMarked) {
   const PackedReplay data = packed(replay);
   EXPECT_EQ(unpacked<std::uint8_t>(data, "actor1.errors")[3], 255);
   EXPECT_NE(unpacked<std::uint8_t>(data, "actor1.errors")[4], 255);
-  EXPECT_TRUE(std::isnan(unpacked<float>(data, "actor1.places")[15]));
+  EXPECT_TRUE(std::isnan(unpacked<float>(data, "actor1.positions")[15]));
 }
 
 TEST(PackedReplay, TheWorldsCornersAndCellsAddUp) {
@@ -152,7 +152,7 @@ TEST(ReplayPage, AsksTheNetworkNothingAndHoldsNoBlanks) {
 TEST(ReplayPage, WithoutTruthHasNoErrors) {
   const std::string page = replay_page(known_replay("x", known_recording(), false));
   EXPECT_THAT(page, Not(HasSubstr("actor0.errors")));
-  EXPECT_THAT(page, HasSubstr("actor0.places"));
+  EXPECT_THAT(page, HasSubstr("actor0.positions"));
   EXPECT_THAT(replay_page(known_replay("x", known_recording())), HasSubstr("actor0.errors")) << "negative control";
 }
 

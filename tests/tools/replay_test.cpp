@@ -211,7 +211,7 @@ sim::MeshPart stone(const Vector3f& at, float size) {
   return part;
 }
 
-TEST(ReplayWorld, IsWholeNearTheWayAndFitsItsLimit) {
+TEST(ReplayWorld, IsWholeNearThePathAndFitsItsLimit) {
   const Eigen::AlignedBox3f near(Vector3f(-1, -1, -1), Vector3f(1, 1, 1));
   Shown triangles;
   const std::vector<sim::MeshPart> thin = thinned_world({wide_field()}, near, 40'000, triangles);
@@ -305,7 +305,7 @@ TEST(ReplayModel, RefusesWhatShowsNothing) {
   sim::Recording recording = known_recording();
   ReplayInput input = input_of(recording);
   input.truth = nullptr;
-  EXPECT_THROW(replay_of(input), scenarios::BadInput) << "no way at all";
+  EXPECT_THROW(replay_of(input), scenarios::BadInput) << "no path at all";
   const Estimate rates_alone = [] {
     Estimate estimate = known_estimate(Frame::body, Isometry3d::Identity(), Isometry3d::Identity());
     estimate.poses.clear();
@@ -314,7 +314,7 @@ TEST(ReplayModel, RefusesWhatShowsNothing) {
   input.estimates = {{"rate/x", &rates_alone}};
   EXPECT_THROW(replay_of(input), scenarios::BadInput);
   input.truth = &recording.truth;
-  EXPECT_NO_THROW(replay_of(input)) << "the truth's way and the rates";
+  EXPECT_NO_THROW(replay_of(input)) << "the truth's path and the rates";
   recording.sensors.lidars[0].offset_ns.pop_back();
   EXPECT_THROW(replay_of(input), scenarios::BadInput) << "a point without a time";
 }

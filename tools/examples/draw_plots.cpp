@@ -154,16 +154,16 @@ Plot path_plot(const scenarios::RunResult& run, const RunPaths& paths) {
   Plot plot;
   plot.name = "path";
   if (run.recording.truth.p_WB_m.empty()) return plot;
-  const Path way = true_path(run.recording.sensors, run.recording.truth, 1);
-  plot.lines.push_back(path_line("truth", kTruthColour, 3.5, way));
+  const Path truth = true_path(run.recording.sensors, run.recording.truth, 1);
+  plot.lines.push_back(path_line("truth", kTruthColour, 3.5, truth));
   bool cut = false;
   for (std::size_t i = 0; i < paths.paths.size(); ++i) {
-    const Path shown = near_truth(paths.paths[i], way);
+    const Path shown = near_truth(paths.paths[i], truth);
     cut = cut || shown.points_W_m.size() < paths.paths[i].points_W_m.size();
     plot.lines.push_back(path_line(paths.methods[i], static_cast<int>(i), 1.8, shown));
   }
   plot.caption =
-      "The way seen from above, at equal scales. Estimates start where the truth does." + paths.left_out_text();
+      "The path seen from above, at equal scales. Estimates start where the truth does." + paths.left_out_text();
   if (cut) plot.caption += " A path that runs away from the truth ends where it leaves the picture.";
   plot.x_title = "x [m]";
   plot.y_title = "y [m]";

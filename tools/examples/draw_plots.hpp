@@ -33,7 +33,7 @@ double significant(double value);
 /// answer. Without lines when the recording has no clipped sample.
 Plot rate_plot(const scenarios::RunResult& run);
 
-/// The way seen from above, at equal scales: the truth and each path.
+/// The path seen from above, at equal scales: the truth and each path.
 Plot path_plot(const scenarios::RunResult& run, const RunPaths& paths);
 
 }  // namespace tumble::tools

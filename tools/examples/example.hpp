@@ -28,7 +28,7 @@ struct Plot {
   std::string name;  ///< "path": unique within its example
   std::string caption;
   std::string x_title, y_title;                   ///< with unit
-  bool equal_scales = false;                      ///< of both axes: a way seen from above
+  bool equal_scales = false;                      ///< of both axes: a path seen from above
   bool from_zero = false;                         ///< the y axis holds 0
   bool over_time = false;                         ///< all lines are read at one x
   bool wide = true;                               ///< a row of its own; else two in a row

@@ -78,21 +78,22 @@ Scene scene_of(const scenarios::RunResult& run, const RunPaths& paths) {
   return {&run.built.value(), &run.recording.sensors, &run.recording.truth, paths.paths};
 }
 
-void add_way(const scenarios::RunResult& run, const RunPaths& paths, int width, int height, Example& example) {
-  ExamplePicture way{"scene",
-                     "the robot along its way, with true and estimated paths",
-                     "The robot at instants equally far apart along its way." + paths.left_out_text(),
-                     {{"truth", kTruthColour}},
-                     {}};
-  for (std::size_t i = 0; i < paths.methods.size(); ++i) way.legend.emplace_back(paths.methods[i], static_cast<int>(i));
+void add_path(const scenarios::RunResult& run, const RunPaths& paths, int width, int height, Example& example) {
+  ExamplePicture picture{"scene",
+                         "the robot along its path, with true and estimated paths",
+                         "The robot at instants equally far apart along its path." + paths.left_out_text(),
+                         {{"truth", kTruthColour}},
+                         {}};
+  for (std::size_t i = 0; i < paths.methods.size(); ++i)
+    picture.legend.emplace_back(paths.methods[i], static_cast<int>(i));
   // spheres that stand close together hide their path
-  way.png = sim::png_bytes(scene_picture(scene_of(run, paths), is_sphere(run) ? 3 : 8, width, height));
-  example.pictures.push_back(std::move(way));
+  picture.png = sim::png_bytes(scene_picture(scene_of(run, paths), is_sphere(run) ? 3 : 8, width, height));
+  example.pictures.push_back(std::move(picture));
 }
 
 void add_pictures(const scenarios::RunResult& run, const RunPaths& paths, Moving moving, Example& example) {
   const Scene scene = scene_of(run, paths);
-  add_way(run, paths, 1280, 640, example);
+  add_path(run, paths, 1280, 640, example);
   example.pictures.push_back({"film",
                               "film strip of the same motion",
                               "The same motion close by, left to right and down.",
@@ -139,7 +140,7 @@ Example example_of(const scenarios::RunResult& run, Moving moving) {
 Example failure_example_of(const scenarios::RunResult& run) {
   Example example = replayed(run);
   example.of_failure = true;
-  add_way(run, paths_of(run), 800, 400, example);
+  add_path(run, paths_of(run), 800, 400, example);
   return example;
 }
 

@@ -148,7 +148,7 @@ std::vector<AttitudeState> true_attitudes(const scenarios::TruthTrack& track, co
 }  // namespace
 
 Plot sphere_track_plot(const scenarios::RunResult& run) {
-  Plot plot = plot_of("track", "The way of the centre from above, at equal scales.", "x [m]", "y [m]");
+  Plot plot = plot_of("track", "The path of the centre from above, at equal scales.", "x [m]", "y [m]");
   plot.equal_scales = true;
   for (const ShownPath& shown : shown_paths(run)) {
     PlotLine line = line_of(shown.name, shown.colour, shown.width);
@@ -173,9 +173,9 @@ Plot sphere_speed_plot(const scenarios::RunResult& run) {
       while (path.time_ns[before] < path.time_ns[k] - kSpeedHalf_ns) ++before;
       while (after + 1 < path.time_ns.size() && path.time_ns[after] < path.time_ns[k] + kSpeedHalf_ns) ++after;
       if (after <= before) continue;
-      const double way_m = (path.points_W_m[after] - path.points_W_m[before]).head<2>().norm();
+      const double distance_m = (path.points_W_m[after] - path.points_W_m[before]).head<2>().norm();
       line.x.push_back(five_decimals(seconds(path.time_ns[k])));
-      line.y.push_back(five_decimals(way_m / seconds(path.time_ns[after] - path.time_ns[before])));
+      line.y.push_back(five_decimals(distance_m / seconds(path.time_ns[after] - path.time_ns[before])));
     }
     plot.lines.push_back(std::move(line));
   }

@@ -8,7 +8,7 @@
 /// of kind position that need no truth the first of each origin, and all of kind attitude.
 namespace tumble::tools {
 
-/// The way from above, at equal scales.
+/// The path from above, at equal scales.
 Plot sphere_track_plot(const scenarios::RunResult& run);
 /// Speed of the centre over time, from differences of position over 50 ms for truth and estimates alike; spells of slip
 /// and slide of the truth are shaded.

@@ -29,8 +29,8 @@ class Camera {
     for (const Vector3d& point : truth.p_WB_m) box.extend(point);
     centre_ = box.center();
     reach_m_ = 3.0 + 0.75 * box.diagonal().norm();
-    const Vector3d way = truth.p_WB_m.back() - truth.p_WB_m.front();
-    const double azimuth = way.head<2>().norm() < 0.2 ? 1.9 : std::atan2(way.y(), way.x()) + 2.0;
+    const Vector3d moved = truth.p_WB_m.back() - truth.p_WB_m.front();
+    const double azimuth = moved.head<2>().norm() < 0.2 ? 1.9 : std::atan2(moved.y(), moved.x()) + 2.0;
     const Vector3d forward(std::cos(kElevation_rad) * std::cos(azimuth), std::cos(kElevation_rad) * std::sin(azimuth),
                            -std::sin(kElevation_rad));
     const Vector3d right = forward.cross(Vector3d::UnitZ()).normalized();

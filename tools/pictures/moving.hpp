@@ -9,14 +9,14 @@
 #include "tools/pictures/paths.hpp"
 #include "tools/pictures/pictures.hpp"
 
-/// A motion as a picture that moves: the camera goes with the robot, and leaves robots standing along its way.
+/// A motion as a picture that moves: the camera goes with the robot, and leaves robots standing along its path.
 namespace tumble::tools {
 
 struct MovingOptions {
   int width = 640, height = 360;
   double frames_per_s = 20.0;
   double speed = 0.5;  ///< seconds of the motion in a second that one watches
-  int strobe = 6;      ///< robots that stand where it came by, at equal steps of the way; 0: none
+  int strobe = 6;      ///< robots that stand where it came by, at equal steps of the path; 0: none
   float quality = 60.0f;
   std::function<void(std::size_t frames)> drawn;  ///< told how many frames are done after each; may be empty
 };

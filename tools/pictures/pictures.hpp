@@ -16,16 +16,16 @@ namespace tumble::tools {
 /// What pictures are made from. Only the first is needed.
 struct Scene {
   const sim::BuiltSituation* built = nullptr;
-  const sim::Sensors* sensors = nullptr;  ///< with `truth`: the robot along its way and the true path
+  const sim::Sensors* sensors = nullptr;  ///< with `truth`: the robot along its path and the true path
   const sim::Truth* truth = nullptr;
   std::vector<Path> estimates;  ///< drawn in method_colour(0), (1), ...
 };
 
-/// The whole way in one picture: world, robot at `robots` instants equally far apart along it, true and estimated
+/// The whole path in one picture: world, robot at `robots` instants equally far apart along it, true and estimated
 /// paths. Without truth the world and the estimates alone.
 sim::Picture scene_picture(const Scene& scene, int robots, int width, int height);
 
-/// `frames` close-ups at instants equally far apart along the way, in rows of `columns`. Needs the truth.
+/// `frames` close-ups at instants equally far apart along the path, in rows of `columns`. Needs the truth.
 sim::Picture film_picture(const Scene& scene, int frames, int columns, int width, int height);
 
 /// Writes a PNG; throws scenarios::BadInput with the path when it cannot.

@@ -68,9 +68,9 @@ std::vector<sim::DrawnPath> drawn_paths(const Scene& scene) {
 }
 
 double azimuth_across_rad(const sim::Truth& truth) {
-  const Vector3d way = truth.p_WB_m.back() - truth.p_WB_m.front();
-  if (way.head<2>().norm() < 0.2) return sim::View().azimuth_rad;
-  return std::atan2(way.y(), way.x()) + 2.0;
+  const Vector3d moved = truth.p_WB_m.back() - truth.p_WB_m.front();
+  if (moved.head<2>().norm() < 0.2) return sim::View().azimuth_rad;
+  return std::atan2(moved.y(), moved.x()) + 2.0;
 }
 
 Isometry3d robot_pose(const scenarios::TruthTrack& track, std::int64_t time_ns) {

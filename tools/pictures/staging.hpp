@@ -15,7 +15,7 @@ namespace tumble::tools {
 
 bool is_sphere(const Scene& scene);
 
-/// Instants that cut the moving part of the way into parts of equal length; turning on the spot counts a little too.
+/// Instants that cut the moving part of the path into parts of equal length; turning on the spot counts a little too.
 std::vector<std::int64_t> instants_along(const sim::Truth& truth, int count);
 
 /// The true path and those of the estimates, in their colours.

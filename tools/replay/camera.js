@@ -15,10 +15,10 @@ class Camera {
       Math.sin(this.elevation_rad)], this.distance_m));
   }
   // After the robot, as one turns the head: at once where it has been put elsewhere, else softly.
-  follow(place, elapsed_s) {
-    if (!this.follows || !place) return;
-    const away = distance(this.target, place);
-    this.target = mix(this.target, place, away > 3 * this.distance_m ? 1 : 1 - Math.exp(-elapsed_s * 6));
+  follow(position, elapsed_s) {
+    if (!this.follows || !position) return;
+    const away = distance(this.target, position);
+    this.target = mix(this.target, position, away > 3 * this.distance_m ? 1 : 1 - Math.exp(-elapsed_s * 6));
   }
   drift(elapsed_s) { this.azimuth_rad += this.drift_rad_s * elapsed_s; }
   turn(x_rad, y_rad) {
@@ -47,13 +47,13 @@ class Camera {
   }
 }
 
-// Where the camera begins: across the way, so that a slope shows as one.
+// Where the camera begins: across the path, so that a slope shows as one.
 function firstCamera(replay) {
   const moving = replay.actors.find((actor) => actor.track && actor.track.span());
   const [first, last] = moving.track.span();
-  const from = moving.track.place(first), to = moving.track.place(last), way = minus(to, from);
-  const azimuth = Math.hypot(way[0], way[1]) < 0.2 ? -1.2 : Math.atan2(way[1], way[0]) - 1.15;
+  const from = moving.track.position(first), to = moving.track.position(last), moved = minus(to, from);
+  const azimuth = Math.hypot(moved[0], moved[1]) < 0.2 ? -1.2 : Math.atan2(moved[1], moved[0]) - 1.15;
   const distance_m = Math.max(2.2, 10 * replay.head.robot_radius_m);
-  return new Camera(moving.track.place(Math.min(last, Math.max(first, Math.round(replay.head.from_s / replay.head.pose_step_s)))),
+  return new Camera(moving.track.position(Math.min(last, Math.max(first, Math.round(replay.head.from_s / replay.head.pose_step_s)))),
     distance_m, azimuth);
 }

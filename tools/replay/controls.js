@@ -97,10 +97,10 @@ function showFacts(replay) {
   const count = (n) => n.toLocaleString('en');
   const say = (text) => facts.append(element('p', text));
   const truth = replay.actors.some((actor) => actor.truth);
-  say(truth ? 'A robot with its true way, and what each method makes of its sensors. Estimates begin where the truth does, in position and heading; '
+  say(truth ? 'A robot with its true path, and what each method makes of its sensors. Estimates begin where the truth does, in position and heading; '
     + 'a solid body is the truth, a see-through one an estimate.' : 'A recording without truth: estimates alone, moved to the first in position and heading.');
   if (head.points.of) say(`${count(head.points.shown)} of ${count(head.points.of)} returns of the lidar, spread evenly over sweeps and beams; the robot’s own are left out.`);
-  if (head.world.of) say(`${count(head.world.shown)} of ${count(head.world.of)} triangles of the world: the ground is whole near the way and coarser away from it.`);
+  if (head.world.of) say(`${count(head.world.shown)} of ${count(head.world.of)} triangles of the world: the ground is whole near the path and coarser away from it.`);
   if (strip.of) {
     say(`The strip: ${count(strip.shown)} of ${count(strip.of)} gyro samples${strip.shown < strip.of ? ' (of each run the fastest)' : ''} as a thin line`
       + `${replay.actors.some((actor) => actor.truth && actor.rates) ? ', the true rate as a broad one below it' : ''}, each method’s rate in its colour. `

@@ -14,7 +14,7 @@ function readReplay() {
     shown: true,
     colour: colourOf(said.colour),
     css: said.colour,
-    track: said.moves ? new Track(array(`actor${i}.places`), array(`actor${i}.attitudes`), head.pose_step_s) : null,
+    track: said.moves ? new Track(array(`actor${i}.positions`), array(`actor${i}.attitudes`), head.pose_step_s) : null,
     errors: array(`actor${i}.errors`),
     rates: array(`actor${i}.rates`),
   }));
@@ -26,23 +26,23 @@ function colourOf(hex) {
   return [1, 3, 5].map((at) => parseInt(hex.slice(at, at + 2), 16) / 255);
 }
 
-// Poses of the body at equal steps; places that are not finite are not known.
+// Poses of the body at equal steps; positions that are not finite are not known.
 class Track {
-  constructor(places, attitudes, step_s) {
-    this.places = places;
+  constructor(positions, attitudes, step_s) {
+    this.positions = positions;
     this.attitudes = attitudes;
     this.step_s = step_s;
-    this.count = places.length / 3;
+    this.count = positions.length / 3;
   }
-  known(k) { return k >= 0 && k < this.count && Number.isFinite(this.places[3 * k]); }
-  place(k) { return [this.places[3 * k], this.places[3 * k + 1], this.places[3 * k + 2]]; }
+  known(k) { return k >= 0 && k < this.count && Number.isFinite(this.positions[3 * k]); }
+  position(k) { return [this.positions[3 * k], this.positions[3 * k + 1], this.positions[3 * k + 2]]; }
   attitude(k) { return [0, 1, 2, 3].map((i) => this.attitudes[4 * k + i] / 32767); }
   // {p, q} between two samples, or null.
   pose(t) {
     const at = t / this.step_s, k = Math.floor(at), share = at - k;
     if (!this.known(k)) return null;
-    if (!this.known(k + 1)) return { p: this.place(k), q: this.attitude(k) };
-    return { p: mix(this.place(k), this.place(k + 1), share), q: turnBetween(this.attitude(k), this.attitude(k + 1), share) };
+    if (!this.known(k + 1)) return { p: this.position(k), q: this.attitude(k) };
+    return { p: mix(this.position(k), this.position(k + 1), share), q: turnBetween(this.attitude(k), this.attitude(k + 1), share) };
   }
   // Index of the first and of the last that is known; null when none is.
   span() {

@@ -21,7 +21,7 @@ class Stage {
       : emptyGround(boxOf(replay.actors.find((actor) => actor.track && actor.track.span()).track).low[2] - head.robot_radius_m, 40));
     this.showsWorld = head.world.parts.length > 0 || !head.points.shown;  // points alone show what there is
     this.robot = this.bodyOf(meshOf(head.robot, array('robot.vertices'), array('robot.corners')));
-    this.makePoints(array('points.places'), array('points.times'));
+    this.makePoints(array('points.positions'), array('points.times'));
     for (const actor of replay.actors) this.makeActor(actor);
     this.makeShadowMap();
     this.readTheme();
@@ -41,12 +41,12 @@ class Stage {
   bodyOf(mesh) {
     const gl = this.gl, list = gl.createVertexArray();
     gl.bindVertexArray(list);
-    const attribute = (place, data, size, type, normalised) => {
+    const attribute = (location, data, size, type, normalised) => {
       this.buffer(data);
-      gl.enableVertexAttribArray(place);
-      gl.vertexAttribPointer(place, size, type, normalised, 0, 0);
+      gl.enableVertexAttribArray(location);
+      gl.vertexAttribPointer(location, size, type, normalised, 0, 0);
     };
-    attribute(0, mesh.places, 3, gl.FLOAT, false);
+    attribute(0, mesh.positions, 3, gl.FLOAT, false);
     attribute(1, mesh.normals, 3, gl.FLOAT, false);
     attribute(2, mesh.colours, 4, gl.UNSIGNED_BYTE, true);
     this.buffer(mesh.indices, gl.ELEMENT_ARRAY_BUFFER);
@@ -54,13 +54,13 @@ class Stage {
     return { list, ranges: joined(mesh.ranges) };
   }
 
-  makePoints(places, times) {
+  makePoints(positions, times) {
     const gl = this.gl;
     this.times = times || new Uint32Array(0);
     if (!this.times.length) return;
     this.cloud = gl.createVertexArray();
     gl.bindVertexArray(this.cloud);
-    this.placeBuffer = this.buffer(places);
+    this.positionBuffer = this.buffer(positions);
     this.timeBuffer = this.buffer(this.times);
     gl.bindVertexArray(null);
     this.errorColours = this.texture(64, 1, gl.RGBA8, gl.UNSIGNED_BYTE, new Uint8Array(this.replay.head.error_colours.flatMap((c) => [...c, 255])));
@@ -86,9 +86,9 @@ class Stage {
     actor.ribbonCount = numbers.length / 8;
     gl.bindVertexArray(actor.ribbon);
     this.buffer(numbers);
-    [[3, 0], [3, 12], [2, 24]].forEach(([size, offset], place) => {
-      gl.enableVertexAttribArray(place);
-      gl.vertexAttribPointer(place, size, gl.FLOAT, false, 32, offset);
+    [[3, 0], [3, 12], [2, 24]].forEach(([size, offset], location) => {
+      gl.enableVertexAttribArray(location);
+      gl.vertexAttribPointer(location, size, gl.FLOAT, false, 32, offset);
     });
     if (actor.errors) {
       actor.errorBuffer = this.buffer(actor.errors);
@@ -98,7 +98,7 @@ class Stage {
     const track = actor.track, rows = Math.ceil(2 * track.count / 1024), texels = new Float32Array(4 * 1024 * rows);
     for (let k = 0; k < track.count; ++k) {
       const known = track.known(k);
-      texels.set(known ? [...track.place(k), 1] : [0, 0, 0, 0], 8 * k);
+      texels.set(known ? [...track.position(k), 1] : [0, 0, 0, 0], 8 * k);
       texels.set(known ? track.attitude(k) : [0, 0, 0, 1], 8 * k + 4);
     }
     actor.heights = heightsOf(actor, this.replay);
@@ -321,7 +321,7 @@ class Stage {
     gl.useProgram(program);
     const step = this.effort.pointStep;
     gl.bindVertexArray(this.cloud);
-    gl.bindBuffer(gl.ARRAY_BUFFER, this.placeBuffer);
+    gl.bindBuffer(gl.ARRAY_BUFFER, this.positionBuffer);
     gl.enableVertexAttribArray(0);
     gl.vertexAttribPointer(0, 3, gl.SHORT, false, 6 * step, 0);
     gl.bindBuffer(gl.ARRAY_BUFFER, this.timeBuffer);
@@ -379,12 +379,12 @@ function joined(ranges) {
 
 // Between which heights nine tenths of the points lie, as an actor places them.
 function heightsOf(actor, replay) {
-  const places = replay.array('points.places'), times = replay.array('points.times'), scale = replay.head.points.scale_m, heights = [];
+  const positions = replay.array('points.positions'), times = replay.array('points.times'), scale = replay.head.points.scale_m, heights = [];
   for (let i = 0; i < times.length; i += Math.ceil(times.length / 4000)) {
     const pose = actor.track.pose(times[i] * 1e-6);
     if (!pose) continue;
     const body = poseMatrix(pose.p, pose.q);
-    heights.push(pose.p[2] + scale * (body[2] * places[3 * i] + body[6] * places[3 * i + 1] + body[10] * places[3 * i + 2]));
+    heights.push(pose.p[2] + scale * (body[2] * positions[3 * i] + body[6] * positions[3 * i + 1] + body[10] * positions[3 * i + 2]));
   }
   heights.sort((a, b) => a - b);
   const at = (share) => heights[Math.floor(share * (heights.length - 1))] || 0;

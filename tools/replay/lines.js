@@ -1,10 +1,10 @@
-// The ways as bands: two corners a sample, each with the direction ahead, its side and its time.
-// A way ends where it leaves `box`: one that runs away would cross the whole picture.
+// The paths as bands: two corners a sample, each with the direction ahead, its side and its time.
+// A path ends where it leaves `box`: one that runs away would cross the whole picture.
 function ribbonOf(track, least_m, box) {
   const kept = [];
   for (let k = 0; k < track.count; ++k) {
     if (!track.known(k)) { kept.push(null); continue; }
-    const p = track.place(k);
+    const p = track.position(k);
     if (p.some((value, i) => value < box.low[i] || value > box.high[i])) break;
     const last = kept[kept.length - 1];
     if (last && distance(last.p, p) < least_m) continue;
@@ -24,7 +24,7 @@ function ribbonOf(track, least_m, box) {
   return new Float32Array(numbers);
 }
 
-// The first way's box, wider on every side by half of its diagonal and 1 m at least.
+// The first path's box, wider on every side by half of its diagonal and 1 m at least.
 function surroundings(replay) {
   const { low, high } = boxOf(replay.actors.find((actor) => actor.track && actor.track.span()).track);
   const margin = Math.max(1, 0.5 * distance(low, high));
@@ -35,7 +35,7 @@ function boxOf(track) {
   const low = [Infinity, Infinity, Infinity], high = [-Infinity, -Infinity, -Infinity];
   for (let k = 0; k < track.count; ++k) {
     if (!track.known(k)) continue;
-    track.place(k).forEach((value, i) => { low[i] = Math.min(low[i], value); high[i] = Math.max(high[i], value); });
+    track.position(k).forEach((value, i) => { low[i] = Math.min(low[i], value); high[i] = Math.max(high[i], value); });
   }
   return { low, high };
 }

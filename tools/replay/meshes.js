@@ -7,9 +7,9 @@ function meshOf(said, vertices, corners) {
     vertexCount += part.vertices;
     cornerCount += part.rows ? 6 * (part.rows - 1) * (part.columns - 1) : part.corners;
   }
-  const places = new Float32Array(3 * vertexCount), normals = new Float32Array(3 * vertexCount);
+  const positions = new Float32Array(3 * vertexCount), normals = new Float32Array(3 * vertexCount);
   const colours = new Uint8Array(4 * vertexCount), indices = new Uint32Array(cornerCount);
-  for (let i = 0; i < 3 * vertexCount; ++i) places[i] = vertices[i] * scale;
+  for (let i = 0; i < 3 * vertexCount; ++i) positions[i] = vertices[i] * scale;
   const ranges = [];
   let firstVertex = 0, firstCorner = 0, at = 0;
   for (const part of said.parts) {
@@ -22,8 +22,8 @@ function meshOf(said, vertices, corners) {
     firstVertex += part.vertices;
     firstCorner += part.corners;
   }
-  sumNormals(places, indices, normals);
-  return { places, normals, colours, indices, ranges };
+  sumNormals(positions, indices, normals);
+  return { positions, normals, colours, indices, ranges };
 }
 
 function gridTriangles(part, first, indices, at) {
@@ -37,11 +37,11 @@ function gridTriangles(part, first, indices, at) {
 }
 
 // Each corner's normal is the mean of its triangles', weighted by their areas.
-function sumNormals(places, indices, normals) {
+function sumNormals(positions, indices, normals) {
   for (let i = 0; i + 2 < indices.length; i += 3) {
     const [a, b, c] = [3 * indices[i], 3 * indices[i + 1], 3 * indices[i + 2]];
-    const ux = places[b] - places[a], uy = places[b + 1] - places[a + 1], uz = places[b + 2] - places[a + 2];
-    const vx = places[c] - places[a], vy = places[c + 1] - places[a + 1], vz = places[c + 2] - places[a + 2];
+    const ux = positions[b] - positions[a], uy = positions[b + 1] - positions[a + 1], uz = positions[b + 2] - positions[a + 2];
+    const vx = positions[c] - positions[a], vy = positions[c + 1] - positions[a + 1], vz = positions[c + 2] - positions[a + 2];
     const x = uy * vz - uz * vy, y = uz * vx - ux * vz, z = ux * vy - uy * vx;
     for (const corner of [a, b, c]) {
       normals[corner] += x;

@@ -50,7 +50,7 @@ Isometry3d to_reference(const std::vector<std::int64_t>& time_ns, const std::vec
   return Isometry3d::Identity();
 }
 
-bool knows_places(const sim::Truth& truth) {
+bool knows_positions(const sim::Truth& truth) {
   return std::any_of(truth.p_WB_m.begin(), truth.p_WB_m.end(), [](const auto& p) { return p.allFinite(); });
 }
 
@@ -91,7 +91,7 @@ std::optional<Isometry3d> Motion::at(std::int64_t time_ns) const {
 }
 
 Motion true_motion(const sim::Truth& truth, std::int64_t step_ns) {
-  if (!knows_places(truth)) return {};
+  if (!knows_positions(truth)) return {};
   const TruthTrack track(truth, Frame::body);
   std::vector<std::int64_t> time_ns;
   std::vector<Isometry3d> T_WB;
@@ -106,7 +106,7 @@ Motion true_motion(const sim::Truth& truth, std::int64_t step_ns) {
 Motion estimated_motion(const scenarios::Estimate& estimate, const sim::Sensors& sensors, const sim::Truth* truth,
                         const Motion& reference) {
   Isometry3d T_BA;
-  if (truth != nullptr && !knows_places(*truth)) truth = nullptr;
+  if (truth != nullptr && !knows_positions(*truth)) truth = nullptr;
   if (estimate.poses.empty() || !given_mounting(estimate.frame, sensors, truth, T_BA)) return {};
   const Isometry3d T_AB = T_BA.inverse();
   std::vector<std::int64_t> time_ns;

@@ -12,7 +12,7 @@
 /// How the body moved, by the truth or by an estimate, in one world for all.
 namespace tumble::tools {
 
-/// Poses of the body B in W at rising instants. Between two the place is interpolated linearly and the attitude by
+/// Poses of the body B in W at rising instants. Between two the position is interpolated linearly and the attitude by
 /// slerp; outside, and in gaps of more than half a second or four usual steps, nothing is known.
 class Motion {
  public:
@@ -33,7 +33,7 @@ class Motion {
   std::int64_t gap_ns_ = 0;
 };
 
-/// Of the truth, at instants `step_ns` apart; empty where it knows no place. Throws BadInput when it contradicts
+/// Of the truth, at instants `step_ns` apart; empty where it knows no position. Throws BadInput when it contradicts
 /// itself.
 Motion true_motion(const sim::Truth& truth, std::int64_t step_ns);
 

@@ -81,7 +81,7 @@ void append(const Vector3d& v, double scale, std::vector<std::int16_t>& out) {
   for (int axis = 0; axis < 3; ++axis) out.push_back(whole(v[axis], scale));
 }
 
-/// Where the places of the page begin: in the middle of the first way, so that a float holds it well.
+/// Where the positions of the page begin: in the middle of the first path, so that a float holds it well.
 Vector3d origin_of(const Replay& replay) {
   for (const ReplayActor& actor : replay.actors) {
     for (const Vector3d& p : actor.track.p_WB_m) {
@@ -124,14 +124,14 @@ json pack_parts(const std::string& name, const std::vector<sim::MeshPart>& parts
 }
 
 void pack_track(const std::string& name, const ReplayTrack& track, const Vector3d& origin, Arrays& arrays) {
-  std::vector<float> places;
+  std::vector<float> positions;
   std::vector<std::int16_t> attitudes;
   for (std::size_t k = 0; k < track.p_WB_m.size(); ++k) {
-    for (int axis = 0; axis < 3; ++axis) places.push_back(static_cast<float>(track.p_WB_m[k][axis] - origin[axis]));
+    for (int axis = 0; axis < 3; ++axis) positions.push_back(static_cast<float>(track.p_WB_m[k][axis] - origin[axis]));
     const Eigen::Vector4d xyzw = track.q_WB[k].coeffs();
     for (int i = 0; i < 4; ++i) attitudes.push_back(whole(xyzw[i], 1.0 / kWhole));
   }
-  arrays.add(name + ".places", places);
+  arrays.add(name + ".positions", positions);
   arrays.add(name + ".attitudes", attitudes);
 }
 
@@ -170,11 +170,11 @@ json pack_points(const ReplayPoints& points, Arrays& arrays) {
   double largest = 0.0;
   for (const Vector3f& p : points.p_B_m) largest = std::max(largest, static_cast<double>(p.lpNorm<Eigen::Infinity>()));
   const double scale = scale_for(largest);
-  std::vector<std::int16_t> places;
+  std::vector<std::int16_t> positions;
   std::vector<std::uint32_t> times;
-  for (const Vector3f& p : points.p_B_m) append(p.cast<double>(), scale, places);
+  for (const Vector3f& p : points.p_B_m) append(p.cast<double>(), scale, positions);
   for (const std::int64_t time_ns : points.time_ns) times.push_back(microseconds(time_ns));
-  arrays.add("points.places", places);
+  arrays.add("points.positions", positions);
   arrays.add("points.times", times);
   return {{"shown", points.p_B_m.size()}, {"of", points.of}, {"scale_m", scale}};
 }

@@ -15,9 +15,9 @@ struct PackedReplay {
   std::vector<std::uint8_t> bytes;  ///< little endian, each array at a multiple of 4
 };
 
-/// Whole numbers times a scale: places of the world and of points as int16 (a 32767th of the farthest), attitudes as
-/// int16 (a 32767th), rates as int16, times as uint32 microseconds, errors as uint8 (255: not known). Places of tracks
-/// are float32 from the head's origin.
+/// Whole numbers times a scale: positions of the world and of points as int16 (a 32767th of the farthest), attitudes as
+/// int16 (a 32767th), rates as int16, times as uint32 microseconds, errors as uint8 (255: not known). Positions of
+/// tracks are float32 from the head's origin.
 PackedReplay packed(const Replay& replay);
 
 }  // namespace tumble::tools

@@ -22,7 +22,7 @@ using Eigen::Isometry3d;
 constexpr std::int64_t kStep_ns = 2'000'000;  ///< at 25 rad/s^2 per step of 1 ms and 30 m a point is placed to 1 cm
 constexpr std::size_t kTracksShare = 2, kStripShare = 8;  ///< of the bytes at most: one half, one eighth
 constexpr std::size_t kPoseBytes = 20, kSampleBytes = 11, kRateBytes = 6, kPointBytes = 10;
-constexpr float kAround_m = 2.5f;  ///< of the way, where the ground is shown in full
+constexpr float kAround_m = 2.5f;  ///< of the path, where the ground is shown in full
 
 void require_parallel(const sim::Sensors& sensors) {
   for (const sim::LidarRecord& lidar : sensors.lidars) {
@@ -79,7 +79,7 @@ void find_motion(const ReplayInput& input, Replay& replay) {
   }
 }
 
-bool has_way(const ReplayEstimate& given) {
+bool has_path(const ReplayEstimate& given) {
   return !given.estimate->poses.empty();
 }
 
@@ -93,13 +93,13 @@ std::vector<ReplayActor> actors_of(const ReplayInput& input) {
     truth.T_BB_given = true_from_given_body(*input.sensors, *input.truth);
     actors.push_back(std::move(truth));
   }
-  // what has a way comes first, as in the pictures of the same run, in which nothing else is drawn
-  const auto with_way = static_cast<std::size_t>(std::ranges::count_if(input.estimates, has_way));
-  std::size_t way = 0, other = with_way;
+  // what has a path comes first, as in the pictures of the same run, in which nothing else is drawn
+  const auto with_path = static_cast<std::size_t>(std::ranges::count_if(input.estimates, has_path));
+  std::size_t paths = 0, other = with_path;
   for (const ReplayEstimate& given : input.estimates) {
     ReplayActor actor;
     actor.name = given.name;
-    actor.colour = method_colour(has_way(given) ? way++ : other++).hex;
+    actor.colour = method_colour(has_path(given) ? paths++ : other++).hex;
     actors.push_back(std::move(actor));
   }
   return actors;
@@ -115,7 +115,7 @@ std::vector<Motion> motions_of(const ReplayInput& input, std::int64_t step_ns) {
     if (reference.empty()) reference = motions.back();
   }
   if (reference.empty())
-    throw scenarios::BadInput("there is no way to show: no truth that knows places, and no estimate with poses");
+    throw scenarios::BadInput("there is no path to show: no truth that knows positions, and no estimate with poses");
   return motions;
 }
 
@@ -127,7 +127,7 @@ double radius_of(const std::vector<sim::MeshPart>& parts) {
   return radius_m;
 }
 
-/// The way of the first that knows one, with some room around.
+/// The path of the first that knows one, with some room around.
 Eigen::AlignedBox3f surroundings(const std::vector<ReplayActor>& actors) {
   Eigen::AlignedBox3f box;
   for (const ReplayActor& actor : actors) {

@@ -37,7 +37,7 @@ struct Shown {
   std::size_t shown = 0, of = 0;
 };
 
-/// Poses of the body at `Replay::pose_step_ns` from time 0; what is not known has a place that is not finite.
+/// Poses of the body at `Replay::pose_step_ns` from time 0; what is not known has a position that is not finite.
 struct ReplayTrack {
   std::vector<Eigen::Vector3d> p_WB_m;
   std::vector<Eigen::Quaterniond> q_WB;

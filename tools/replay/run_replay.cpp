@@ -16,15 +16,15 @@ bool can_be_shown(const scenarios::RunResult& run, std::size_t i) {
 }  // namespace
 
 std::vector<std::size_t> shown_methods(const scenarios::RunResult& run) {
-  std::vector<std::size_t> first, ways, rates;
+  std::vector<std::size_t> first, paths, rates;
   for (std::size_t i = 0; i < run.methods.size() && i < run.estimates.size(); ++i) {
     if (!can_be_shown(run, i)) continue;
     const scenarios::MethodInfo& info = run.methods[i]->info;
     // of every kind ours is called tumble (docs/design.md, "Scenarios and methods by name")
     const bool leads = info.baseline || info.name == "tumble";
-    (leads ? first : run.estimates[i].poses.empty() ? rates : ways).push_back(i);
+    (leads ? first : run.estimates[i].poses.empty() ? rates : paths).push_back(i);
   }
-  first.insert(first.end(), ways.begin(), ways.end());
+  first.insert(first.end(), paths.begin(), paths.end());
   first.insert(first.end(), rates.begin(), rates.end());
   first.resize(std::min(first.size(), kRunReplayMethods));
   std::sort(first.begin(), first.end());

@@ -3,8 +3,8 @@
 const HAZE = `
   uniform vec3 u_eye, u_haze;
   uniform float u_haze_m;
-  vec3 hazed(vec3 colour, vec3 place) {
-    float far = clamp(distance(place, u_eye) / u_haze_m, 0.0, 1.0);
+  vec3 hazed(vec3 colour, vec3 position) {
+    float far = clamp(distance(position, u_eye) / u_haze_m, 0.0, 1.0);
     return mix(colour, u_haze, far * far * (3.0 - 2.0 * far));
   }`;
 
@@ -26,22 +26,22 @@ const SHADERS = {
 
   // bodies, the world's and the robots'
   solid: [`
-    layout(location = 0) in vec3 a_place;
+    layout(location = 0) in vec3 a_position;
     layout(location = 1) in vec3 a_normal;
     layout(location = 2) in vec4 a_colour;
     uniform mat4 u_camera, u_body, u_shadow;
-    out vec3 v_place, v_normal, v_shadow;
+    out vec3 v_position, v_normal, v_shadow;
     out vec4 v_colour;
     void main() {
-      vec4 place = u_body * vec4(a_place, 1.0);
-      v_place = place.xyz;
+      vec4 position = u_body * vec4(a_position, 1.0);
+      v_position = position.xyz;
       v_normal = mat3(u_body) * a_normal;
       v_colour = a_colour;
-      vec4 shadow = u_shadow * vec4(place.xyz + 0.02 * v_normal, 1.0);
+      vec4 shadow = u_shadow * vec4(position.xyz + 0.02 * v_normal, 1.0);
       v_shadow = shadow.xyz * 0.5 + 0.5;
-      gl_Position = u_camera * place;
+      gl_Position = u_camera * position;
     }`, `
-    in vec3 v_place, v_normal, v_shadow;
+    in vec3 v_position, v_normal, v_shadow;
     in vec4 v_colour;
     uniform highp sampler2DShadow u_depths;
     uniform vec3 u_sun, u_target;
@@ -65,8 +65,8 @@ const SHADERS = {
       if (u_cut_m > 0.0) {
         // a hole through what hides the target: dithered, within half its distance about the line of sight
         vec3 ahead = u_target - u_eye;
-        float along = dot(v_place - u_eye, ahead) / dot(ahead, ahead);
-        float aside = distance(v_place - u_eye, along * ahead);
+        float along = dot(v_position - u_eye, ahead) / dot(ahead, ahead);
+        float aside = distance(v_position - u_eye, along * ahead);
         float keep = max(smoothstep(0.72, 0.95, along), smoothstep(0.6, 1.1, aside / (u_cut_m * max(along, 0.15))));
         float dither = fract(52.9829189 * fract(dot(gl_FragCoord.xy, vec2(0.06711056, 0.00583715))));
         if (keep < dither) discard;
@@ -76,31 +76,31 @@ const SHADERS = {
       float grid = 0.0;
       if (u_grid > 0.0) {
         // a line each metre, seen from above: slope and scale
-        vec2 cell = abs(fract(v_place.xy / u_grid - 0.5) - 0.5) * u_grid / max(fwidth(v_place.xy), vec2(1e-5));
-        grid = (1.0 - min(min(cell.x, cell.y), 1.0)) * 0.16 * smoothstep(30.0, 6.0, distance(v_place, u_eye));
+        vec2 cell = abs(fract(v_position.xy / u_grid - 0.5) - 0.5) * u_grid / max(fwidth(v_position.xy), vec2(1e-5));
+        grid = (1.0 - min(min(cell.x, cell.y), 1.0)) * 0.16 * smoothstep(30.0, 6.0, distance(v_position, u_eye));
         // two shades of grass
-        float spot = sin(v_place.x * 1.7) * sin(v_place.y * 1.3 + 1.0) + sin(v_place.x * 0.53 - v_place.y * 0.71);
+        float spot = sin(v_position.x * 1.7) * sin(v_position.y * 1.3 + 1.0) + sin(v_position.x * 0.53 - v_position.y * 0.71);
         albedo *= 1.0 + 0.05 * spot;
       }
       float sun = max(dot(normal, u_sun), 0.0) * lit();
       float sky = 0.5 + 0.5 * normal.z;
       vec3 light = vec3(1.0, 0.95, 0.86) * (0.85 * sun) + mix(vec3(0.24, 0.22, 0.20), vec3(0.46, 0.52, 0.60), sky);
-      light += 0.16 * max(dot(normal, normalize(u_eye - v_place)), 0.0);  // from the eye: no side is black
+      light += 0.16 * max(dot(normal, normalize(u_eye - v_position)), 0.0);  // from the eye: no side is black
       vec3 colour = albedo * light * u_light;
       colour = mix(colour, vec3(u_light), grid);
-      o_colour = vec4(hazed(colour, v_place), u_opacity * v_colour.a);
+      o_colour = vec4(hazed(colour, v_position), u_opacity * v_colour.a);
     }`],
 
   // depths alone, as the sun sees them
   shadow: [`
-    layout(location = 0) in vec3 a_place;
+    layout(location = 0) in vec3 a_position;
     uniform mat4 u_camera, u_body;
-    void main() { gl_Position = u_camera * u_body * vec4(a_place, 1.0); }`, `
+    void main() { gl_Position = u_camera * u_body * vec4(a_position, 1.0); }`, `
     void main() {}`],
 
-  // a way: a band that faces the eye, at least as wide as a line on the screen
+  // a path: a band that faces the eye, at least as wide as a line on the screen
   ribbon: [`
-    layout(location = 0) in vec3 a_place;
+    layout(location = 0) in vec3 a_position;
     layout(location = 1) in vec3 a_ahead;
     layout(location = 2) in vec2 a_side_time;
     uniform mat4 u_camera;
@@ -108,14 +108,14 @@ const SHADERS = {
     uniform float u_width_m, u_pixel;
     out float v_time, v_side;
     void main() {
-      vec3 look = a_place - u_eye;
+      vec3 look = a_position - u_eye;
       vec3 across = cross(a_ahead, look);
       float size = length(across);
       across = size > 1e-6 ? across / size : vec3(0.0, 0.0, 1.0);
       float half_m = max(0.5 * u_width_m, 1.3 * u_pixel * length(look));
       v_time = a_side_time.y;
       v_side = a_side_time.x;
-      gl_Position = u_camera * vec4(a_place + across * half_m * a_side_time.x, 1.0);
+      gl_Position = u_camera * vec4(a_position + across * half_m * a_side_time.x, 1.0);
     }`, `
     in float v_time, v_side;
     uniform vec3 u_colour;
@@ -129,10 +129,10 @@ const SHADERS = {
 
   // returns of the lidar: where the chosen motion had the sensor when each was measured
   points: [`
-    layout(location = 0) in vec3 a_place;
+    layout(location = 0) in vec3 a_position;
     layout(location = 1) in uint a_time_us;
     layout(location = 2) in float a_error;
-    uniform highp sampler2D u_poses;   // place and attitude, a pose in two texels
+    uniform highp sampler2D u_poses;   // position and attitude, a pose in two texels
     uniform mat4 u_camera, u_mount;
     uniform vec3 u_eye;
     uniform uint u_step_us, u_last;
@@ -147,15 +147,15 @@ const SHADERS = {
       vec4 p = texel(2u * k), p_next = texel(2u * next), q = texel(2u * k + 1u), q_next = texel(2u * next + 1u);
       if (dot(q, q_next) < 0.0) q_next = -q_next;
       q = normalize(mix(q, q_next, share));
-      vec3 in_body = (u_mount * vec4(a_place * u_scale_m, 1.0)).xyz;
-      vec3 place = mix(p.xyz, p_next.xyz, share) + in_body + 2.0 * cross(q.xyz, cross(q.xyz, in_body) + q.w * in_body);
+      vec3 in_body = (u_mount * vec4(a_position * u_scale_m, 1.0)).xyz;
+      vec3 position = mix(p.xyz, p_next.xyz, share) + in_body + 2.0 * cross(q.xyz, cross(q.xyz, in_body) + q.w * in_body);
       bool lost = p.w < 0.5 || p_next.w < 0.5;
       float age_s = (u_now_us - float(a_time_us)) * 1e-6;
       v_fresh = exp(-6.0 * max(age_s, 0.0));
       v_known = u_by_error > 0.5 && a_error > 254.5 ? 0.0 : 1.0;
-      v_share = u_by_error > 0.5 ? a_error / 254.0 : clamp((place.z - u_heights.x) / (u_heights.y - u_heights.x), 0.0, 1.0);
-      place += 0.03 * normalize(u_eye - place);  // in front of the surface that it lies on
-      gl_Position = lost ? vec4(2.0, 2.0, 2.0, 1.0) : u_camera * vec4(place, 1.0);
+      v_share = u_by_error > 0.5 ? a_error / 254.0 : clamp((position.z - u_heights.x) / (u_heights.y - u_heights.x), 0.0, 1.0);
+      position += 0.03 * normalize(u_eye - position);  // in front of the surface that it lies on
+      gl_Position = lost ? vec4(2.0, 2.0, 2.0, 1.0) : u_camera * vec4(position, 1.0);
       gl_PointSize = clamp(u_size * (1.0 + 0.9 * v_fresh) / max(gl_Position.w, 0.1), 1.6, u_largest);
     }`, `
     in float v_share, v_fresh, v_known;
@@ -182,10 +182,10 @@ function compiled(gl, name) {
   });
   gl.linkProgram(program);
   if (!gl.getProgramParameter(program, gl.LINK_STATUS)) throw new Error(`shader ${name}: ${gl.getProgramInfoLog(program)}`);
-  const places = {};
+  const locations = {};
   for (let i = gl.getProgramParameter(program, gl.ACTIVE_UNIFORMS) - 1; i >= 0; --i) {
     const uniform = gl.getActiveUniform(program, i).name;
-    places[uniform] = gl.getUniformLocation(program, uniform);
+    locations[uniform] = gl.getUniformLocation(program, uniform);
   }
-  return { program, at: places };
+  return { program, at: locations };
 }

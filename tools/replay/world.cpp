@@ -14,17 +14,17 @@ using Eigen::AlignedBox3f;
 using Eigen::Vector3f;
 using sim::MeshPart;
 
-/// Which of the nodes at rising `places` to keep: all from `low` to `high`, and beyond at steps that grow with the
+/// Which of the nodes at rising `positions` to keep: all from `low` to `high`, and beyond at steps that grow with the
 /// distance, `coarser` times the eighth of it. The first and the last stay.
-std::vector<int> kept_nodes(const std::vector<float>& places, float low, float high, float coarser) {
-  const auto away = [&](float place) { return std::max({0.0f, low - place, place - high}); };
+std::vector<int> kept_nodes(const std::vector<float>& positions, float low, float high, float coarser) {
+  const auto away = [&](float node) { return std::max({0.0f, low - node, node - high}); };
   std::vector<int> kept = {0};
-  const int last = static_cast<int>(places.size()) - 1;
+  const int last = static_cast<int>(positions.size()) - 1;
   for (int i = 1; i < last; ++i) {
     const auto at = static_cast<std::size_t>(i);
-    const float step = places[at] - places[static_cast<std::size_t>(kept.back())];
-    const float cell = places[at + 1] - places[at];
-    const float least = coarser * std::max(cell, 0.125f * away(places[at])) - (coarser > 1.0f ? 0.0f : 0.5f * cell);
+    const float step = positions[at] - positions[static_cast<std::size_t>(kept.back())];
+    const float cell = positions[at + 1] - positions[at];
+    const float least = coarser * std::max(cell, 0.125f * away(positions[at])) - (coarser > 1.0f ? 0.0f : 0.5f * cell);
     if (step >= least) kept.push_back(i);
   }
   kept.push_back(last);

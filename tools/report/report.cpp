@@ -139,8 +139,8 @@ std::string replay_address(const ReportOptions& options, const Example& example)
   const std::filesystem::path replay = examples_folder(options.database) / example.replay;
   std::error_code error;
   const std::filesystem::path from = std::filesystem::absolute(options.page, error).parent_path();
-  const std::filesystem::path way = std::filesystem::proximate(replay, from, error);
-  return html::file_address((error ? replay : way).generic_string());
+  const std::filesystem::path relative = std::filesystem::proximate(replay, from, error);
+  return html::file_address((error ? replay : relative).generic_string());
 }
 
 void add_examples(const scenarios::Results& results, const ReportOptions& options, PageContent& content) {

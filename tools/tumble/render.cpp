@@ -58,7 +58,7 @@ void load_situation(const scenarios::DataRoot& data, const RenderOptions& option
   content.built = built_from(info, options.what, data);
   content.sensors = scenarios::read_sensors(options.what);
   // the truth places the robot and the estimates in a picture for people; no estimate is made here
-  if (!info.has_truth) throw BadInput(options.what + ": holds no truth, so there is no way to draw");
+  if (!info.has_truth) throw BadInput(options.what + ": holds no truth, so there is no path to draw");
   content.truth = scenarios::read_truth(options.what);
 }
 
@@ -79,7 +79,7 @@ void load_recording(const scenarios::DataRoot& data, const RenderOptions& option
 void load_draw(const scenarios::DataRoot& data, const RenderOptions& options, RenderContent& content) {
   const scenarios::Scenario scenario = scenarios::load_scenario(data, options.what);
   if (!options.estimates.empty()) throw BadInput("estimates are drawn into a recording, not into a scenario");
-  if (options.film > 0) throw BadInput("--film shows the way of a recording; '" + options.what + "' is a scenario");
+  if (options.film > 0) throw BadInput("--film shows the path of a recording; '" + options.what + "' is a scenario");
   content.built.emplace(scenarios::draw(data, scenario, seed_of(scenario, options.seed)), data.models());
 }
 
@@ -146,7 +146,7 @@ std::vector<std::uint8_t> video_of(const Session& session, const RenderOptions& 
 
 void require_video(const RenderOptions& options) {
   if (!is_recording(options.what))
-    throw BadInput("--video shows the way of a recording; '" + options.what + "' is a scenario");
+    throw BadInput("--video shows the path of a recording; '" + options.what + "' is a scenario");
   if (options.film > 0 || options.map) throw BadInput("--video, --film and --map are three pictures: ask for one");
   if (options.output.extension() != ".webp")
     throw BadInput("--video writes a WebP: " + options.output.string() + " must end in .webp");
@@ -210,13 +210,13 @@ Action declare_render(VerbOptions& verb, const Session& session) {
   verb.add_flag("--map", options->map,
                 "the estimates' maps side by side, coloured by error from 0 (blue) to 1 m (red)");
   verb.add_flag("--video", options->video,
-                "the motion as a WebP that plays: the camera follows, robots stand along the way");
+                "the motion as a WebP that plays: the camera follows, robots stand along the path");
   verb.add("--fps", options->fps, "frames of a video in a second").within(1.0, 60.0).shows_default();
   verb.add("--speed", options->speed, "of a video: seconds of the motion in one that is watched")
       .within(0.01, 10.0)
       .shows_default();
   verb.add("--columns", options->columns, "frames in a row of the film strip").whole(1, 64).shows_default();
-  verb.add("--robots", options->robots, "how often the robot is drawn along its way").whole(1, 64).shows_default();
+  verb.add("--robots", options->robots, "how often the robot is drawn along its path").whole(1, 64).shows_default();
   verb.add("--width", options->width, "of a picture or frame, pixels").whole(64, 4096).shows_default();
   verb.add("--height", options->height, "of a picture or frame, pixels").whole(64, 4096).shows_default();
   return [&session, options] { return render(session, *options); };

@@ -72,7 +72,7 @@ Status align(const AuxiliaryImu& auxiliary_imu, std::span<const ImuSample> sampl
     const Clipping &c = clippings[near.before], &d = clippings[near.after];
     // a reading on which the other has no part says nothing of it
     const bool left = near.share<1.0, right = near.share> 0.0;
-    const unsigned gyro = (left ? c.gyro | c.void_gyro : 0u) | (right ? d.gyro | d.void_gyro : 0u);
+    const unsigned gyro = (left ? c.gyro | c.missing_gyro : 0u) | (right ? d.gyro | d.missing_gyro : 0u);
     const unsigned accel = (left ? c.accel : 0u) | (right ? d.accel : 0u);
     out[k].rate_by_elements = gyro != 0;
     out[k].force_by_elements = accel != 0;

@@ -13,7 +13,7 @@ namespace tumble {
 
 RailPlanes KnownRails::planes_in_use(Triad triad) const {
   const RailPlanes& known = triad == Triad::gyro ? planes : accel_planes;
-  return (triad == Triad::gyro ? upright : accel_upright) ? without_plateaus(known, walls, triad) : known;
+  return (triad == Triad::gyro ? upright : accel_upright) ? without_plateaus(known, upright_rails, triad) : known;
 }
 
 ElementRows KnownRails::rows(Triad triad, double unknown_sigma) const {
@@ -23,14 +23,14 @@ ElementRows KnownRails::rows(Triad triad, double unknown_sigma) const {
 
 ElementReading element_reading(const ImuSample& sample, const Clipping& clipping, Triad triad, int axis) {
   const std::uint8_t clipped = triad == Triad::gyro ? clipping.gyro : clipping.accel;
-  if (triad == Triad::gyro && (clipping.void_gyro >> axis & 1u) != 0) return ElementReading::unreadable;
+  if (triad == Triad::gyro && (clipping.missing_gyro >> axis & 1u) != 0) return ElementReading::unreadable;
   if ((clipped >> axis & 1u) == 0) return ElementReading::measured;
   return reading_of(sample, triad)[axis] < 0.0 ? ElementReading::clipped_low : ElementReading::clipped_high;
 }
 
 std::uint8_t clip_flags(const Clipping& clipping) {
   constexpr int kAccelFirst = 3;
-  return static_cast<std::uint8_t>(clipping.gyro | clipping.void_gyro | clipping.accel << kAccelFirst);
+  return static_cast<std::uint8_t>(clipping.gyro | clipping.missing_gyro | clipping.accel << kAccelFirst);
 }
 
 std::uint8_t HeardRails::flags(const ImuSample& sample, const Clipping& judged) const {
@@ -49,26 +49,26 @@ std::uint8_t HeardRails::flags(const ImuSample& sample, const Clipping& judged) 
 }
 
 ClippingFinder::ClippingFinder(const Params& params)
-    : walls_(params.walls), planes_(plane_finders(params)), tilted_(params.tilted) {}
+    : upright_rails_(params.upright_rails), planes_(plane_finders(params)), tilted_(params.tilted) {}
 
 RailPlanes ClippingFinder::find_planes(std::span<const ImuSample> samples, Triad triad,
-                                       const RailDetector::State& walls, bool& upright) const {
+                                       const RailDetector::State& upright_rails, bool& upright) const {
   std::vector<Eigen::Vector3d> readings(samples.size());
   for (std::size_t k = 0; k < samples.size(); ++k) readings[k] = reading_of(samples[k], triad);
   RailPlaneFinder::Workspace workspace;
-  const bool unstated = stated_range_contradicted(walls_, walls, triad);
+  const bool unstated = stated_range_contradicted(upright_rails_, upright_rails, triad);
   const RailPlanes planes = planes_[index_of(triad)][unstated ? 1 : 0].find(readings, {}, workspace);
-  upright = are_upright(readings, planes, walls, triad);
+  upright = are_upright(readings, planes, upright_rails, triad);
   return planes;
 }
 
 ClippingFinder::Found ClippingFinder::find(std::span<const ImuSample> samples) const {
   Found out;
   out.clippings.resize(samples.size());
-  walls_.classify_all(samples, out.rails.walls, out.clippings);
+  upright_rails_.classify_all(samples, out.rails.upright_rails, out.clippings);
   if (!tilted_) return out;
-  out.rails.planes = find_planes(samples, Triad::gyro, out.rails.walls, out.rails.upright);
-  out.rails.accel_planes = find_planes(samples, Triad::accelerometer, out.rails.walls, out.rails.accel_upright);
+  out.rails.planes = find_planes(samples, Triad::gyro, out.rails.upright_rails, out.rails.upright);
+  out.rails.accel_planes = find_planes(samples, Triad::accelerometer, out.rails.upright_rails, out.rails.accel_upright);
   for (const Triad triad : {Triad::gyro, Triad::accelerometer}) {
     const RailPlanes planes = out.rails.planes_in_use(triad);
     if (!planes.any()) continue;

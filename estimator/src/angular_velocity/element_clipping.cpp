@@ -4,8 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "tumble/angular_velocity/detail/partial_clipping.hpp"
 #include "tumble/angular_velocity/detail/rail_shares.hpp"
+#include "tumble/angular_velocity/detail/subsample_saturation.hpp"
 
 namespace tumble {
 
@@ -48,7 +48,7 @@ bool lopsided(const RailPlane& rail) {
          std::abs(rail.offset_rad_s) > kLopsidedShare * rail.distance_rad_s + 4.0 * std::sqrt(rail.covariance(3, 3));
 }
 
-// With the stated range of the walls where the search has none of its own, and without any.
+// With the stated range of the upright rails where the search has none of its own, and without any.
 std::array<RailPlaneFinder, 2> stated_and_not(RailPlaneFinder::Params params, const std::optional<double>& stated) {
   RailPlaneFinder::Params unstated = params;
   unstated.stated_rad_s = std::nullopt;
@@ -59,13 +59,14 @@ std::array<RailPlaneFinder, 2> stated_and_not(RailPlaneFinder::Params params, co
 }  // namespace
 
 std::array<std::array<RailPlaneFinder, 2>, 2> plane_finders(const ClippingFinder::Params& params) {
-  return {stated_and_not(params.planes, params.walls.stated_gyro_rad_s),
-          stated_and_not(params.accel_planes, params.walls.stated_accel_m_s2)};
+  return {stated_and_not(params.planes, params.upright_rails.stated_gyro_rad_s),
+          stated_and_not(params.accel_planes, params.upright_rails.stated_accel_m_s2)};
 }
 
-bool stated_range_contradicted(const RailDetector& walls, const RailDetector::State& state, Triad triad) {
+bool stated_range_contradicted(const RailDetector& upright_rails, const RailDetector::State& state, Triad triad) {
   const int first = static_cast<int>(first_channel(triad));
-  return walls.disagrees(state, first) || walls.disagrees(state, first + 1) || walls.disagrees(state, first + 2);
+  return upright_rails.disagrees(state, first) || upright_rails.disagrees(state, first + 1) ||
+         upright_rails.disagrees(state, first + 2);
 }
 
 bool are_upright(std::span<const Eigen::Vector3d> readings, const RailPlanes& planes, const RailDetector::State& rails,
@@ -107,11 +108,11 @@ RailPlanes without_plateaus(const RailPlanes& planes, const RailDetector::State&
   return out;
 }
 
-Clipping clip_by_planes(const RailPlanes& planes, Triad triad, const Clipping& by_walls, const ImuSample* before,
-                        const ImuSample& now, const ImuSample* after) {
-  Clipping out = by_walls;
+Clipping clip_by_planes(const RailPlanes& planes, Triad triad, const Clipping& by_upright_rails,
+                        const ImuSample* before, const ImuSample& now, const ImuSample* after) {
+  Clipping out = by_upright_rails;
   std::uint8_t& bits = triad == Triad::gyro ? out.gyro : out.accel;
-  const std::uint8_t unreadable = triad == Triad::gyro ? by_walls.void_gyro : 0;
+  const std::uint8_t unreadable = triad == Triad::gyro ? by_upright_rails.missing_gyro : 0;
   for (std::size_t j = 0; j < 3; ++j) {
     const auto& rail = planes.element[j];
     if (!rail || (unreadable >> j & 1u) != 0) continue;
@@ -127,15 +128,16 @@ Clipping clip_by_planes(const RailPlanes& planes, Triad triad, const Clipping& b
   return out;
 }
 
-void mark_partial(const RailPlanes& planes, const RailDetector& rails, const RailDetector::State& state,
-                  double noise_rad_s, const ImuSample* before, RateObservation& now, const ImuSample* after) {
-  mark_partial(rails, state, noise_rad_s, before, now, after);
+void mark_subsample_saturation(const RailPlanes& planes, const RailDetector& rails, const RailDetector::State& state,
+                               double noise_rad_s, const ImuSample* before, RateObservation& now,
+                               const ImuSample* after) {
+  mark_subsample_saturation(rails, state, noise_rad_s, before, now, after);
   for (std::size_t j = 0; j < 3; ++j) {
     const auto& rail = planes.element[j];
-    const bool flagged = (now.sample.device_clip_flags >> j & 1u) != 0 && (now.clipping.void_gyro >> j & 1u) == 0;
+    const bool flagged = (now.sample.device_clip_flags >> j & 1u) != 0 && (now.clipping.missing_gyro >> j & 1u) == 0;
     if (!rail || !flagged) continue;
     const auto bit = static_cast<std::uint8_t>(1u << j);
-    now.partial = static_cast<std::uint8_t>(now.partial & ~bit);
+    now.subsample_saturated = static_cast<std::uint8_t>(now.subsample_saturated & ~bit);
     const int sign = side(now.sample, Triad::gyro, j);
     const double level = rail->distance_rad_s;
     const double reading = level - rail->short_of(now.sample.angular_velocity_rad_s, sign);
@@ -143,9 +145,9 @@ void mark_partial(const RailPlanes& planes, const RailDetector& rails, const Rai
         free_neighbour(reading, level, static_cast<int>(j), before, after,
                        [&](const Eigen::Vector3d& beside) { return level - rail->short_of(beside, sign); });
     if (level - reading <= rail->tolerance_rad_s || neighbour > reading) continue;
-    const PartialLoss loss = partial_loss(reading, neighbour, level, noise_rad_s);
-    if (!loss.partial) continue;
-    now.partial = static_cast<std::uint8_t>(now.partial | bit);
+    const SubsampleSaturation loss = subsample_saturation(reading, neighbour, level, noise_rad_s);
+    if (!loss.saturated) continue;
+    now.subsample_saturated = static_cast<std::uint8_t>(now.subsample_saturated | bit);
     now.lost_rad_s[static_cast<Eigen::Index>(j)] = sign * loss.lost_rad_s;
     now.lost_sigma_rad_s[static_cast<Eigen::Index>(j)] = loss.sigma_rad_s;
   }

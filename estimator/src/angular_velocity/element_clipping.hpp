@@ -22,11 +22,11 @@ inline std::size_t first_channel(Triad triad) {
   return 3 * index_of(triad);
 }
 
-/// The searches for planes of gyro and accelerometer: with the stated range of the walls, and without any.
+/// The searches for planes of gyro and accelerometer: with the stated range of the upright rails, and without any.
 std::array<std::array<RailPlaneFinder, 2>, 2> plane_finders(const ClippingFinder::Params& params);
 
 /// A stated range that the readings contradict tells the planes nothing.
-bool stated_range_contradicted(const RailDetector& walls, const RailDetector::State& state, Triad triad);
+bool stated_range_contradicted(const RailDetector& upright_rails, const RailDetector::State& state, Triad triad);
 
 /// Whether the rails found, and the plateaus of equal readings, show a device that clips what it delivers: rails
 /// upright, nothing hidden on the axes beside. Two slopes known to be nil tell, a plateau counting for one; one that is
@@ -41,12 +41,13 @@ RailPlanes without_plateaus(const RailPlanes& planes, const RailDetector::State&
 /// plane says so or the device does. A sample that met a rail in a part of its window, beside one that is clipped,
 /// belongs to it: it lies short of the plane by less than half of what the neighbour outside still lacked. `before`,
 /// `after`: null where there is none.
-Clipping clip_by_planes(const RailPlanes& planes, Triad triad, const Clipping& by_walls, const ImuSample* before,
-                        const ImuSample& now, const ImuSample* after);
+Clipping clip_by_planes(const RailPlanes& planes, Triad triad, const Clipping& by_upright_rails,
+                        const ImuSample* before, const ImuSample& now, const ImuSample* after);
 
-/// Finds partial axes as mark_partial() does, with the rail of each element where its plane is known.
-void mark_partial(const RailPlanes& planes, const RailDetector& rails, const RailDetector::State& state,
-                  double noise_rad_s, const ImuSample* before, RateObservation& now, const ImuSample* after);
+/// Finds such axes as mark_subsample_saturation() does, with the rail of each element where its plane is known.
+void mark_subsample_saturation(const RailPlanes& planes, const RailDetector& rails, const RailDetector::State& state,
+                               double noise_rad_s, const ImuSample* before, RateObservation& now,
+                               const ImuSample* after);
 
 /// What rails tell of the slopes of an element, in the order of RigConstants::elements.
 struct ToldSlopes {

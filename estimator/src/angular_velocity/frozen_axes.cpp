@@ -12,8 +12,8 @@ constexpr double kLonger = 10.0;       // than any hold before
 constexpr double kRailShare = 0.9;     // of the stated range, from which on a reading may stand at its rail
 constexpr double kExtremeShare = 0.5;  // and from which on where it is the highest or lowest of the axis
 constexpr double kQuanta = 50.0;       // of the axis, by which another moves: a part of 2 % in this axis is one quantum
-constexpr double kTurning_rad_s = 0.3;  // by which another axis of a gyro changes, for the body to move
-constexpr double kPushed_m_s2 = 1.0;    // and of an accelerometer
+constexpr double kRotating_rad_s = 0.3;  // by which another axis of a gyro changes, for the body to move
+constexpr double kPushed_m_s2 = 1.0;     // and of an accelerometer
 constexpr double kChanging =
     0.2;  // of the samples of a hold, in which another axis changes: read at a fifth of their rate
 // A body that rests: no other axis turns, and forces stay where they were.
@@ -134,7 +134,7 @@ bool FrozenAxes::at_rail(std::size_t channel, const Axis& axis) const {
 
 /// By far more than a quantum of this axis, and with that share of the samples at least.
 bool FrozenAxes::others_move(std::size_t channel, double changing_share, const Axis& axis) const {
-  const double least = std::max(is_gyro(channel) ? kTurning_rad_s : kPushed_m_s2, kQuanta * axis.quantum);
+  const double least = std::max(is_gyro(channel) ? kRotating_rad_s : kPushed_m_s2, kQuanta * axis.quantum);
   for (std::size_t k = 0; k < 2; ++k) {
     const bool changes = axis.other_changes[k] >= changing_share * axis.samples;
     if (changes && axis.other_high[k] - axis.other_low[k] >= least) return true;

@@ -103,7 +103,7 @@ Clipping RailDetector::classify(const ImuSample& sample, State& state) const {
       flipped = c < 3 && channel.clipped && value * channel.last < 0.0 && std::abs(value) >= 0.9 * *level;
     }
     if (flipped) {
-      set_bit(out.void_gyro, c);
+      set_bit(out.missing_gyro, c);
       continue;  // `last` keeps the sign from before the overflow
     }
     channel.clipped = clipped;

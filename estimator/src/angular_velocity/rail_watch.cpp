@@ -26,15 +26,16 @@ constexpr std::size_t kMore = 8;
 // A reading this far below the lowest rail that is looked for is not near one; of an accelerometer gravity is.
 constexpr double kLowShare[] = {0.5, 0.9};
 
-std::array<std::optional<double>, 6> rails_of(const RailDetector& walls, const RailDetector::State& state) {
+std::array<std::optional<double>, 6> rails_of(const RailDetector& upright_rails, const RailDetector::State& state) {
   std::array<std::optional<double>, 6> out;
-  for (int c = 0; c < 6; ++c) out[static_cast<std::size_t>(c)] = walls.rail(state, c);
+  for (int c = 0; c < 6; ++c) out[static_cast<std::size_t>(c)] = upright_rails.rail(state, c);
   return out;
 }
 
 }  // namespace
 
-RailWatch::RailWatch(const Params& params) : walls_(params.clipping.walls), planes_(plane_finders(params.clipping)) {
+RailWatch::RailWatch(const Params& params)
+    : upright_rails_(params.clipping.upright_rails), planes_(plane_finders(params.clipping)) {
   require_fields(params);
   readings_max_ = static_cast<std::size_t>(params.readings_max);
 }
@@ -86,7 +87,7 @@ void RailWatch::remember(const Vector3d& reading, Triad triad, Memory& memory) c
 RailPlanes RailWatch::search(Triad triad, State& state) const {
   const Memory& memory = state.memory[index_of(triad)];
   const RailPlanes& known = triad == Triad::gyro ? state.known.planes : state.known.accel_planes;
-  const bool unstated = stated_range_contradicted(walls_, state.known.walls, triad);
+  const bool unstated = stated_range_contradicted(upright_rails_, state.known.upright_rails, triad);
   RailPlanes found = planes_[index_of(triad)][unstated ? 1 : 0].find(memory.readings, known, state.work);
   for (std::size_t j = 0; j < 3 && memory.forgot; ++j) {
     const auto& before = known.element[j];
@@ -111,7 +112,7 @@ bool RailWatch::observe(const Vector3d& reading, Triad triad, State& state) cons
   if (!ended && memory.unsearched < std::max<std::size_t>(2, memory.near / kMore)) return false;
   memory.unsearched = 0;
   const RailPlanes planes = search(triad, state);
-  const bool upright = are_upright(memory.readings, planes, state.known.walls, triad);
+  const bool upright = are_upright(memory.readings, planes, state.known.upright_rails, triad);
   RailPlanes& known = triad == Triad::gyro ? state.known.planes : state.known.accel_planes;
   bool& known_upright = triad == Triad::gyro ? state.known.upright : state.known.accel_upright;
   const bool changed = planes != known || upright != known_upright;
@@ -121,9 +122,9 @@ bool RailWatch::observe(const Vector3d& reading, Triad triad, State& state) cons
 }
 
 bool RailWatch::observe(const ImuSample& sample, State& state) const {
-  const auto before = rails_of(walls_, state.known.walls);
-  walls_.observe(sample, state.known.walls);
-  bool changed = before != rails_of(walls_, state.known.walls);
+  const auto before = rails_of(upright_rails_, state.known.upright_rails);
+  upright_rails_.observe(sample, state.known.upright_rails);
+  bool changed = before != rails_of(upright_rails_, state.known.upright_rails);
   for (const Triad triad : {Triad::gyro, Triad::accelerometer}) {
     if (observe(reading_of(sample, triad), triad, state)) changed = true;
   }
@@ -132,9 +133,10 @@ bool RailWatch::observe(const ImuSample& sample, State& state) const {
 
 Clipping RailWatch::judge(const ImuSample* before, const ImuSample& sample, const State& state,
                           const ImuSample* after) const {
-  RailDetector::State walls = state.known.walls;
-  Clipping out = walls_.classify(sample, walls);
-  if (after != nullptr) walls_.add_edge(sample, *after, walls_.classify(*after, walls), walls, out);
+  RailDetector::State upright_rails = state.known.upright_rails;
+  Clipping out = upright_rails_.classify(sample, upright_rails);
+  if (after != nullptr)
+    upright_rails_.add_edge(sample, *after, upright_rails_.classify(*after, upright_rails), upright_rails, out);
   for (const Triad triad : {Triad::gyro, Triad::accelerometer})
     out = clip_by_planes(state.known.planes_in_use(triad), triad, out, before, sample, after);
   return out;

@@ -56,7 +56,7 @@ template <StateOf<Clipping> Self, class Visitor>
 void members(Self& s, Visitor& visit) {
   visit("clipping.gyro", s.gyro);
   visit("clipping.accel", s.accel);
-  visit("clipping.void_gyro", s.void_gyro);
+  visit("clipping.missing_gyro", s.missing_gyro);
 }
 
 template <StateOf<RailDetector::Channel> Self, class Visitor>
@@ -103,7 +103,7 @@ void members(Self& s, Visitor& visit) {
 
 template <StateOf<KnownRails> Self, class Visitor>
 void members(Self& s, Visitor& visit) {
-  visit("rails.walls", s.walls);
+  visit("rails.upright_rails", s.upright_rails);
   visit("rails.planes", s.planes);
   visit("rails.accel_planes", s.accel_planes);
   visit("rails.upright", s.upright);

@@ -23,7 +23,7 @@ void check(const AuxiliaryImu& p) {
   require_within("auxiliary_imu gyro_error_rad_s", p.gyro_error_rad_s, 1e-9, 10.0);
   require_within("auxiliary_imu accel_error_m_s2", p.accel_error_m_s2, 1e-9, 10.0);
   require_within("auxiliary_imu share_error", p.share_error, 0.0, 1.0);
-  require_within("auxiliary_imu place_error_m", p.place_error_m, 1e-9, 1.0);
+  require_within("auxiliary_imu position_error_m", p.position_error_m, 1e-9, 1.0);
   require_within("auxiliary_imu clock_error_s", p.clock_error_s, 0.0, 0.1);
   for (const double value : p.T_IC.matrix().reshaped()) require_within("auxiliary_imu T_IC", value, -100.0, 100.0);
 }
@@ -48,7 +48,7 @@ RigConstants::Matrix covariance_of(const RateModelParams& p) {
 }
 
 // What an impact within the window may add to the loss of a partly clipped reading (one standard deviation), rad/s.
-constexpr double kPartialInContact = 0.25;
+constexpr double kSubsampleInContact = 0.25;
 
 // The constants that a factor depends on: lever arm and accelerometer's bias in flight, inertia in Euler's equation.
 constexpr int kLever = 0, kAccelBias = 6, kInertia = 9;
@@ -196,7 +196,7 @@ double RateModel::gyro_information(const RateObservation& observation, const Rat
     return 1.0 / (gyro_sigma_rad_s_ * gyro_sigma_rad_s_ + change * change + lost * lost);
   }
   if ((observation.read_in_part() >> axis & 1u) == 0) return 1.0 / (gyro_sigma_rad_s_ * gyro_sigma_rad_s_);
-  const double impact = kPartialInContact * (1.0 - estimate.flight_weight), lost = observation.lost_sigma_rad_s[axis];
+  const double impact = kSubsampleInContact * (1.0 - estimate.flight_weight), lost = observation.lost_sigma_rad_s[axis];
   return 1.0 / (lost * lost + impact * impact);
 }
 
@@ -349,7 +349,7 @@ arrow::StateVector RateModel::scaled(const Eigen::Matrix<double, 6, 1>& differen
 
 RateSource rate_source(const RateObservation& o, const RateEstimate& e, const Eigen::Matrix3d& covariance,
                        double sigma) {
-  const int clipped = o.clipping.gyro | o.clipping.void_gyro;
+  const int clipped = o.clipping.gyro | o.clipping.missing_gyro;
   // a reading that may stand at a rail nobody has seen is not called clipped, but it is none that was measured
   if (clipped == 0) return o.may_hide() == 0 ? RateSource::measured : RateSource::bounded_only;
   if (e.flight_weight >= 0.5) return RateSource::recovered_flight;

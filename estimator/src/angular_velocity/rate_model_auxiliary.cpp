@@ -54,7 +54,7 @@ void RateModel::add_auxiliary_imus(const RateObservation& observation, const Rat
         flight_factor(estimate.knot, {.lever_arm_m = mount.T_IC.translation()}, Vector3d::Zero());
     const Vector3d force = observation.sample.specific_force_m_s2 - rig.accel_bias_m_s2 + rotation.residual;
     const double misplaced =
-        mount.place_error_m * (estimate.knot.rate_rad_s.squaredNorm() + estimate.knot.acceleration_rad_s2.norm());
+        mount.position_error_m * (estimate.knot.rate_rad_s.squaredNorm() + estimate.knot.acceleration_rad_s2.norm());
     const Eigen::Matrix3d gyro = seen_by(R_CI, mount.gyro_elements, reading.rate_by_elements);
     const Eigen::Matrix3d accel = seen_by(R_CI, mount.accel_elements, reading.force_by_elements);
     for (int j = 0; j < 3; ++j) {

@@ -6,8 +6,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "tumble/angular_velocity/detail/partial_clipping.hpp"
 #include "tumble/angular_velocity/detail/rate_model.hpp"
+#include "tumble/angular_velocity/detail/subsample_saturation.hpp"
 #include "tumble/angular_velocity/detail/truncated_normal.hpp"
 
 namespace tumble {
@@ -103,20 +103,20 @@ void RateModel::update_bounds(const RateObservation& observation, const RigConst
   }
 }
 
-void mark_partial(const RailDetector& rails, const RailDetector::State& state, double noise_rad_s,
-                  const ImuSample* before, RateObservation& now, const ImuSample* after) {
-  now.partial = 0;
+void mark_subsample_saturation(const RailDetector& rails, const RailDetector::State& state, double noise_rad_s,
+                               const ImuSample* before, RateObservation& now, const ImuSample* after) {
+  now.subsample_saturated = 0;
   for (int j = 0; j < 3; ++j) {
-    const bool flagged = (now.sample.device_clip_flags >> j & 1u) != 0 && (now.clipping.void_gyro >> j & 1u) == 0;
+    const bool flagged = (now.sample.device_clip_flags >> j & 1u) != 0 && (now.clipping.missing_gyro >> j & 1u) == 0;
     const std::optional<double> rail = rails.rail(state, j);
     if (!flagged || !rail) continue;
     const double reading = now.sample.angular_velocity_rad_s[j], sign = std::copysign(1.0, reading);
     const double neighbour = free_neighbour(std::abs(reading), *rail, j, before, after,
                                             [&](const Vector3d& beside) { return sign * beside[j]; });
     if (neighbour > std::abs(reading)) continue;  // a dip in a plateau: how deep it is hidden nobody can say
-    const PartialLoss loss = partial_loss(std::abs(reading), neighbour, *rail, noise_rad_s);
-    if (!loss.partial) continue;
-    now.partial = static_cast<std::uint8_t>(now.partial | 1u << j);
+    const SubsampleSaturation loss = subsample_saturation(std::abs(reading), neighbour, *rail, noise_rad_s);
+    if (!loss.saturated) continue;
+    now.subsample_saturated = static_cast<std::uint8_t>(now.subsample_saturated | 1u << j);
     now.lost_rad_s[j] = sign * loss.lost_rad_s;
     now.lost_sigma_rad_s[j] = loss.sigma_rad_s;
   }

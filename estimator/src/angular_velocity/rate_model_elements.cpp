@@ -55,14 +55,14 @@ void RateModel::add_elements(const RateObservation& observation, const RateEstim
                              arrow::Block& block, arrow::Corner& corner, const RigConstants::Matrix* doubted) const {
   const RateFactor gyro = element_factor(at_reading(observation, estimate), rig, corrected_rate(observation, estimate));
   for (int j = 0; j < 3; ++j) {
-    if ((observation.clipping.void_gyro >> j & 1u) != 0) continue;
+    if ((observation.clipping.missing_gyro >> j & 1u) != 0) continue;
     double information = gyro_information(observation, estimate, j);
     double pull = information * gyro.residual[j];
-    if ((observation.partial >> j & 1u) != 0) {
+    if ((observation.subsample_saturated >> j & 1u) != 0) {
       pull = information * (gyro.residual[j] - observation.lost_rad_s[j]);
     } else if ((observation.clipping.gyro >> j & 1u) != 0) {
       const bool kept = gyro.residual[j] * observation.sample.angular_velocity_rad_s[j] >= 0.0;
-      if (kept && !estimate.soft_bounds) continue;  // a wall: rate_smoother.md (R8)
+      if (kept && !estimate.soft_bounds) continue;  // a hard bound: rate_smoother.md (R8)
       information = 1.0 / (params_.expert.readings.rail_sigma_rad_s * params_.expert.readings.rail_sigma_rad_s);
       pull = information * gyro.residual[j];
       if (estimate.soft_bounds) {

@@ -80,7 +80,8 @@ void RateModel::add_errors(const RateObservation& observation, const RateEstimat
   const Vector3d reading = corrected_rate(observation, estimate);
   const RateFactor gyro = by_elements ? element_factor(at_reading(observation, estimate), rig, reading)
                                       : gyro_factor(at_reading(observation, estimate), rig, reading);
-  const unsigned lost = observation.clipping.void_gyro | (observation.clipping.gyro & ~observation.partial);
+  const unsigned lost =
+      observation.clipping.missing_gyro | (observation.clipping.gyro & ~observation.subsample_saturated);
   for (int j = 0; j < 3; ++j) {
     if ((lost >> j & 1u) != 0) continue;
     const Eigen::RowVector3d sees = gyro.by_knot.row(j).head<3>();
@@ -90,7 +91,7 @@ void RateModel::add_errors(const RateObservation& observation, const RateEstimat
       by_errors.segment<3>(SensorErrors::kFelt + 3 * i) = sees[i] * force.transpose();
     }
     const double information = gyro_information(observation, estimate, j);
-    const double part = (observation.partial >> j & 1u) != 0 ? observation.lost_rad_s[j] : 0.0;
+    const double part = (observation.subsample_saturated >> j & 1u) != 0 ? observation.lost_rad_s[j] : 0.0;
     const Row pull = information * by_errors;
     block.topRows<3>().noalias() -= sees.transpose() * pull;
     block.bottomRows<3>().noalias() += observation.gyro_age_s / time_scale_s_ * sees.transpose() * pull;
@@ -129,7 +130,7 @@ Eigen::Matrix3d RateModel::reported(const Eigen::Matrix3d& covariance, const Rat
   const double factor = 1.0 + (params_.expert.contact.sigma_factor - 1.0) * (1.0 - estimate.flight_weight);
   Vector3d wider = Vector3d::Ones();
   for (int j = 0; j < 3; ++j) {
-    if ((observation.clipping.gyro >> j & 1u) != 0 || (observation.clipping.void_gyro >> j & 1u) != 0)
+    if ((observation.clipping.gyro >> j & 1u) != 0 || (observation.clipping.missing_gyro >> j & 1u) != 0)
       wider[j] = factor;
   }
   const Vector3d late = params_.expert.readings.gyro_time_sigma_s * estimate.knot.acceleration_rad_s2;

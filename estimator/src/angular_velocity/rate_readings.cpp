@@ -25,10 +25,10 @@ void tell_rails(const ClippingFinder& finder, const KnownRails& rails, RateRepor
   health.rails_upright = rails.upright;
   for (int c = 0; c < 6; ++c) {
     const auto channel = static_cast<std::size_t>(c);
-    health.rail[channel] = finder.walls().rail(rails.walls, c);
+    health.rail[channel] = finder.upright_rails().rail(rails.upright_rails, c);
     const auto& plane = (c < 3 ? planes : accel_planes).element[static_cast<std::size_t>(c % 3)];
     if (plane) health.rail[channel] = plane->distance_rad_s;
-    health.rail_disagrees[channel] = finder.walls().disagrees(rails.walls, c);
+    health.rail_disagrees[channel] = finder.upright_rails().disagrees(rails.upright_rails, c);
   }
 }
 
@@ -47,15 +47,16 @@ void mark_doubtful(const RailPlaneFinder::Params& expected, const ClippingFinder
   const std::vector<Neighbours> beside = other_readings(samples, Triad::gyro);
   LeastRails least;
   for (const RateObservation& o : observations) {
-    if (o.clipping.void_gyro == 0) least.add(o.sample.angular_velocity_rad_s);
+    if (o.clipping.missing_gyro == 0) least.add(o.sample.angular_velocity_rad_s);
   }
   for (std::size_t k = 0; k < observations.size(); ++k) {
     const auto [before, after] = beside[k];
-    mark_partial(planes, finder.walls(), rails.walls, noise_rad_s, before, observations[k], after);
+    mark_subsample_saturation(planes, finder.upright_rails(), rails.upright_rails, noise_rad_s, before, observations[k],
+                              after);
     if (rails.upright) continue;
     doubt_unseen_rails(planes, least, noise_rad_s, before, observations[k], after);
   }
-  if (!rails.upright) doubt_level_tops(planes, least, expected.offset_share, noise_rad_s, observations);
+  if (!rails.upright) doubt_motion_plateaus(planes, least, expected.offset_share, noise_rad_s, observations);
 }
 
 // Readings that a triad says twice, and how old they are.

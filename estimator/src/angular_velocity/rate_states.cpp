@@ -22,7 +22,7 @@ std::vector<std::optional<HeldRate>> read_in_time(std::span<const ImuSample> sam
   std::vector<std::uint8_t> hidden(samples.size());
   for (std::size_t k = 0; k < hidden.size(); ++k) {
     const RateObservation& o = readings.observations[k];
-    hidden[k] = static_cast<std::uint8_t>(o.clipping.gyro | o.clipping.void_gyro | o.read_in_part());
+    hidden[k] = static_cast<std::uint8_t>(o.clipping.gyro | o.clipping.missing_gyro | o.read_in_part());
   }
   return rates_between_readings(samples, hidden, readings.gyro_held);
 }
@@ -109,7 +109,7 @@ void count(const RateState& state, const RateObservation& observation, RateRepor
   report.recovered_flight += state.source == RateSource::recovered_flight;
   report.recovered_contact += state.source == RateSource::recovered_contact;
   report.bounded_only += state.source == RateSource::bounded_only;
-  report.void_readings += observation.clipping.void_gyro != 0;
+  report.missing_readings += observation.clipping.missing_gyro != 0;
   report.doubted_axes.push_back(static_cast<std::uint8_t>(observation.may_hide() & ~state.clipped_axes));
 }
 
@@ -140,7 +140,7 @@ std::vector<RateState> rate_states(const RateSmoother::Params& params, std::span
       state.covariance_rad2_s2.diagonal() += own[k]->variance_rad2_s2;
     }
     state.time_ns = samples[k].time_ns;
-    state.clipped_axes = o.clipping.gyro | o.clipping.void_gyro;
+    state.clipped_axes = o.clipping.gyro | o.clipping.missing_gyro;
     state.source = rate_source(o, estimate, state.covariance_rad2_s2, params.recovered_sigma_rad_s);
     if (near[k] != 0 && state.source == RateSource::measured) state.source = RateSource::bounded_only;
     count(state, o, health);

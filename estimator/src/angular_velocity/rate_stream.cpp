@@ -200,9 +200,9 @@ void RateStream::append(const ImuSample& sample, std::span<const AuxiliaryReadin
   sense_.step(sample, state.sense);
   const bool changed = rails_.observe(sample, state.rails);
   Knot knot;
-  knot.by_walls = rails_.walls().classify(sample, state.rails.known.walls);
-  holds_.observe(sample, (knot.by_walls.gyro | knot.by_walls.void_gyro) != 0, state.holds);
-  knot.observation = {sample, knot.by_walls, rests_.observe(sample, state.rests)};
+  knot.by_upright_rails = rails_.upright_rails().classify(sample, state.rails.known.upright_rails);
+  holds_.observe(sample, (knot.by_upright_rails.gyro | knot.by_upright_rails.missing_gyro) != 0, state.holds);
+  knot.observation = {sample, knot.by_upright_rails, rests_.observe(sample, state.rests)};
   std::copy(auxiliary_imus.begin(), auxiliary_imus.end(), knot.observation.auxiliary_imus.begin());
   const HeldReading& held = state.holds.of(Triad::gyro);
   knot.repeats = held.repeats && !knot.observation.at_rest;
@@ -213,7 +213,7 @@ void RateStream::append(const ImuSample& sample, std::span<const AuxiliaryReadin
   state.window.push_back(knot);
   state.window.back().approach_rad_s = approach(state.window);
   ++state.samples;
-  if (knot.by_walls.void_gyro == 0) state.least.add(sample.angular_velocity_rad_s);
+  if (knot.by_upright_rails.missing_gyro == 0) state.least.add(sample.angular_velocity_rad_s);
   if (changed) classify_again(state);
   judge(changed, state);
   state.extremes[0] = state.extremes[0].cwiseMin(sample.angular_velocity_rad_s);

@@ -58,7 +58,7 @@ void members(Self& s, Visitor& visit) {
   visit("observation.sample", s.sample);
   visit("observation.clipping", s.clipping);
   visit("observation.at_rest", s.at_rest);
-  visit("observation.partial", s.partial);
+  visit("observation.subsample_saturated", s.subsample_saturated);
   visit("observation.lone", s.lone);
   visit("observation.doubted", s.doubted);
   visit("observation.lost_rad_s", s.lost_rad_s);
@@ -83,7 +83,7 @@ void members(Self& s, Visitor& visit) {
 template <StateOf<RateStream::Knot> Self, class Visitor>
 void members(Self& s, Visitor& visit) {
   visit("knot.observation", s.observation);
-  visit("knot.by_walls", s.by_walls);
+  visit("knot.by_upright_rails", s.by_upright_rails);
   visit("knot.estimate", s.estimate);
   visit("knot.covariance_rad2_s2", s.covariance_rad2_s2);
   visit("knot.approach_rad_s", s.approach_rad_s);
@@ -184,7 +184,7 @@ void members(Self& s, Visitor& visit) {
   visit("auxiliary.gyro_error_rad_s", s.gyro_error_rad_s);
   visit("auxiliary.accel_error_m_s2", s.accel_error_m_s2);
   visit("auxiliary.share_error", s.share_error);
-  visit("auxiliary.place_error_m", s.place_error_m);
+  visit("auxiliary.position_error_m", s.position_error_m);
   visit("auxiliary.clock_error_s", s.clock_error_s);
   visit("auxiliary.gyro_elements", s.gyro_elements);
   visit("auxiliary.accel_elements", s.accel_elements);

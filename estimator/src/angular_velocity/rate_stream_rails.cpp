@@ -67,11 +67,12 @@ Beside readings_beside(std::size_t k, const RateStream::State& state) {
 
 }  // namespace
 
-// What walls say of the window now that more is known of them.
+// What upright rails say of the window now that more is known of them.
 void RateStream::classify_again(State& state) const {
-  RailDetector::State& walls = state.rails.known.walls;
-  for (RailDetector::Channel& channel : walls.channels) channel.clipped = false;
-  for (Knot& knot : state.window) knot.by_walls = rails_.walls().classify(knot.observation.sample, walls);
+  RailDetector::State& upright_rails = state.rails.known.upright_rails;
+  for (RailDetector::Channel& channel : upright_rails.channels) channel.clipped = false;
+  for (Knot& knot : state.window)
+    knot.by_upright_rails = rails_.upright_rails().classify(knot.observation.sample, upright_rails);
 }
 
 // Reads samples of the window with the rails as they are known: `all`, or the newest and those that say the reading
@@ -91,15 +92,16 @@ void RateStream::judge(bool all, State& state) const {
     const ImuSample* const sample_after =
         k + 1 < state.window.size() ? &state.window[k + 1].observation.sample : nullptr;
     const std::uint8_t read = now.unseen();
-    Clipping by_walls = knot.by_walls;
+    Clipping by_upright_rails = knot.by_upright_rails;
     if (sample_after != nullptr) {
-      rails_.walls().add_edge(now.sample, *sample_after, state.window[k + 1].by_walls, rails.walls, by_walls);
+      rails_.upright_rails().add_edge(now.sample, *sample_after, state.window[k + 1].by_upright_rails,
+                                      rails.upright_rails, by_upright_rails);
     }
-    now.clipping = clip_by_planes(planes, Triad::gyro, by_walls, before, now.sample, after);
+    now.clipping = clip_by_planes(planes, Triad::gyro, by_upright_rails, before, now.sample, after);
     now.clipping =
         clip_by_planes(accel_planes, Triad::accelerometer, now.clipping, sample_before, now.sample, sample_after);
     now.accel_rows = accel_rows;
-    mark_partial(planes, rails_.walls(), rails.walls, noise, before, now, after);
+    mark_subsample_saturation(planes, rails_.upright_rails(), rails.upright_rails, noise, before, now, after);
     knot.near = rails.upright ? std::uint8_t{0} : may_meet_rails(before, now.sample, after, planes);
     doubt_unseen(k, state);
     const bool newest = k + 1 == state.window.size();
@@ -153,7 +155,7 @@ void RateStream::doubt_possible_rails(State& state) const {
   const unsigned stood = state.window.front().observation.doubted;
   forget_doubts(state);
   for (int j = 0; j < 3; ++j) {
-    if (rails_.walls().rail(state.rails.known.walls, j)) continue;
+    if (rails_.upright_rails().rail(state.rails.known.upright_rails, j)) continue;
     for (std::size_t k = 0; k < state.window.size();) {
       const int sign = state.window[k].observation.sample.angular_velocity_rad_s[j] < 0.0 ? -1 : 1;
       std::size_t end = k;
@@ -202,7 +204,7 @@ void RateStream::doubt_run(int axis, std::size_t first, std::size_t last, State&
   if (cut < kKink * (highest - lowest) || cut < kPossibleNoise * noise) return;
   for (std::size_t k = first; k <= last; ++k) {
     RateObservation& observation = state.window[k].observation;
-    if (((observation.clipping.gyro | observation.clipping.void_gyro) & bit) != 0) continue;
+    if (((observation.clipping.gyro | observation.clipping.missing_gyro) & bit) != 0) continue;
     observation.lone = static_cast<std::uint8_t>(observation.lone & ~bit);
     observation.doubted = static_cast<std::uint8_t>(observation.doubted | bit);
     // all of the run are cut off together: what they say is one reading's word

@@ -87,7 +87,7 @@ RateState RateStream::to_state(std::size_t at, const State& state) const {
     out.covariance_rad2_s2.diagonal() += knot.held.stale().cwiseAbs2();
   }
   out.covariance_rad2_s2.diagonal() += frozen_.rate_variance_rad2_s2(out.time_ns, state.frozen);
-  out.clipped_axes = knot.observation.clipping.gyro | knot.observation.clipping.void_gyro;
+  out.clipped_axes = knot.observation.clipping.gyro | knot.observation.clipping.missing_gyro;
   out.source = rate_source(knot.observation, knot.estimate, covariance, params_.recovered_sigma_rad_s);
   if (out.source == RateSource::measured && near_rails(at, state)) out.source = RateSource::bounded_only;
   return out;

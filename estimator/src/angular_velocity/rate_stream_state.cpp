@@ -36,8 +36,9 @@ bool RateStream::equal(const State& a, const State& b) {
     const RateEstimate &e = x.estimate, &f = y.estimate;
     return p.time_ns == q.time_ns && p.angular_velocity_rad_s == q.angular_velocity_rad_s &&
            p.specific_force_m_s2 == q.specific_force_m_s2 && p.device_clip_flags == q.device_clip_flags &&
-           x.observation.clipping == y.observation.clipping && x.by_walls == y.by_walls &&
-           x.observation.at_rest == y.observation.at_rest && x.observation.partial == y.observation.partial &&
+           x.observation.clipping == y.observation.clipping && x.by_upright_rails == y.by_upright_rails &&
+           x.observation.at_rest == y.observation.at_rest &&
+           x.observation.subsample_saturated == y.observation.subsample_saturated &&
            x.observation.lone == y.observation.lone && x.observation.doubted == y.observation.doubted &&
            x.repeats == y.repeats && x.held == y.held && x.near == y.near &&
            x.observation.lost_rad_s == y.observation.lost_rad_s &&

@@ -64,7 +64,7 @@ TriadReadings readings_of(std::span<const ImuSample> samples, std::span<const Cl
     const double at_s = seconds(samples[k].time_ns - samples[0].time_ns) - (held ? held->behind_s(k) : 0.0);
     if (out.size() > 0 && !(at_s > out.time_s.back() + kApart_s)) continue;
     if (triad == Triad::gyro) {
-      out.add(at_s, samples[k].angular_velocity_rad_s, (clippings[k].gyro | clippings[k].void_gyro) != 0);
+      out.add(at_s, samples[k].angular_velocity_rad_s, (clippings[k].gyro | clippings[k].missing_gyro) != 0);
     } else {
       out.add(at_s, samples[k].specific_force_m_s2, clippings[k].accel != 0);
     }
@@ -72,7 +72,7 @@ TriadReadings readings_of(std::span<const ImuSample> samples, std::span<const Cl
   return out;
 }
 
-struct Place {
+struct Instant {
   double time_s;
   Matrix3d by_lever;  ///< [alpha]x + [w]x [w]x
 };
@@ -93,8 +93,8 @@ bool force_at(const TriadReadings& force, double time_s, std::size_t& from, Vect
   return true;
 }
 
-std::vector<Place> places(const TriadReadings& gyro) {
-  std::vector<Place> out;
+std::vector<Instant> instants_of(const TriadReadings& gyro) {
+  std::vector<Instant> out;
   for (std::size_t k = 1; k + 1 < gyro.size() && out.size() < kSamplesMax; ++k) {
     const Vector3d &before = gyro.value[k - 1], &w = gyro.value[k], &after = gyro.value[k + 1];
     if (w.norm() < kRateMin_rad_s || gyro.clipped[k - 1] || gyro.clipped[k] || gyro.clipped[k + 1]) continue;
@@ -107,7 +107,8 @@ std::vector<Place> places(const TriadReadings& gyro) {
 }
 
 // Robust cost of a delay, least over lever arm and bias: residuals of rate_smoother.md (R13).
-double cost(const TriadReadings& accel, std::span<const Place> places, const Vector3d& lever_arm_m, double delay_s) {
+double cost(const TriadReadings& accel, std::span<const Instant> instants, const Vector3d& lever_arm_m,
+            double delay_s) {
   Unknown prior, at, information;
   prior << lever_arm_m, Vector3d::Zero();
   information << Vector3d::Constant(1.0 / (kLeverSigma_m * kLeverSigma_m)),
@@ -119,14 +120,14 @@ double cost(const TriadReadings& accel, std::span<const Place> places, const Vec
     Unknown g = information.cwiseProduct(prior);
     sum = 0.0;
     std::size_t from = 0;
-    for (const Place& place : places) {
+    for (const Instant& instant : instants) {
       Vector3d force;
-      if (!force_at(accel, place.time_s + delay_s, from, force)) {
+      if (!force_at(accel, instant.time_s + delay_s, from, force)) {
         sum += 1.0;
         continue;
       }
       Eigen::Matrix<double, 3, 6> A;
-      A << place.by_lever, Matrix3d::Identity();
+      A << instant.by_lever, Matrix3d::Identity();
       const double r2 = (A * at - force).squaredNorm() / (scale * scale), ratio = 1.0 / (1.0 + r2);
       sum += r2 * ratio;
       const double weight = ratio * ratio / (scale * scale);
@@ -225,7 +226,7 @@ TriadDelay struck(const TriadReadings& gyro, const TriadReadings& accel, double 
 
 // By how it flies; 0 where that tells nothing.
 double flown_s(const TriadReadings& gyro, const TriadReadings& accel, const Vector3d& lever_arm_m, double period_s) {
-  const std::vector<Place> turning = places(gyro);
+  const std::vector<Instant> turning = instants_of(gyro);
   if (turning.size() < kSamplesMin) return 0.0;
   const auto of = [&](double shift) { return cost(accel, turning, lever_arm_m, shift * period_s); };
   const double none = of(0.0);

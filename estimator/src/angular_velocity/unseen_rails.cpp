@@ -63,7 +63,7 @@ void doubt_unseen_rails(const RailPlanes& planes, const LeastRails& least, doubl
   for (Eigen::Index j = 0; j < 3; ++j) {
     const auto& own = planes.element[static_cast<std::size_t>(j)];
     const int sign = reading[j] < 0.0 ? -1 : 1;
-    const unsigned told = now.clipping.gyro | now.clipping.void_gyro | now.partial;
+    const unsigned told = now.clipping.gyro | now.clipping.missing_gyro | now.subsample_saturated;
     if ((own && own->seen(sign)) || (told >> j & 1u) != 0) continue;
     const double beside = beside_of(reading, j);
     if (std::abs(reading[j]) < (1.0 - kBesideRail) * rail - kUnseenTilt * beside) continue;
@@ -78,8 +78,8 @@ void doubt_unseen_rails(const RailPlanes& planes, const LeastRails& least, doubl
   }
 }
 
-void doubt_level_tops(const RailPlanes& planes, const LeastRails& least, double offset_share, double noise_rad_s,
-                      std::span<RateObservation> observations) {
+void doubt_motion_plateaus(const RailPlanes& planes, const LeastRails& least, double offset_share, double noise_rad_s,
+                           std::span<RateObservation> observations) {
   const double from = (1.0 - kElementsApart * offset_share) * lowest_rail(planes);
   const bool flags = std::any_of(observations.begin(), observations.end(),
                                  [](const RateObservation& o) { return o.sample.device_clip_flags != 0; });
@@ -108,7 +108,7 @@ void doubt_level_tops(const RailPlanes& planes, const LeastRails& least, double 
         if (least.refute(observations[first].sample.angular_velocity_rad_s, axis)) continue;
         for (std::size_t i = first; i <= last; ++i) {
           RateObservation& o = observations[i];
-          if (((o.clipping.gyro | o.clipping.void_gyro) >> j & 1u) != 0) continue;
+          if (((o.clipping.gyro | o.clipping.missing_gyro) >> j & 1u) != 0) continue;
           const double sigma = (o.lone >> j & 1u) != 0 ? o.lost_sigma_rad_s[axis] : noise_rad_s;
           o.lone = static_cast<std::uint8_t>(o.lone & ~(1u << j));
           o.doubted = static_cast<std::uint8_t>(o.doubted | 1u << j);

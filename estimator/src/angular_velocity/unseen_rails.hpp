@@ -21,7 +21,7 @@ void doubt_unseen_rails(const RailPlanes& planes, const LeastRails& least, doubl
 /// entered and left. `offset_share`: of the rail, how far elements differ (RailPlaneFinder::Params). Nothing for a
 /// device that flags what it clips, or where no rail was seen, or where the element was read far beyond. Sets
 /// RateObservation::doubted. O(N).
-void doubt_level_tops(const RailPlanes& planes, const LeastRails& least, double offset_share, double noise_rad_s,
-                      std::span<RateObservation> observations);
+void doubt_motion_plateaus(const RailPlanes& planes, const LeastRails& least, double offset_share, double noise_rad_s,
+                           std::span<RateObservation> observations);
 
 }  // namespace tumble

@@ -37,28 +37,28 @@ Status CarriedLive::push(const ImuSample& sample, State& state, std::optional<Ra
   const Clipping judged = watch_.judge(latest, sample, state.rails);
   state.signs.push_back(clip_signs(sample, judged));
   HoldWatch::State holds = state.holds;
-  HoldWatch().observe(sample, (judged.gyro | judged.void_gyro) != 0, holds);
+  HoldWatch().observe(sample, (judged.gyro | judged.missing_gyro) != 0, holds);
   const ClippedElements known{rows_of(state.rails.known.planes), state.signs};
   const Status status = stream_.push(sample, known, state.stream, out, true, holds);
   if (!status.ok()) return status;
   state.holds = holds;
   state.news = watch_.observe(sample, state.rails);
-  watch_.walls().classify(sample, state.rails.known.walls);  // carries what is clipped just now
+  watch_.upright_rails().classify(sample, state.rails.known.upright_rails);  // carries what is clipped just now
   return status;
 }
 
 /// The newest sample of the window is judged by `next` too, and all of them where the rails are known better now.
 void CarriedLive::judge_window(const ImuSample& next, State& state) const {
   const std::vector<CarriedStream::Reading>& window = state.stream.readings;
-  RailDetector::State& walls = state.rails.known.walls;
+  RailDetector::State& upright_rails = state.rails.known.upright_rails;
   if (state.news) {
-    for (RailDetector::Channel& channel : walls.channels) channel.clipped = false;
+    for (RailDetector::Channel& channel : upright_rails.channels) channel.clipped = false;
   }
   for (std::size_t k = state.news || window.empty() ? 0 : window.size() - 1; k < window.size(); ++k) {
     const ImuSample* const before = k > 0 ? &window[k - 1].sample : nullptr;
     const ImuSample& after = k + 1 < window.size() ? window[k + 1].sample : next;
     state.signs.push_back(clip_signs(window[k].sample, watch_.judge(before, window[k].sample, state.rails, &after)));
-    if (state.news) watch_.walls().classify(window[k].sample, walls);
+    if (state.news) watch_.upright_rails().classify(window[k].sample, upright_rails);
   }
 }
 

@@ -141,7 +141,7 @@ void Node::move(const System::StateVector& step) {
   angular_acceleration_rad_s2 += step.segment<3>(kAngular);
   a_W_m_s2 += step.segment<3>(kHand);
   v_W_m_s += step.segment<3>(kVelocity);
-  p_W_m += step.segment<3>(kPlace);
+  p_W_m += step.segment<3>(kPosition);
 }
 
 void Constants::move(const System::BorderVector& step) {
@@ -255,10 +255,10 @@ Motion::Motion(const Params& params) : params_(params) {
   row << -decay, 0.0, 0.0, 1.0, 0.0, 0.0;
   hand_ = row.transpose() * row / (density * h);
   row << -0.5 * h, -1.0, 0.0, -0.5 * h, 1.0, 0.0;
-  way_ = row.transpose() * row / (density * h * h * h / 12.0 + 1e-10);
+  kinematics_ = row.transpose() * row / (density * h * h * h / 12.0 + 1e-10);
   const double leak = std::exp(-h / params.position_leak_s);
   row << 0.0, -0.5 * h, -leak, 0.0, -0.5 * h, 1.0;
-  way_ += row.transpose() * row / (density * std::pow(h, 5) / 120.0 + 1e-10);
+  kinematics_ += row.transpose() * row / (density * std::pow(h, 5) / 120.0 + 1e-10);
 }
 
 // carried.md (C4), (C5)
@@ -278,7 +278,7 @@ double Motion::add_attitude(const Node& from, const Node& to, double jerk, Syste
   J1.leftCols<3>() = by_next;
   J1.middleCols<3>(kRate) = by_omega * (0.5 * h * Matrix3d::Identity() + h * h / 12.0 * hat(from.w_WI_I_rad_s));
   J1.middleCols<3>(kAngular) = -h * h / 12.0 * by_omega;
-  const double error_2 = params_.turn_error_sqrts * params_.turn_error_sqrts * omega.squaredNorm() / h;
+  const double error_2 = params_.rotation_error_sqrts * params_.rotation_error_sqrts * omega.squaredNorm() / h;
   const double w = 1.0 / (jerk * jerk * phi_variance_ + error_2);
   block.diagonal.topLeftCorner<9, 9>().noalias() += w * J0.transpose() * J0;
   block.coupling.topLeftCorner<9, 9>().noalias() += w * J0.transpose() * J1;
@@ -295,30 +295,30 @@ double Motion::add_step(const Node& from, const Node& to, double hand, System::B
   Eigen::Matrix<double, 3, 4> turn;
   turn << from.w_WI_I_rad_s, from.angular_acceleration_rad_s2, to.w_WI_I_rad_s, to.angular_acceleration_rad_s2;
   cost += add_chain<2>(jerk_, 1.0 / (jerk * jerk), kRate, turn, block, next);
-  Eigen::Matrix<double, 3, 6> way;
-  way << from.a_W_m_s2, from.v_W_m_s, from.p_W_m, to.a_W_m_s2, to.v_W_m_s, to.p_W_m;
-  cost += add_chain<3>(hand_, 1.0 / hand, kHand, way, block, next);
-  cost += add_chain<3>(way_, 1.0, kHand, way, block, next);
+  Eigen::Matrix<double, 3, 6> ends;
+  ends << from.a_W_m_s2, from.v_W_m_s, from.p_W_m, to.a_W_m_s2, to.v_W_m_s, to.p_W_m;
+  cost += add_chain<3>(hand_, 1.0 / hand, kHand, ends, block, next);
+  cost += add_chain<3>(kinematics_, 1.0, kHand, ends, block, next);
   return cost;
 }
 
 // carried.md (C9)
 double Motion::add_bounds(const Node& node, System::Block& block) const {
   const double velocity = params_.velocity_m_s * params_.velocity_m_s * params_.velocity_tau_s;
-  const double place = params_.position_m * params_.position_m * params_.position_tau_s;
+  const double position = params_.position_m * params_.position_m * params_.position_tau_s;
   return add_zero(node.v_W_m_s, params_.step_s / velocity, kVelocity, block) +
-         add_zero(node.p_W_m, params_.step_s / place, kPlace, block);
+         add_zero(node.p_W_m, params_.step_s / position, kPosition, block);
 }
 
 double Motion::add_first(const Node& node, System::Block& block) const {
   const Vector3d up_I = node.q_WI.conjugate() * Vector3d::UnitZ();
   block.diagonal.topLeftCorner<3, 3>() += 1e6 * up_I * up_I.transpose() + 0.1 * Matrix3d::Identity();
-  const double hand = params_.hand_m_s2, velocity = params_.velocity_m_s, place = params_.position_m;
+  const double hand = params_.hand_m_s2, velocity = params_.velocity_m_s, position = params_.position_m;
   return add_zero(node.w_WI_I_rad_s, 1e-4, kRate, block) +
          add_zero(node.angular_acceleration_rad_s2, 1e-6, kAngular, block) +
          add_zero(node.a_W_m_s2, 1.0 / (hand * hand), kHand, block) +
          add_zero(node.v_W_m_s, 1.0 / (velocity * velocity), kVelocity, block) +
-         add_zero(node.p_W_m, 1.0 / (place * place), kPlace, block);
+         add_zero(node.p_W_m, 1.0 / (position * position), kPosition, block);
 }
 
 }  // namespace tumble::carried

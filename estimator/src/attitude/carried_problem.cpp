@@ -11,13 +11,13 @@ using Eigen::Vector3d;
 
 namespace {
 
-constexpr double kTurnMax = 0.8;      // largest step of an attitude: beyond, the linearisation says little
-constexpr double kConverged = 1e-3;   // of attitudes [rad] and, ten times that, of rates [rad/s]
-constexpr int kFollowFirst = 3;       // iterations before the hand's power is read off the nodes
-constexpr int kFollowLast = 8;        // and after which it stays, so that the iteration ends
-constexpr double kHandMean_s = 0.25;  // over which the hand's mean acceleration is compared
-constexpr int kHalvings = 4;          // of a step after which the cost is larger
-constexpr double kRises = 0.2;        // by more than this: odds of 1.1, which no covariance shows
+constexpr double kRotationMax_rad = 0.8;  // largest step of an attitude: beyond, the linearisation says little
+constexpr double kConverged = 1e-3;       // of attitudes [rad] and, ten times that, of rates [rad/s]
+constexpr int kFollowFirst = 3;           // iterations before the hand's power is read off the nodes
+constexpr int kFollowLast = 8;            // and after which it stays, so that the iteration ends
+constexpr double kHandMean_s = 0.25;      // over which the hand's mean acceleration is compared
+constexpr int kHalvings = 4;              // of a step after which the cost is larger
+constexpr double kRises = 0.2;            // by more than this: odds of 1.1, which no covariance shows
 constexpr Trouble kLost = Trouble::diverged;
 
 }  // namespace
@@ -26,7 +26,7 @@ Motion::Params motion_params(const CarriedSmoother::Params& p, double jerk) {
   Motion::Params out;
   out.step_s = p.expert.node_s;
   out.jerk_rad_s3_sqrts = jerk * p.jerk_rad_s3_sqrts;
-  out.turn_error_sqrts = p.expert.readings.turn_error_sqrts;
+  out.rotation_error_sqrts = p.expert.readings.rotation_error_sqrts;
   out.hand_m_s2 = p.hand_m_s2, out.hand_tau_s = p.expert.hand.hand_tau_s;
   out.velocity_m_s = p.velocity_m_s, out.velocity_tau_s = p.expert.hand.velocity_tau_s;
   out.position_m = p.position_m, out.position_tau_s = p.expert.hand.position_tau_s,
@@ -153,7 +153,7 @@ bool Problem::step(double& largest) {
     largest = std::max({largest, moved, 0.1 * steps_[i].segment<3>(kRate).norm()});
   }
   if (!std::isfinite(turn)) return false;
-  const double share = turn > kTurnMax ? kTurnMax / turn : 1.0;
+  const double share = turn > kRotationMax_rad ? kRotationMax_rad / turn : 1.0;
   for (System::StateVector& each : steps_) each *= share;
   border_step_ *= share;
   go(1.0);
@@ -190,7 +190,7 @@ void Problem::restore(Answer answer) {
 
 // carried.md (C16), (C34)
 Status Problem::solve(CarriedSmoother::Report& report) {
-  std::optional<Place> before;  // the last step
+  std::optional<Iterate> before;  // the last step
   report.converged = false;
   for (int k = 0; k < params_.expert.iterations_max; ++k) {
     if (k >= kFollowFirst && k <= kFollowLast && params_.expert.hand.hand_follow > 0.0) {
@@ -199,7 +199,7 @@ Status Problem::solve(CarriedSmoother::Report& report) {
     }
     report.cost = linearise();
     if (before && !descend_from(*before, report.cost)) break;
-    before = Place{nodes_, constants_, report.cost};
+    before = Iterate{nodes_, constants_, report.cost};
     double largest = 0.0;
     if (!step(largest)) return {kLost, "iteration of the carried body", k + 1.0, static_cast<double>(k)};
     report.iterations = k + 1;
@@ -218,7 +218,7 @@ Status Problem::solve(CarriedSmoother::Report& report) {
 
 // Where the last step led to a larger cost, shorter ones are tried. False when none leads down: the nodes are then back
 // where they were before it, and linearised there.
-bool Problem::descend_from(const Place& before, double& cost) {
+bool Problem::descend_from(const Iterate& before, double& cost) {
   const auto goes_down = [&] { return cost < before.cost + kRises; };
   for (int k = 0; k < kHalvings && !goes_down(); ++k) {
     nodes_ = before.nodes;

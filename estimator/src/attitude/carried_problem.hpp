@@ -159,13 +159,13 @@ class Problem {
   bool eliminate(System::BorderVector& step);
   bool step(double& largest);
   /// Where a step of the descent began.
-  struct Place {
+  struct Iterate {
     std::vector<Node> nodes;
     Constants constants;
     double cost = 0.0;
   };
   void go(double share);
-  bool descend_from(const Place& before, double& cost);
+  bool descend_from(const Iterate& before, double& cost);
   void follow_hand();
   double hand_mahalanobis() const;
 

@@ -7,7 +7,7 @@
 #include "../angular_velocity/sample_hold.hpp"
 #include "carried_problem.hpp"
 #include "tumble/angular_velocity/clipping_finder.hpp"
-#include "tumble/angular_velocity/detail/partial_clipping.hpp"
+#include "tumble/angular_velocity/detail/subsample_saturation.hpp"
 #include "tumble/attitude/vqf.hpp"
 
 namespace tumble {
@@ -22,7 +22,7 @@ ClipSigns clip_signs(const ImuSample& sample, const Clipping& clipping) {
       case ElementReading::clipped_low:
         return -1;
       case ElementReading::unreadable:
-        return ClipSigns::kVoid;
+        return ClipSigns::kMissing;
     }
     return 0;
   };
@@ -67,7 +67,7 @@ ClipSigns signs_of(const ClippedElements& clipped, std::size_t k) {
 }
 
 void add_gyro_reading(double z, double t, int sign, ElementSums& e) {
-  if (sign == ClipSigns::kVoid) {
+  if (sign == ClipSigns::kMissing) {
     e.unread += 1.0;
     e.unread_z += (z - e.unread_z) / e.unread;
     return;
@@ -119,8 +119,8 @@ HiddenSegment hidden_segment(std::span<const ClipSigns> signs, std::size_t eleme
   }
   for (; out.end < signs.size(); ++out.end) {
     const int sign = signs[out.end].gyro[element];
-    if (sign == 0 || (sign != ClipSigns::kVoid && out.sign != 0 && sign != out.sign)) break;
-    if (sign != ClipSigns::kVoid) out.sign = sign;
+    if (sign == 0 || (sign != ClipSigns::kMissing && out.sign != 0 && sign != out.sign)) break;
+    if (sign != ClipSigns::kMissing) out.sign = sign;
   }
   // none but unreadable ones: beyond the rail on the side from which it came
   if (out.sign == 0) out.sign = raw[begin == 0 ? begin : begin - 1] < 0.0 ? -1 : 1;
@@ -178,11 +178,11 @@ void whole_windows(double noise_rad_s, const Eigen::Matrix3d& rows, GyroReadings
       const int before = rates.signs[k - 1].gyro[j], after = rates.signs[k + 1].gyro[j];
       const bool at_edge = rates.signs[k].gyro[j] == 0 && (before == 0) != (after == 0);
       const int sign = before + after;
-      if (!at_edge || sign == ClipSigns::kVoid) continue;
+      if (!at_edge || sign == ClipSigns::kMissing) continue;
       const std::size_t inside = before != 0 ? k - 1 : k + 1, outside = before != 0 ? k + 1 : k - 1;
       const auto axis = static_cast<Eigen::Index>(j);
-      const PartialLoss loss =
-          partial_loss(sign * along(k, axis), sign * along(outside, axis), sign * along(inside, axis), noise_rad_s);
+      const SubsampleSaturation loss = subsample_saturation(sign * along(k, axis), sign * along(outside, axis),
+                                                            sign * along(inside, axis), noise_rad_s);
       if (!(loss.lost_rad_s > noise_rad_s)) continue;
       lost[k][axis] = sign * loss.lost_rad_s;
       rates.open_rad_s[k][axis] = loss.sigma_rad_s;

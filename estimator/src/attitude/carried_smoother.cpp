@@ -8,9 +8,9 @@
 #include <utility>
 
 #include "carried_problem.hpp"
+#include "revolution_hypotheses.hpp"
 #include "tumble/common/detail/sample_check.hpp"
 #include "tumble/common/so3.hpp"
-#include "turn_hypotheses.hpp"
 
 namespace tumble {
 
@@ -56,8 +56,8 @@ RateSource source(const RateState& rate, double recovered_sigma) {
 
 /// A body that nobody holds turns one way and on, so that an error of the gyro's scale gathers: over what has turned
 /// since the last rest, or will until the next, whichever is less. carried.md (C42).
-void widen_by_turning(const CarriedSmoother::Params& params, const carried::Collected& collected,
-                      const std::vector<RateState>& rates, std::vector<AttitudeState>& attitudes) {
+void widen_by_rotation(const CarriedSmoother::Params& params, const carried::Collected& collected,
+                       const std::vector<RateState>& rates, std::vector<AttitudeState>& attitudes) {
   const double share = params.expert.readings.recovered_scale_share;
   const auto turned_on = [&](std::size_t k, Eigen::Vector3d& turned) {
     if (collected.nodes[collected.samples.node_of[k]].rest) return turned.setZero(), void();
@@ -98,7 +98,7 @@ Status CarriedSmoother::estimate(std::span<const ImuSample> samples, const Clipp
   status = problem.solve(report);
   if (status.ok()) status = problem.covariances(report);
   if (!status.ok()) return status;
-  carried::ask_turns(problem, report);
+  carried::ask_revolutions(problem, report);
 
   rates.resize(samples.size());
   attitudes.resize(samples.size());
@@ -119,7 +119,7 @@ Status CarriedSmoother::estimate(std::span<const ImuSample> samples, const Clipp
     const Eigen::Matrix3d R = node.q_WI.toRotationMatrix();
     attitudes[k].covariance_rad2 = R * covariance.topLeftCorner<3, 3>() * R.transpose();
   }
-  if (!clipped.recovered_rad2_s2.empty()) widen_by_turning(params_, collected, rates, attitudes);
+  if (!clipped.recovered_rad2_s2.empty()) widen_by_rotation(params_, collected, rates, attitudes);
   return {};
 }
 

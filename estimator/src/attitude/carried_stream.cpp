@@ -18,8 +18,8 @@ using Eigen::Vector3d;
 
 namespace {
 
-constexpr double kTurnMax = 0.8;  // largest step of an attitude
-constexpr int kFirstNodes = 100;  // but for the first, which still find their attitude
+constexpr double kRotationMax_rad = 0.8;  // largest step of an attitude
+constexpr int kFirstNodes = 100;          // but for the first, which still find their attitude
 
 System::BorderVector moved(const carried::Constants& from, const carried::Constants& to) {
   System::BorderVector out;
@@ -378,7 +378,7 @@ bool CarriedStream::step(State& state) const {
     turn = std::max(turn, state.work[i].gradient.segment<3>(carried::kPhi).norm());
   }
   if (!std::isfinite(turn)) return false;
-  const double share = turn > kTurnMax ? kTurnMax / turn : 1.0;
+  const double share = turn > kRotationMax_rad ? kRotationMax_rad / turn : 1.0;
   for (std::size_t i = 0; i < state.window.size(); ++i) state.window[i].node.move(share * state.work[i].gradient);
   state.constants.move(share * border);
   return true;

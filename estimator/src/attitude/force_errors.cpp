@@ -11,7 +11,7 @@ namespace tumble {
 
 namespace {
 
-constexpr int kForceBias = 0, kScale = 3, kPlace = 12;
+constexpr int kForceBias = 0, kScale = 3, kPosition = 12;
 
 }  // namespace
 
@@ -19,7 +19,7 @@ ForceErrors::ForceErrors(const Params& p) : params_(p) {
   require_within("count", p.count, 1, kUnits);
   require_within("bias_sigma_m_s2", p.bias_sigma_m_s2, 0.0, 1e3);
   require_within("scale_sigma", p.scale_sigma, 0.0, 1.0);
-  require_within("place_sigma_m", p.place_sigma_m, 0.0, 10.0);
+  require_within("position_sigma_m", p.position_sigma_m, 0.0, 10.0);
   require_within("noise_m_s2", p.noise_m_s2, 1e-12, 1e3);
   require_within("acceleration_share", p.acceleration_share, 0.0, 1.0);
   require_within("doubt", p.doubt, 1e-12, 1e3);
@@ -34,22 +34,22 @@ void ForceErrors::learn(std::span<const Eigen::Vector3d> forces, const Eigen::Ve
       auto prior = state.P.diagonal().segment<kPerUnit>(kPerUnit * k);
       prior.segment<3>(kForceBias).setConstant(squared(params_.bias_sigma_m_s2));
       prior.segment<9>(kScale).setConstant(squared(params_.scale_sigma));
-      prior.segment<3>(kPlace).setConstant(squared(params_.place_sigma_m));
+      prior.segment<3>(kPosition).setConstant(squared(params_.position_sigma_m));
     }
     state.started = true;
   }
-  const Eigen::Matrix3d by_place = so3::hat(acceleration) + so3::hat(rate) * so3::hat(rate);
-  Eigen::Vector3d mean_force = Eigen::Vector3d::Zero(), mean_place = Eigen::Vector3d::Zero();
+  const Eigen::Matrix3d by_position = so3::hat(acceleration) + so3::hat(rate) * so3::hat(rate);
+  Eigen::Vector3d mean_force = Eigen::Vector3d::Zero(), mean_position = Eigen::Vector3d::Zero();
   for (std::size_t k = 0; k < count; ++k) {
     mean_force += forces[k] / params_.count;
-    mean_place += params_.p_C_m[k] / params_.count;
+    mean_position += params_.p_C_m[k] / params_.count;
   }
   for (std::size_t k = 0; k < count; ++k) {
     const auto column = static_cast<Eigen::Index>(k);
-    state.difference_m_s2.col(column) += forces[k] - mean_force - by_place * (params_.p_C_m[k] - mean_place);
+    state.difference_m_s2.col(column) += forces[k] - mean_force - by_position * (params_.p_C_m[k] - mean_position);
     state.force_m_s2.col(column) += forces[k];
   }
-  state.by_place += by_place;
+  state.by_position += by_position;
   state.acceleration_rad_s2 += acceleration.norm();
   ++state.samples;
   state.span_s += dt_s;
@@ -76,7 +76,7 @@ void ForceErrors::update(State& state) const {
         auto own = row.segment<kPerUnit>(kPerUnit * j);
         own[kForceBias + axis] = weight;
         own.segment<3>(kScale + 3 * axis) = weight / samples * state.force_m_s2.col(j);
-        own.segment<3>(kPlace) = weight / samples * state.by_place.row(axis).transpose();
+        own.segment<3>(kPosition) = weight / samples * state.by_position.row(axis).transpose();
       }
       Vector PHt = Vector::Zero();
       PHt.head(used).noalias() = P * row.head(used);
@@ -90,7 +90,7 @@ void ForceErrors::update(State& state) const {
   state.P = (0.5 * (state.P + state.P.transpose())).eval();
   state.difference_m_s2.setZero();
   state.force_m_s2.setZero();
-  state.by_place.setZero();
+  state.by_position.setZero();
   state.acceleration_rad_s2 = 0.0;
   state.samples = 0;
   state.span_s = 0.0;

@@ -15,10 +15,10 @@ namespace tumble {
 namespace {
 
 constexpr double kBiasSigma_rad_s = 0.01, kScaleSigma = 0.01;
-constexpr double kTurning_rad_s2 = 1.0;  // an angular acceleration that tells a time offset from noise
-constexpr double kBeyondDoubt = 4.0;     // sigmas
-constexpr int kRecovering = 3;           // so many units tell the rate by their accelerometers
-constexpr double kUnharmed = 0.8;        // of the accelerometer's range, up to which its errors are learnt
+constexpr double kRotating_rad_s2 = 1.0;  // an angular acceleration that tells a time offset from noise
+constexpr double kBeyondDoubt = 4.0;      // sigmas
+constexpr int kRecovering = 3;            // so many units tell the rate by their accelerometers
+constexpr double kUnharmed = 0.8;         // of the accelerometer's range, up to which its errors are learnt
 constexpr int kOffset = ImuMerge::kErrors - 1;
 constexpr double kArmSquareMin_m2_s3 = 1.0;  // 1 m/s^2 for a second: a bias of 0.05 makes 0.05 of the share
 constexpr double kHeld_s = 0.03;
@@ -36,7 +36,7 @@ ForceErrors::Params ImuMerge::force_params(const Params& p) {
   return out;
 }
 
-/// About the mean place of the units.
+/// About the mean position of the units.
 RateRecovery::Params ImuMerge::recovery_params(const Params& p) {
   RateRecovery::Params out;
   out.count = p.count;
@@ -171,7 +171,7 @@ ImuSample ImuMerge::merge(State& state) const {
 /// Units whose rate and force agree with the median, and that met no rail: imu_merge.md (I5).
 ImuMerge::Flags ImuMerge::choose(const Readings& readings, const Flags& present, const Vectors& rates,
                                  const Vectors& forces, double h, State& state) const {
-  // the places differ, so forces may by what the rate makes of it; the tolerance has to bear that
+  // the positions differ, so forces may by what the rate makes of it; the tolerance has to bear that
   const Eigen::Vector3d middle_rate = median(rates, present), middle_force = median(forces, present);
   const auto units = std::count(present.begin(), present.end(), true);
   const double rate_tolerance =
@@ -197,20 +197,20 @@ ImuMerge::Flags ImuMerge::choose(const Readings& readings, const Flags& present,
   return used;
 }
 
-/// The mean of those in use, moved to the mean place of all: imu_merge.md (I1), (I2).
+/// The mean of those in use, moved to the mean position of all: imu_merge.md (I1), (I2).
 ImuSample ImuMerge::mean_of_used(const Vectors& rates, const Vectors& forces, const Flags& used, double h,
                                  const State& state) const {
   const auto kept = static_cast<int>(std::count(used.begin(), used.end(), true));
-  Eigen::Vector3d rate = Eigen::Vector3d::Zero(), force = Eigen::Vector3d::Zero(), place = Eigen::Vector3d::Zero();
+  Eigen::Vector3d rate = Eigen::Vector3d::Zero(), force = Eigen::Vector3d::Zero(), position = Eigen::Vector3d::Zero();
   for (std::size_t i = 0; i < used.size(); ++i) {
     if (!used[i]) continue;
     rate += rates[i] / kept;
     force += forces[i] / kept;
-    place += params_.T_CI[i].translation() / kept;
-    if (kept < params_.count) place += ForceErrors::place_error_m(static_cast<int>(i), state.forces) / kept;
+    position += params_.T_CI[i].translation() / kept;
+    if (kept < params_.count) position += ForceErrors::position_error_m(static_cast<int>(i), state.forces) / kept;
   }
   if (kept < params_.count) {
-    const Eigen::Vector3d d = p_C_m_ - place;
+    const Eigen::Vector3d d = p_C_m_ - position;
     const double since_s = 0.5 * (h + state.length_s);
     if (state.windows > 0 && h > 0.0) force += ((rate - state.rate_rad_s) / since_s).cross(d);
     force += rate.cross(rate.cross(d));
@@ -278,13 +278,13 @@ void ImuMerge::leave_out_subsample_saturated(const Readings& samples, const Flag
   const auto change = [&](std::size_t k) {
     return (params_.T_CI[k].linear() * samples[k].specific_force_m_s2 - state.units[k].last_force_m_s2).norm();
   };
-  const auto place = [&](std::size_t k) -> Eigen::Vector3d {
-    return params_.T_CI[k].translation() + ForceErrors::place_error_m(static_cast<int>(k), state.forces);
+  const auto position = [&](std::size_t k) -> Eigen::Vector3d {
+    return params_.T_CI[k].translation() + ForceErrors::position_error_m(static_cast<int>(k), state.forces);
   };
   const auto agree = [&](std::size_t k, std::size_t j) {
     if (std::max(peak(k), peak(j)) < params_.expert.outliers.subsample_saturation_share * params_.accel_range_m_s2)
       return true;
-    const Eigen::Vector3d d = place(k) - place(j);
+    const Eigen::Vector3d d = position(k) - position(j);
     const Eigen::Vector3d misfit = forces[k] - forces[j] - acceleration.cross(d) - rate.cross(rate.cross(d));
     const double doubt = kAccelerationShare * (acceleration - before).norm() * d.norm();
     return std::abs(misfit.dot(d)) <= params_.expert.outliers.hidden_force_m_s2 * d.norm() &&
@@ -348,13 +348,13 @@ void ImuMerge::learn(const Vectors& rates, State& state) const {
   if (peak < kUnharmed * params_.accel_range_m_s2) {
     forces_.learn({forces.data(), count}, mean, acceleration, state.length_s, state.forces);
   }
-  const Eigen::Matrix3d by_place = so3::hat(acceleration) + so3::hat(mean) * so3::hat(mean);
+  const Eigen::Matrix3d by_position = so3::hat(acceleration) + so3::hat(mean) * so3::hat(mean);
   for (std::size_t k = 0; k < count; ++k) {
-    const Eigen::Vector3d by_turning = by_place * (params_.T_CI[k].translation() - p_C_m_);
-    state.arm_product += state.length_s * by_turning.dot(forces[k]);  // the mean of all drops out of the sum
-    state.arm_square_m2_s3 += state.length_s * by_turning.squaredNorm();
+    const Eigen::Vector3d by_rotation = by_position * (params_.T_CI[k].translation() - p_C_m_);
+    state.arm_product += state.length_s * by_rotation.dot(forces[k]);  // the mean of all drops out of the sum
+    state.arm_square_m2_s3 += state.length_s * by_rotation.squaredNorm();
   }
-  if (acceleration.norm() < kTurning_rad_s2) return;
+  if (acceleration.norm() < kRotating_rad_s2) return;
   const double variance = params_.rate_noise_rad_s * params_.rate_noise_rad_s;
   for (std::size_t k = 0; k < count; ++k) {
     Unit& unit = state.units[k];

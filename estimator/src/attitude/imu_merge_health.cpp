@@ -103,7 +103,7 @@ void ImuMerge::watch_misfits(const Flags& present, const Vectors& rates, const V
   }
   if (railed) return;
   const Eigen::Vector3d middle_rate = median(rates, present), middle_force = median(forces, present);
-  state.turning_rad_s += share * (middle_rate.norm() - state.turning_rad_s);
+  state.rotation_rate_rad_s += share * (middle_rate.norm() - state.rotation_rate_rad_s);
   for (std::size_t k = 0; k < present.size(); ++k) {
     if (!present[k] || state.units[k].window.readings == 0) continue;
     Unit& unit = state.units[k];
@@ -112,7 +112,7 @@ void ImuMerge::watch_misfits(const Flags& present, const Vectors& rates, const V
     unit.misfit_rate_rad_s += share * ((rates[k] - middle_rate).norm() - unit.misfit_rate_rad_s);
     unit.misfit_force_m_s2 += share * (force - unit.misfit_force_m_s2);
     const double rate_bound =
-        params_.expert.disagreeing.rate_rad_s + params_.expert.disagreeing.rate_share * state.turning_rad_s;
+        params_.expert.disagreeing.rate_rad_s + params_.expert.disagreeing.rate_share * state.rotation_rate_rad_s;
     const bool off =
         unit.misfit_rate_rad_s > rate_bound || unit.misfit_force_m_s2 > params_.expert.disagreeing.force_m_s2;
     if (off && unit.misfits_s == 0.0) unit.misfits_since_ns = time_ns;

@@ -13,7 +13,7 @@ void members(Self& s, Visitor& visit) {
   visit("forces.P", s.P);
   visit("forces.difference_m_s2", s.difference_m_s2);
   visit("forces.force_m_s2", s.force_m_s2);
-  visit("forces.by_place", s.by_place);
+  visit("forces.by_position", s.by_position);
   visit("forces.acceleration_rad_s2", s.acceleration_rad_s2);
   visit("forces.samples", s.samples);
   visit("forces.span_s", s.span_s);
@@ -67,7 +67,7 @@ void members(Self& s, Visitor& visit) {
   visit("merge.recovery", s.recovery);
   visit("merge.rate_rad_s", s.rate_rad_s);
   visit("merge.rate_before_rad_s", s.rate_before_rad_s);
-  visit("merge.turning_rad_s", s.turning_rad_s);
+  visit("merge.rotation_rate_rad_s", s.rotation_rate_rad_s);
   visit("merge.window_s", s.window_s);
   visit("merge.length_s", s.length_s);
   visit("merge.length_before_s", s.length_before_s);

@@ -11,7 +11,7 @@ namespace tumble {
 
 namespace {
 
-constexpr double kStandstillRad2 = 1e-6;  // of a gyro beside a force that turned by `turned_min_rad2`
+constexpr double kStandstillRad2 = 1e-6;  // of a gyro beside a force that turned by `rotation_min_rad2`
 constexpr double kWeightless = 0.05;      // of gravity in m/s^2, in whatever unit it comes: no direction below it
 
 auto least_unexplained(const ImuPlausibility::State& state) {
@@ -112,14 +112,14 @@ void ImuPlausibility::compare(const Eigen::Vector3d& force_m_s2, State& state) c
   const Eigen::Vector3d from = state.force_start_m_s2.normalized(), to = force_m_s2.normalized();
   const double by_force = (to - from).squaredNorm();
   const double by_gyro = (state.turned.conjugate() * from - from).squaredNorm();
-  const double least = params_.expert.turning.turn_least_rad * params_.expert.turning.turn_least_rad;
+  const double least = params_.expert.turning.rotation_least_rad * params_.expert.turning.rotation_least_rad;
   if (std::max(by_force, by_gyro) < least) return;
   state.all_force_rad2 += by_force;
   state.all_gyro_rad2 += by_gyro;
   if (by_force < least) return;
   state.by_force_rad2 += by_force;
   state.by_gyro_rad2 += by_gyro;
-  state.turned_windows += 1.0;
+  state.rotated_windows += 1.0;
   const Eigen::Matrix3d back = state.turned.conjugate().toRotationMatrix(), forth = back.transpose();
   for (std::size_t k = 0; k < state.unexplained_rad2.size(); ++k) {
     const AxisLabels& labels = axis_labels()[k];
@@ -135,8 +135,8 @@ double ImuPlausibility::force_share(const State& state) const {
 }
 
 bool ImuPlausibility::turned(const State& state) const {
-  return state.by_force_rad2 >= params_.expert.turning.turned_min_rad2 &&
-         state.turned_windows >= params_.expert.turning.turned_windows_min;
+  return state.by_force_rad2 >= params_.expert.turning.rotation_min_rad2 &&
+         state.rotated_windows >= params_.expert.turning.rotated_windows_min;
 }
 
 double ImuPlausibility::unexplained_share(const State& state) const {
@@ -149,8 +149,8 @@ double ImuPlausibility::frozen_s(const State& state) const {
   const auto never_moved = [&](const Hold& hold) {
     return hold.moved_s == 0.0 && hold.held_s >= params_.expert.frozen.repeats_s;
   };
-  const bool turns_unseen = unexplained_share(state) >= params_.expert.frozen.unexplained_least;
-  const bool gyro = never_moved(state.gyro) && turns_unseen;
+  const bool rotates_unseen = unexplained_share(state) >= params_.expert.frozen.unexplained_least;
+  const bool gyro = never_moved(state.gyro) && rotates_unseen;
   const bool accel = never_moved(state.accel) && state.accel.reading.isZero(0.0) &&
                      state.gyro.moved_s >= params_.expert.frozen.repeats_s;
   return std::max(
@@ -158,19 +158,19 @@ double ImuPlausibility::frozen_s(const State& state) const {
 }
 
 /// imu_merge.md (I17).
-double ImuPlausibility::turning_slope(const State& state) const {
+double ImuPlausibility::rotation_slope(const State& state) const {
   if (!turned(state)) return 1.0;
   return together_rad2(state) / std::max(state.by_gyro_rad2, kStandstillRad2);
 }
 
-double ImuPlausibility::turning_agreement(const State& state) const {
+double ImuPlausibility::rotation_agreement(const State& state) const {
   if (!turned(state)) return 1.0;
   return together_rad2(state) / std::sqrt(state.by_force_rad2 * std::max(state.by_gyro_rad2, kStandstillRad2));
 }
 
-double ImuPlausibility::force_turned_share(const State& state) const {
-  return state.all_gyro_rad2 < params_.expert.turning.turned_min_rad2 ? 1.0
-                                                                      : state.all_force_rad2 / state.all_gyro_rad2;
+double ImuPlausibility::force_rotated_share(const State& state) const {
+  return state.all_gyro_rad2 < params_.expert.turning.rotation_min_rad2 ? 1.0
+                                                                        : state.all_force_rad2 / state.all_gyro_rad2;
 }
 
 /// imu_merge.md (I18).
@@ -183,7 +183,7 @@ std::optional<AxisLabels> ImuPlausibility::other_labels(const State& state) cons
 
 /// Pushes turn the force as well, and leave as much unexplained whatever the gyro's scale: imu_merge.md (I21).
 bool ImuPlausibility::explains_more(const State& state) const {
-  const double slope = turning_slope(state), agreement = turning_agreement(state);
+  const double slope = rotation_slope(state), agreement = rotation_agreement(state);
   const double left = state.by_force_rad2 * (1.0 - agreement * agreement);
   // they take from a slope easily, and turn it or add half of it hardly ever
   const bool low = slope > 0.0 && slope < 1.0;
@@ -212,11 +212,11 @@ Status ImuPlausibility::verdict(const State& state) const {
         "turning that the gyro leaves unexplained with axes or signs named otherwise, as a share of that with these",
         least / state.unexplained_rad2.front(), params_.expert.naming.unexplained_share_max};
   }
-  if (const double still = force_turned_share(state); still < params_.expert.turning.still_share) {
+  if (const double still = force_rotated_share(state); still < params_.expert.turning.still_share) {
     return {Trouble::out_of_range, "turning of a steady force as a share of the gyro's", still,
             params_.expert.turning.still_share};
   }
-  const double slope = turning_slope(state);
+  const double slope = rotation_slope(state);
   const double least = params_.expert.turning.slope_min, most = params_.expert.turning.slope_max;
   if ((slope > most || slope < least) && explains_more(state))
     return {Trouble::out_of_range, "turning of gravity over that of the gyro", slope, slope < least ? least : most};

@@ -56,14 +56,14 @@ class Segments {
       sums_[k].add(length_s_ + 0.5 * dt_s, dt_s, readings_[k] * rate_rad_s, force_m_s2);
     }
     length_s_ += dt_s;
-    turned_rad_ += dt_s * rate_rad_s.norm();
+    rotated_rad_ += dt_s * rate_rad_s.norm();
     if (length_s_ >= params_.segment_s) close();
   }
   /// Ends the segment that is open, which counts when it is half as long as a whole one.
   void close() {
-    if (length_s_ >= 0.5 * params_.segment_s && turned_rad_ >= params_.turned_least_rad) take();
+    if (length_s_ >= 0.5 * params_.segment_s && rotated_rad_ >= params_.rotation_least_rad) take();
     sums_ = {};
-    length_s_ = turned_rad_ = 0.0;
+    length_s_ = rotated_rad_ = 0.0;
   }
 
   std::array<double, kCompared> evidence{};
@@ -115,7 +115,7 @@ class Segments {
   const PivotCheckParams& params_;
   const Readings& readings_;
   std::array<PivotSums, kReadings> sums_{};
-  double length_s_ = 0.0, turned_rad_ = 0.0;
+  double length_s_ = 0.0, rotated_rad_ = 0.0;
 };
 
 /// Weighted mean of the votes, and its deviation from how they are spread (White, 1980). imu_merge.md (I27).

@@ -131,7 +131,7 @@ void RateRecovery::step(std::span<const ImuSample> units, double dt_s, State& st
   } else if (met.rate) {
     merged.device_clip_flags = static_cast<std::uint8_t>(merged.device_clip_flags | kClipGyro);
   }
-  // the mean of the units in use was moved to the mean place with a rate that may be wrong
+  // the mean of the units in use was moved to the mean position with a rate that may be wrong
   if (met.rate || met.force) merged.specific_force_m_s2 = state.x.segment<3>(kForce);
 }
 
@@ -203,15 +203,15 @@ void RateRecovery::measure_forces(std::span<const ImuSample> units, double dt_s,
       const double reading = seen.reading[axis];
       if (seen.railed[static_cast<std::size_t>(axis)]) continue;
       const Eigen::Vector3d rate = state.x.segment<3>(kRate), acceleration = state.x.segment<3>(kAcceleration);
-      const Eigen::Vector3d place = params_.T_CI[k].translation() + state.x.segment<3>(arm);
-      const Eigen::Matrix3d by_place = so3::hat(acceleration) + so3::hat(rate) * so3::hat(rate);
+      const Eigen::Vector3d position = params_.T_CI[k].translation() + state.x.segment<3>(arm);
+      const Eigen::Matrix3d by_position = so3::hat(acceleration) + so3::hat(rate) * so3::hat(rate);
       const auto axis_C = seen.rows_C.row(axis);
       Row row = Row::Zero();
-      row.segment<3>(kRate) = -axis_C * (so3::hat(rate.cross(place)) + so3::hat(rate) * so3::hat(place));
-      row.segment<3>(kAcceleration) = -axis_C * so3::hat(place);
+      row.segment<3>(kRate) = -axis_C * (so3::hat(rate.cross(position)) + so3::hat(rate) * so3::hat(position));
+      row.segment<3>(kAcceleration) = -axis_C * so3::hat(position);
       row.segment<3>(kForce) = axis_C;
-      row.segment<3>(arm) = axis_C * by_place;
-      const Eigen::Vector3d force = state.x.segment<3>(kForce) + by_place * place;
+      row.segment<3>(arm) = axis_C * by_position;
+      const Eigen::Vector3d force = state.x.segment<3>(kForce) + by_position * position;
       const double hidden = seen.slope_sigma[axis] > 0.0 ? seen.hidden(seen.rows_C * force) : 0.0;
       const double sigma = params_.noise.force_m_s2 + params_.noise.force_share * std::abs(reading);
       update(row, reading - axis_C.dot(force), shorter * squared(sigma) + squared(seen.slope_sigma[axis] * hidden),

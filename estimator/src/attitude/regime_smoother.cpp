@@ -58,7 +58,7 @@ void RegimeSmoother::join(std::span<const ImuSample> samples, std::vector<RateSt
   if (report.carried_clipped_max < params_.carried_min) return;
 
   ClippingFinder::Params finding;
-  finding.walls = params_.rate.rails;
+  finding.upright_rails = params_.rate.rails;
   CarriedElements known = carried_elements(samples, ClippingFinder(finding).find(samples));
   known.doubt(samples, report.rate.doubted_axes);
   std::vector<RateState> other;

@@ -151,7 +151,7 @@ void members(Self& s, Visitor& visit) {
 
 template <StateOf<CarriedLive::Params> Self, class Visitor>
 void others(Self& p, Visitor& visit) {
-  others(p.rails.clipping.walls, visit);
+  others(p.rails.clipping.upright_rails, visit);
   others(p.rails.clipping.planes, visit);
   others(p.rails.clipping.accel_planes, visit);
 }

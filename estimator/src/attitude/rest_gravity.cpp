@@ -61,8 +61,8 @@ void RestGravity::step(const ImuSample& sample, const RateState& rate, State& st
   state.from_m_s2 = state.rest.mean_force_m_s2();
   state.turned.setIdentity();
   state.velocity_sum_m_s.setZero();
-  state.way_s = state.hidden_m_s = 0.0;
-  state.way_rad = state.variance_rad2 = state.segment_s = state.segment_rad2_s = 0.0;
+  state.span_s = state.hidden_m_s = 0.0;
+  state.span_angle_rad = state.variance_rad2 = state.segment_s = state.segment_rad2_s = 0.0;
 }
 
 /// A reading is a mean over its time, and stands in the middle of it: imu_merge.md (I22).
@@ -71,8 +71,8 @@ void RestGravity::turn(const ImuSample& sample, const RateState& rate, double dt
   const Eigen::Vector3d& force = sample.specific_force_m_s2;
   state.velocity_sum_m_s += dt_s * ((state.turned * half) * force);
   state.turned = (state.turned * half * half).normalized();
-  state.way_rad += dt_s * rate.w_WI_I_rad_s.norm();
-  state.way_s += dt_s;
+  state.span_angle_rad += dt_s * rate.w_WI_I_rad_s.norm();
+  state.span_s += dt_s;
   const double peak = force.cwiseAbs().maxCoeff();
   const bool at_range = params_.accel_range_m_s2 > 0.0 && peak >= (1.0 - kBesideRail) * params_.accel_range_m_s2;
   if (at_range || (sample.device_clip_flags & kClipAccel) != 0) state.hidden_m_s += dt_s * peak;
@@ -87,12 +87,13 @@ void RestGravity::end_segment(State& state) const {
 /// imu_merge.md (I19).
 void RestGravity::arrive(State& state) const {
   end_segment(state);
-  if (state.from_m_s2.isZero(0.0) || state.way_rad < params_.turned_least_rad || state.way_s > params_.way_most_s)
+  if (state.from_m_s2.isZero(0.0) || state.span_angle_rad < params_.rotation_least_rad ||
+      state.span_s > params_.span_most_s)
     return;
   const Eigen::Vector3d here_m_s2 = state.rest.mean_force_m_s2();
   const double miss_rad = (state.turned.conjugate() * state.from_m_s2.normalized() - here_m_s2.normalized()).norm();
   const double sigma_rad = std::sqrt(state.variance_rad2);
-  ++state.ways;
+  ++state.spans;
   close_velocity(here_m_s2, sigma_rad, state);
   if (miss_rad / allowed_rad(sigma_rad) < state.miss_rad / allowed_rad(state.miss_sigma_rad)) return;
   state.miss_rad = miss_rad;
@@ -101,11 +102,11 @@ void RestGravity::arrive(State& state) const {
 
 /// imu_merge.md (I22), (I23).
 void RestGravity::close_velocity(const Eigen::Vector3d& here_m_s2, double sigma_rad, State& state) const {
-  const Eigen::Vector3d mean_m_s2 = state.velocity_sum_m_s / state.way_s;
+  const Eigen::Vector3d mean_m_s2 = state.velocity_sum_m_s / state.span_s;
   const double from_start = (mean_m_s2 - state.from_m_s2).norm() / state.from_m_s2.norm();
   const double from_end = (state.turned.conjugate() * mean_m_s2 - here_m_s2).norm() / here_m_s2.norm();
   const double share = from_start + from_end;
-  const double hidden = 2.0 * state.hidden_m_s / (state.way_s * state.from_m_s2.norm());
+  const double hidden = 2.0 * state.hidden_m_s / (state.span_s * state.from_m_s2.norm());
   const double allowed = std::hypot(allowed_rad(sigma_rad), hidden);
   if (share * state.velocity_allowed_share < state.velocity_share * allowed) return;
   state.velocity_share = share;

@@ -85,7 +85,7 @@ void TumbleAttitude::take_average(State& state) const {
   const double length_s = state.average.length_s;
   state.average = {};
   state.q_taken_WI.setIdentity();
-  state.at_rest = rests_.observe(reading, state.rest, state.bias_rad_s) && turns_by_bias_alone(state);
+  state.at_rest = rests_.observe(reading, state.rest, state.bias_rad_s) && rotates_by_bias_alone(state);
   integrate(reading, length_s, state);
   add_recovered(length_s, state);
   if (state.node_s >= params_.expert.node_s - 0.5 * length_s) {
@@ -95,7 +95,7 @@ void TumbleAttitude::take_average(State& state) const {
 }
 
 /// attitude.md (A11a): whether the mean rate of the run is the bias, as well as both are known.
-bool TumbleAttitude::turns_by_bias_alone(const State& state) const {
+bool TumbleAttitude::rotates_by_bias_alone(const State& state) const {
   const Eigen::Array3d off_rad_s = (state.rest.mean_rate_rad_s() - state.bias_rad_s).array();
   const Eigen::Array3d variance = state.covariance.diagonal().segment<3>(kBias).array() +
                                   squared(params_.expert.at_rest.rate_sigma_rad_sqrts);  // of 1 s
@@ -120,7 +120,7 @@ void TumbleAttitude::integrate(const ImuSample& sample, double dt_s, State& stat
   state.q_WI = (q_mid * half).normalized();
   state.R_WI_s += dt_s * R_mid;
   state.f_W_m_s += dt_s * (R_mid * sample.specific_force_m_s2);
-  state.turned_rad2_s += dt_s * rate.squaredNorm();
+  state.rotated_rad2_s += dt_s * rate.squaredNorm();
   state.rate_rad_s = rate;
   state.node_s += dt_s;
 }
@@ -161,7 +161,7 @@ void TumbleAttitude::predict_node(State& state) const {
   state.covariance = (F * state.covariance * F.transpose()).eval();
 
   const double turn =
-      squared(params_.gyro_noise_rad_sqrts) * h + squared(params_.rate_error_sqrts) * state.turned_rad2_s;
+      squared(params_.gyro_noise_rad_sqrts) * h + squared(params_.rate_error_sqrts) * state.rotated_rad2_s;
   state.covariance.diagonal().segment<2>(kTilt).array() += turn + state.recovered_rad2[0];
   state.covariance(kHeading, kHeading) += state.at_rest ? 0.0 : turn + state.recovered_rad2[1];
   state.covariance.diagonal().segment<3>(kBias).array() += squared(params_.expert.bias_walk_rad_s_sqrts) * h;
@@ -243,7 +243,7 @@ void TumbleAttitude::correct_node(State& state) const {
   state.covariance = (0.5 * (state.covariance + state.covariance.transpose())).eval();
   state.R_WI_s.setZero();
   state.f_W_m_s.setZero();
-  state.turned_rad2_s = 0.0;
+  state.rotated_rad2_s = 0.0;
   state.recovered_rad2.setZero();
   state.node_s = 0.0;
 }

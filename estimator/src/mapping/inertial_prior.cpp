@@ -20,7 +20,7 @@ Eigen::Matrix<double, 9, 9> inertial_noise(const LidarInertialOdometry::Params& 
   const TimeNs start_ns = trajectory.start_ns();
   std::size_t hint = 0;
   Eigen::Matrix3d turned = Eigen::Matrix3d::Zero();
-  double turned_rad = 0.0, pushed_m_s = 0.0, gap_m2_s2 = 0.0, gap_m2 = 0.0, gap_m2_s = 0.0;
+  double rotated_rad = 0.0, pushed_m_s = 0.0, gap_m2_s2 = 0.0, gap_m2 = 0.0, gap_m2_s = 0.0;
   const double gap_m2_s3 = std::pow(params.expert.prior.gap_velocity_walk_m_s_sqrt_s, 2);
   for (const MotionSample& sample : samples) {
     const double from = std::max(seconds(sample.from_ns - start_ns), 0.0);
@@ -36,7 +36,7 @@ Eigen::Matrix<double, 9, 9> inertial_noise(const LidarInertialOdometry::Params& 
     gap_m2_s += dt * (gap_m2_s2 + 0.5 * walk_m2_s3 * dt);
     gap_m2_s2 += walk_m2_s3 * dt;
     if (!sample.bridges_gap) pushed_m_s += dt * sample.f_I_m_s2.norm();
-    turned_rad += dt * sample.w_WI_I_rad_s.norm();
+    rotated_rad += dt * sample.w_WI_I_rad_s.norm();
     turned += dt * R * variance.asDiagonal() * R.transpose();
   }
   noise.diagonal().segment<3>(6).setConstant(std::pow(params.expert.prior.sigma_m_s * span, 2) +
@@ -49,7 +49,7 @@ Eigen::Matrix<double, 9, 9> inertial_noise(const LidarInertialOdometry::Params& 
   if (std::all_of(samples.begin(), samples.end(), rests))
     return params.expert.standstill.noise_share * params.expert.standstill.noise_share * noise;
   noise.block<3, 3>(3, 3) += trajectory.duration_s() * turned;  // mapping.md (R34)
-  noise.diagonal().segment<3>(3).array() += std::pow(params.expert.prior.turn_share * turned_rad, 2);
+  noise.diagonal().segment<3>(3).array() += std::pow(params.expert.prior.rotation_share * rotated_rad, 2);
   return noise;
 }
 

@@ -78,7 +78,7 @@ void move_start(const RelocalizationParams& params, int index, Registration::Pri
   if (axis < 3) {
     state.p_WI_m[axis] += sign * std::clamp(1.5 * sigma, 0.3, round * params.shift_m);
   } else {
-    const double angle = sign * std::clamp(1.5 * sigma, 0.1, round * params.turn_rad);
+    const double angle = sign * std::clamp(1.5 * sigma, 0.1, round * params.rotation_rad);
     state.q_WI = so3::exp(angle * Eigen::Vector3d::Unit(axis - 3)) * state.q_WI;
   }
 }

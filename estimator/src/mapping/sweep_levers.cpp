@@ -4,9 +4,9 @@
 #include <algorithm>
 #include <limits>
 
+#include "rotation_series.hpp"
 #include "tumble/mapping/deskew.hpp"
 #include "tumble/mapping/sweep_trajectory.hpp"
-#include "turn_series.hpp"
 
 namespace tumble {
 
@@ -29,7 +29,7 @@ void turn(double rate2_rad2_s2, Lanes& p) {
     h[l] = 0.25 * (p.s[l] * p.s[l] * rate2_rad2_s2);
     p.cosine[l] = p.sinc[l] = 1.0;
   }
-  for (const auto& [of_cosine, of_sinc] : turn_series::kRatios) {
+  for (const auto& [of_cosine, of_sinc] : rotation_series::kRatios) {
     for (int l = 0; l < kLanes; ++l) {
       p.cosine[l] = 1.0 - (h[l] * of_cosine) * p.cosine[l];
       p.sinc[l] = 1.0 - (h[l] * of_sinc) * p.sinc[l];
@@ -55,7 +55,7 @@ void SweepTrajectory::levers(std::span<const SweepPoint> points, std::span<Eigen
       const double t = std::clamp<double>(point.t_s, from_s, to_s);
       if (p.count > 0 && !(t >= begin_s && t < end_s)) break;
       const double s = t - now.start_s;
-      small = small && s * s * rate2 <= turn_series::kAngle2_rad2;
+      small = small && s * s * rate2 <= rotation_series::kAngle2_rad2;
       p.s[p.count] = s;
       p.x[p.count] = point.x_I_m.x();
       p.y[p.count] = point.x_I_m.y();

@@ -4,8 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "rotation_series.hpp"
 #include "tumble/common/so3.hpp"
-#include "turn_series.hpp"
 
 namespace tumble {
 
@@ -47,12 +47,12 @@ Eigen::Matrix<double, SweepTrajectory::kKnots, 1> knot_weights(double share) {
 
 /// so3::exp(rate_rad_s * s) by its series, exact to rounding: each point of a sweep asks for it, at the small angles
 /// that a body turns by within a sample.
-Eigen::Quaterniond turned_by(const Eigen::Vector3d& rate_rad_s, double s) {
+Eigen::Quaterniond rotated_by(const Eigen::Vector3d& rate_rad_s, double s) {
   const double angle2 = s * s * rate_rad_s.squaredNorm();
-  if (!(angle2 <= turn_series::kAngle2_rad2)) return so3::exp(rate_rad_s * s);
+  if (!(angle2 <= rotation_series::kAngle2_rad2)) return so3::exp(rate_rad_s * s);
   const double h = 0.25 * angle2;  // half the angle, squared
   double cosine = 1.0, sinc = 1.0;
-  for (const auto& [of_cosine, of_sinc] : turn_series::kRatios) {
+  for (const auto& [of_cosine, of_sinc] : rotation_series::kRatios) {
     cosine = 1.0 - (h * of_cosine) * cosine;
     sinc = 1.0 - (h * of_sinc) * sinc;
   }
@@ -139,7 +139,7 @@ SweepTrajectory::Instant SweepTrajectory::at(double t_s, std::size_t& hint) cons
   const double t = std::clamp(t_s, -kBeyond_s, duration_s_ + kBeyond_s);
   const Interval& now = interval_at(t, hint);
   const double s = t - now.start_s;
-  return {now.q_WI * turned_by(now.w_I, s), now.preintegrated_p + s * now.preintegrated_v + (0.5 * s * s) * now.a_W};
+  return {now.q_WI * rotated_by(now.w_I, s), now.preintegrated_p + s * now.preintegrated_v + (0.5 * s * s) * now.a_W};
 }
 
 SweepTrajectory::Instant SweepTrajectory::at(double t_s, const Eigen::Vector3d& x_I_m, std::size_t& hint,
@@ -147,7 +147,7 @@ SweepTrajectory::Instant SweepTrajectory::at(double t_s, const Eigen::Vector3d& 
   const double t = std::clamp(t_s, -kBeyond_s, duration_s_ + kBeyond_s);
   const Interval& now = interval_at(t, hint);
   const double s = t - now.start_s;
-  const Eigen::Quaterniond turned = turned_by(now.w_I, s);
+  const Eigen::Quaterniond turned = rotated_by(now.w_I, s);
   velocity_m_s = start_.v_WI_m_s + t * gravity_W_m_s2_ + now.preintegrated_v + s * now.a_W +
                  now.q_WI * (turned * now.w_I.cross(x_I_m));
   return {now.q_WI * turned, now.preintegrated_p + s * now.preintegrated_v + (0.5 * s * s) * now.a_W};

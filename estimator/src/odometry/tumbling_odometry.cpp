@@ -128,8 +128,8 @@ Status TumblingOdometry::doubt() const {
   if (!of_imu.ok()) return of_imu;
   const Status of_ranges = pass_.sweep_scale().verdict();
   if (!of_ranges.ok()) return of_ranges;
-  const Status of_place = pass_.localisation().verdict();
-  return of_place.ok() ? params_.given_calibration().verdict(mapper().calibration()) : of_place;
+  const Status of_localisation = pass_.localisation().verdict();
+  return of_localisation.ok() ? params_.given_calibration().verdict(mapper().calibration()) : of_localisation;
 }
 
 void TumblingOdometry::finish() {

@@ -14,8 +14,8 @@ RailWatch::Params watch_params(const ImuSheet& sheet) {
   RailWatch::Params out;
   out.readings_max = kReadings;
   if (sheet.gyro_range_rad_s > 0.0 && sheet.gyro_range_rad_s <= kStatedMax_rad_s)
-    out.clipping.walls.stated_gyro_rad_s = sheet.gyro_range_rad_s;
-  if (sheet.accel_range_m_s2 > 0.0) out.clipping.walls.stated_accel_m_s2 = sheet.accel_range_m_s2;
+    out.clipping.upright_rails.stated_gyro_rad_s = sheet.gyro_range_rad_s;
+  if (sheet.accel_range_m_s2 > 0.0) out.clipping.upright_rails.stated_accel_m_s2 = sheet.accel_range_m_s2;
   return out;
 }
 
@@ -50,7 +50,8 @@ void UnitRails::observe(std::span<const ImuSample> samples, State& state) const 
     if (!check_sample(samples[k]).ok()) continue;
     RailWatch::State& rails = state[k].rails;
     units_[k].watch.observe(samples[k], rails);
-    units_[k].watch.walls().classify(samples[k], rails.known.walls);  // carries what is clipped just now
+    units_[k].watch.upright_rails().classify(samples[k],
+                                             rails.known.upright_rails);  // carries what is clipped just now
     state[k].before = samples[k];
   }
 }

@@ -13,7 +13,7 @@ LastPass::LastPass(const RollingParams& params, std::span<const ImuSample> sampl
   horizontal_m2_.reserve(path.size());
 }
 
-void LastPass::run(const Place& start, std::size_t cut) {
+void LastPass::run(const Checkpoint& start, std::size_t cut) {
   cut_after_ = cut;
   end_ = start;
   std::size_t nodes = 0;
@@ -36,16 +36,16 @@ void LastPass::run(const Place& start, std::size_t cut) {
 }
 
 /// Leaves the segment loaded, without the way back, and `at` where the next one begins.
-void LastPass::forward(std::size_t segment, Place& at) {
+void LastPass::forward(std::size_t segment, Checkpoint& at) {
   const std::size_t first = first_of(segment), end = std::min(first + length_, path_.size());
   loaded_ = segment;
   records_.clear();
   points_.clear();
   moved_at_end_.setZero();
-  auto& [filter, place] = at;
-  if (segment == 0 && place.next == 1) remember(place.time_ns, filter.nominal, place.last_rate_rad_s, 0);
+  auto& [filter, cursor] = at;
+  if (segment == 0 && cursor.next == 1) remember(cursor.time_ns, filter.nominal, cursor.last_rate_rad_s, 0);
   RollingSums sums;
-  Readings readings(params_, samples_, place);
+  Readings readings(params_, samples_, cursor);
   Reading reading;
   while (readings.next(reading)) {
     const ImuAverage& average = reading.average;
@@ -54,8 +54,8 @@ void LastPass::forward(std::size_t segment, Place& at) {
         first + records_.size() < end) {
       const PathNode& decided = path_[first + records_.size()];
       NodeRecord& record = records_.emplace_back();
-      close_node(params_, sums, 0.5 * (place.last_rate_rad_s + rate), decided, filter, record);
-      record.time_ns = place.time_ns;
+      close_node(params_, sums, 0.5 * (cursor.last_rate_rad_s + rate), decided, filter, record);
+      record.time_ns = cursor.time_ns;
       sums = {};
       if (first + records_.size() == cut_after_) cut_ = at;
       if (first + records_.size() == end && end < path_.size()) return;
@@ -66,7 +66,7 @@ void LastPass::forward(std::size_t segment, Place& at) {
       if (reading.end > reading.first) remember(reading.end_ns, filter.nominal, rate, node);
     } else {
       ImuAverage so_far;
-      TimeNs last_ns = place.time_ns;
+      TimeNs last_ns = cursor.time_ns;
       for (std::size_t k = reading.first; k < reading.end; ++k) {
         const ImuSample& sample = samples_[k];
         so_far.add(sample, seconds(sample.time_ns - last_ns));
@@ -75,7 +75,7 @@ void LastPass::forward(std::size_t segment, Place& at) {
       }
       if (reading.whole) integrate(params_, average, filter.nominal, sums);
     }
-    place = readings.place();
+    cursor = readings.cursor();
   }
   if (distance_ && !records_.empty()) {
     moved_at_end_ = measure_distance(params_, distance_->distance_m, distance_->sigma_m, records_.back(), filter);
@@ -111,7 +111,7 @@ void LastPass::give(std::size_t until, const std::function<void(const Smoothed&)
 void LastPass::give_segment(std::size_t segment, std::size_t until,
                             const std::function<void(const Smoothed&)>& take) const {
   const std::size_t first = first_of(segment);
-  const Place& start = kept_[segment].start;
+  const Checkpoint& start = kept_[segment].start;
   for (const SamplePoint& point : points_) {
     if (point.node >= until) return;
     const std::size_t next = point.node - first;

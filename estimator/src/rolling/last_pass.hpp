@@ -22,9 +22,9 @@ class LastPass {
   static constexpr std::size_t kSegment = 128;  ///< nodes; 1.6 MiB of records, 0.2 KiB of kept states for each node
 
   /// The filter and where in the samples it is, between two nodes.
-  struct Place {
+  struct Checkpoint {
     PathFilter filter;
-    Readings::Place reading;
+    Readings::Cursor reading;
   };
   struct Distance {
     double distance_m = 0.0, sigma_m = 0.0;
@@ -44,12 +44,12 @@ class LastPass {
            std::optional<Distance> distance, std::size_t segment = kSegment);
 
   /// Forward from `start` and back. `cut` is the number of nodes after which cut() is.
-  void run(const Place& start, std::size_t cut);
+  void run(const Checkpoint& start, std::size_t cut);
 
   std::size_t nodes() const { return horizontal_m2_.size(); }
   /// Smoothed variance of the IMU's horizontal position at each node.
   std::span<const double> horizontal_m2() const { return horizontal_m2_; }
-  const Place& cut() const { return cut_; }
+  const Checkpoint& cut() const { return cut_; }
   const PathFilter& end() const { return end_.filter; }
 
   /// Calls `take` for each sample before the node `until`, in the order of time.
@@ -57,12 +57,12 @@ class LastPass {
 
  private:
   struct Kept {
-    Place start;
+    Checkpoint start;
     Adjoint end;
   };
 
   std::size_t first_of(std::size_t segment) const { return segment * length_; }
-  void forward(std::size_t segment, Place& at);
+  void forward(std::size_t segment, Checkpoint& at);
   void go_again(std::size_t segment);
   void load(std::size_t segment);
   void remember(TimeNs time_ns, const RollingNominal& nominal, const Eigen::Vector3d& rate_I_rad_s, std::size_t node);
@@ -76,9 +76,9 @@ class LastPass {
   std::vector<Kept> kept_;  ///< one for each segment
   std::vector<double> horizontal_m2_;
   std::size_t cut_after_ = 0;
-  Place cut_, end_;
-  Place again_;      ///< in a segment that is gone over again
-  Adjoint adjoint_;  ///< on the way back
+  Checkpoint cut_, end_;
+  Checkpoint again_;  ///< in a segment that is gone over again
+  Adjoint adjoint_;   ///< on the way back
   // of the segment that is loaded
   std::size_t loaded_ = 0;
   std::vector<NodeRecord> records_;

@@ -32,7 +32,7 @@ void members(Self& s, Visitor& visit) {
   visit("sums.R_wxf", s.R_wxf);
   visit("sums.w_I_rad", s.w_I_rad);
   visit("sums.f_I_m_s", s.f_I_m_s);
-  visit("sums.turned_rad2_s", s.turned_rad2_s);
+  visit("sums.rotated_rad2_s", s.rotated_rad2_s);
   visit("sums.rate_clipped_s", s.rate_clipped_s);
   visit("sums.force_clipped_s", s.force_clipped_s);
   visit("sums.recovered_s", s.recovered_s);

@@ -33,11 +33,11 @@ constexpr double kRestTilt_rad = 5e-3;
 constexpr double kPush = 0.15;
 constexpr double kLostSpeed_m_s = 1.0;
 constexpr double kRecoveredTau_s = 0.1;  // a recovered rate stays off for so long: what it is off by is no noise
-constexpr double kFastTurn_rad_s = 6.0;  // a force turns too far within a node to level by, and is not gravity
+constexpr double kFastRate_rad_s = 6.0;  // a force turns too far within a node to level by, and is not gravity
 constexpr double kUnsureSpeed_m_s = 0.1, kSpeedWindow_s = 1.0;
 constexpr double kStartTilt_rad = 0.15;  // of a start in motion: a push of 1.5 m/s^2
 // of a gap: a sphere that turned slower than this on both sides was not pushed about in between, but for a little
-constexpr double kGapTurning_rad_s = 1.0, kGapStill_rad_s2 = 0.5;
+constexpr double kGapRate_rad_s = 1.0, kGapStill_rad_s2 = 0.5;
 constexpr double kGapStep = 0.15;  // of a change of rate times the gap's length: when in it the change came
 
 }  // namespace
@@ -134,7 +134,7 @@ void integrate(const RollingParams& params, const ImuAverage& reading, RollingNo
   }
   sums.w_I_rad += dt_s * w;
   sums.f_I_m_s += dt_s * f_raw;
-  sums.turned_rad2_s += dt_s * w.squaredNorm();
+  sums.rotated_rad2_s += dt_s * w.squaredNorm();
   const double about_gravity = std::abs(f.norm() - gravity) - kUsual_m_s2;
   sums.impact_m_s += dt_s * std::max(0.0, about_gravity);
   sums.unexplained_impact_m_s += dt_s * std::max(0.0, about_gravity - kOffCentre_m * w.squaredNorm());
@@ -170,7 +170,7 @@ ImuAverage gap_piece(const RollingParams& params, const ImuSample& before, const
   sample.device_clip_flags = kClipAccel;  // of the force nothing is known
   const double turning = std::max(before.angular_velocity_rad_s.norm(), after.angular_velocity_rad_s.norm());
   const double acceleration =
-      kGapStill_rad_s2 + params.expert.gap.gap_acceleration_rad_s2 * std::min(1.0, turning / kGapTurning_rad_s);
+      kGapStill_rad_s2 + params.expert.gap.gap_acceleration_rad_s2 * std::min(1.0, turning / kGapRate_rad_s);
   // a parabola between two known rates encloses a T^3 / 12: rolling.md (R30)
   const double off_rad = acceleration * gap_s * gap_s * gap_s / 12.0 + kGapStep * change.norm() * gap_s;
   doubt.rad2 = off_rad * off_rad / pieces;
@@ -212,12 +212,12 @@ void predict(const RollingParams& params, const RollingSums& sums, const Moving&
   make_symmetric(P);
   const double attitude =
       squared(params.expert.noise.attitude_walk_rad_sqrts) * h +
-      squared(params.expert.noise.rate_error_sqrts) * sums.turned_rad2_s + sums.gap_rad2 +
+      squared(params.expert.noise.rate_error_sqrts) * sums.rotated_rad2_s + sums.gap_rad2 +
       squared(params.expert.rails.clipped_rate_sigma_rad_s * sums.rate_clipped_s) +
       squared(params.expert.rails.recovered_rate_sigma_rad_s) * 2.0 * kRecoveredTau_s * sums.recovered_s;
   const double velocity = squared(params.expert.noise.velocity_walk_m_s_sqrts) * h +
                           squared(params.expert.contact.impact_share * sums.impact_m_s) +
-                          squared(params.expert.noise.spin_force_sqrts * sums.turned_rad2_s) / h +
+                          squared(params.expert.noise.spin_force_sqrts * sums.rotated_rad2_s) / h +
                           squared(params.expert.rails.clipped_force_sigma_m_s2 * sums.force_clipped_s);
   P.block<3, 3>(kVelocity, kVelocity) += sums.subsample_saturation_W_m_s * sums.subsample_saturation_W_m_s.transpose();
   auto diagonal = P.diagonal();
@@ -302,7 +302,7 @@ void change_floor(const RollingParams& params, RollingMode from, RollingMode to,
 bool reset_tilt(const RollingParams& params, const RollingSums& sums, bool at_rest, RollingNominal& nominal,
                 Covariance& P) {
   if (sums.force_clipped_s >= sums.node_s) return false;
-  if (sums.turned_rad2_s > squared(kFastTurn_rad_s) * sums.node_s) return false;
+  if (sums.rotated_rad2_s > squared(kFastRate_rad_s) * sums.node_s) return false;
   const Eigen::Vector3d f_I_m_s2 = sums.f_I_m_s / sums.node_s;
   const double tilt_variance = std::max(P(kAttitude, kAttitude), P(kAttitude + 1, kAttitude + 1));
   if (tilt_variance < squared(at_rest ? kDoubtfulTilt_rad : kLostTilt_rad)) return false;

@@ -45,12 +45,12 @@ double stated(const RollingSmoother::Params& params) {
 }
 
 /// After the first sample.
-rolling::Readings::Place start_place(const ImuSample& sample) {
-  rolling::Readings::Place place;
-  place.time_ns = sample.time_ns;
-  place.last_rate_rad_s = sample.angular_velocity_rad_s;
-  place.next = 1;
-  return place;
+rolling::Readings::Cursor start_cursor(const ImuSample& sample) {
+  rolling::Readings::Cursor cursor;
+  cursor.time_ns = sample.time_ns;
+  cursor.last_rate_rad_s = sample.angular_velocity_rad_s;
+  cursor.next = 1;
+  return cursor;
 }
 
 /// Covariance of (centre, attitude) from that of the reported states: rolling.md (R35).
@@ -77,7 +77,7 @@ RollingSmoother::Take appending(std::vector<RollingEstimate>& out) {
 
 /// Where the last pass begins: at the committed node, or with the first sample.
 void start_window(const RollingParams& filter, const RollingParams& path, const RollingSmoother::State& state,
-                  rolling::LastPass::Place& start) {
+                  rolling::LastPass::Checkpoint& start) {
   const RollingSmoother::Committed& last = state.committed;
   start.filter.mode = last.mode;
   if (last.started) {
@@ -92,10 +92,10 @@ void start_window(const RollingParams& filter, const RollingParams& path, const 
   if (!filter.q_WI_start) (void)level(sample.specific_force_m_s2, q_WI);  // went well in the filter
   start.filter.nominal = rolling::start_nominal(path, q_WI, sample.angular_velocity_rad_s);
   rolling::set_prior(path, sample.angular_velocity_rad_s, start.filter.P);
-  start.reading = start_place(sample);
+  start.reading = start_cursor(sample);
 }
 
-/// Which nodes lie in events whose way became uncertain.
+/// Which nodes lie in events whose position became uncertain.
 struct Events {
   std::vector<bool> uncertain;
   double committed_m2 = 0.0;  ///< RollingSmoother::Committed::event_variance_m2 after the node `emitted`
@@ -239,7 +239,7 @@ void RollingSmoother::finish(std::span<const RollingMode> known, State& state, c
   std::size_t n = 0;
   double node_s = 0.0;
   RollingMode mode = RollingMode::grip;
-  rolling::Readings readings(params_.filter, state.samples, start_place(state.samples.front()));
+  rolling::Readings readings(params_.filter, state.samples, start_cursor(state.samples.front()));
   rolling::Reading reading;
   while (readings.next(reading) && reading.whole && n < path.nodes.size()) {
     if (node_s >= params_.filter.expert.node_s - 0.5 * reading.average.length_s) {
@@ -282,7 +282,7 @@ void RollingSmoother::run_window(const Path& path, std::size_t emitted, State& s
   }
   const auto held = std::make_unique<rolling::LastPass>(path_params_, state.samples, path.nodes, distance);
   rolling::LastPass& pass = *held;
-  const auto start = std::make_unique<rolling::LastPass::Place>();
+  const auto start = std::make_unique<rolling::LastPass::Checkpoint>();
   start_window(params_.filter, path_params_, state, *start);
   pass.run(*start, emitted);
   state.learnt = pass.end().nominal;
@@ -299,19 +299,19 @@ void RollingSmoother::run_window(const Path& path, std::size_t emitted, State& s
   });
 
   if (emitted <= pass.nodes()) {
-    const auto& [filter, place] = pass.cut();
+    const auto& [filter, cursor] = pass.cut();
     Committed& last = state.committed;  // what it holds stays
     last.nominal = filter.nominal;
     last.P = filter.P;
     last.mode = filter.mode;
     last.event_variance_m2 = events.committed_m2;
-    last.last_time_ns = place.time_ns;
-    last.last_rate_rad_s = place.last_rate_rad_s;
-    last.gap_rate_rad_s = place.gap_rate_rad_s;
-    last.gap_start_ns = place.gap_start_ns;
-    last.gap_piece = place.gap_piece;
+    last.last_time_ns = cursor.time_ns;
+    last.last_rate_rad_s = cursor.last_rate_rad_s;
+    last.gap_rate_rad_s = cursor.gap_rate_rad_s;
+    last.gap_start_ns = cursor.gap_start_ns;
+    last.gap_piece = cursor.gap_piece;
     last.started = true;
-    state.samples.erase(state.samples.begin(), state.samples.begin() + static_cast<std::ptrdiff_t>(place.next));
+    state.samples.erase(state.samples.begin(), state.samples.begin() + static_cast<std::ptrdiff_t>(cursor.next));
     state.steps.erase(state.steps.begin(), state.steps.begin() + static_cast<std::ptrdiff_t>(emitted));
   } else {
     state.committed.gap_piece = 0;  // no gap is left to go on within

@@ -63,38 +63,38 @@ Reported reported(const Vector& x) {
 }  // namespace
 
 bool Readings::next_piece(double gap_s, Reading& out) {
-  const ImuSample& after = samples_[place_.next];
+  const ImuSample& after = samples_[cursor_.next];
   ImuSample before;
-  before.angular_velocity_rad_s = place_.gap_rate_rad_s;
+  before.angular_velocity_rad_s = cursor_.gap_rate_rad_s;
   const int pieces = gap_pieces(params_, gap_s);
-  out.average = gap_piece(params_, before, after, gap_s, place_.gap_piece, out.doubt);
+  out.average = gap_piece(params_, before, after, gap_s, cursor_.gap_piece, out.doubt);
   out.in_gap = true;
-  ++place_.gap_piece;
-  const bool last = place_.gap_piece == pieces;
-  const double share = static_cast<double>(place_.gap_piece) / pieces;
-  out.end_ns = last ? after.time_ns : place_.gap_start_ns + static_cast<TimeNs>(share * gap_s * 1e9);
+  ++cursor_.gap_piece;
+  const bool last = cursor_.gap_piece == pieces;
+  const double share = static_cast<double>(cursor_.gap_piece) / pieces;
+  out.end_ns = last ? after.time_ns : cursor_.gap_start_ns + static_cast<TimeNs>(share * gap_s * 1e9);
   if (last) {
-    place_.gap_piece = 0;
-    out.end = ++place_.next;
+    cursor_.gap_piece = 0;
+    out.end = ++cursor_.next;
   }
-  place_.time_ns = out.end_ns;
-  place_.last_rate_rad_s = out.average.mean.angular_velocity_rad_s;
+  cursor_.time_ns = out.end_ns;
+  cursor_.last_rate_rad_s = out.average.mean.angular_velocity_rad_s;
   return true;
 }
 
 bool Readings::next(Reading& out) {
   out = {};
-  out.first = out.end = place_.next;
-  if (place_.next >= samples_.size()) return false;
-  if (place_.gap_piece > 0) return next_piece(seconds(samples_[place_.next].time_ns - place_.gap_start_ns), out);
-  TimeNs last_ns = place_.time_ns;
+  out.first = out.end = cursor_.next;
+  if (cursor_.next >= samples_.size()) return false;
+  if (cursor_.gap_piece > 0) return next_piece(seconds(samples_[cursor_.next].time_ns - cursor_.gap_start_ns), out);
+  TimeNs last_ns = cursor_.time_ns;
   for (; out.end < samples_.size(); ++out.end) {
     const ImuSample& sample = samples_[out.end];
     const double dt_s = seconds(sample.time_ns - last_ns);
     if (dt_s > params_.expert.gap.gap_from_s) {
       if (out.average.readings > 0) break;
-      place_.gap_rate_rad_s = place_.last_rate_rad_s;
-      place_.gap_start_ns = last_ns;
+      cursor_.gap_rate_rad_s = cursor_.last_rate_rad_s;
+      cursor_.gap_start_ns = last_ns;
       return next_piece(dt_s, out);
     }
     out.average.add(sample, dt_s);
@@ -105,9 +105,9 @@ bool Readings::next(Reading& out) {
       break;
     }
   }
-  out.end_ns = place_.time_ns = last_ns;
-  place_.last_rate_rad_s = out.average.mean.angular_velocity_rad_s;
-  place_.next = out.end;
+  out.end_ns = cursor_.time_ns = last_ns;
+  cursor_.last_rate_rad_s = out.average.mean.angular_velocity_rad_s;
+  cursor_.next = out.end;
   return true;
 }
 
@@ -147,11 +147,11 @@ Reported measure_distance(const RollingParams& params, double distance_m, double
   const RollingNominal& nominal = filter.nominal;
   const Eigen::Matrix3d R = nominal.q_WI.toRotationMatrix();
   const Eigen::Vector3d arm_W = R * (params.lever_arm_m + nominal.lever_arm_error_m);
-  Eigen::Vector3d way = nominal.p_WI_m - arm_W;
-  way.z() = 0.0;
-  const double length_m = way.norm();
+  Eigen::Vector3d from_start = nominal.p_WI_m - arm_W;
+  from_start.z() = 0.0;
+  const double length_m = from_start.norm();
   if (length_m < kNoDirection_m) return Reported::Zero();
-  const Eigen::RowVector3d along = (way / length_m).transpose();
+  const Eigen::RowVector3d along = (from_start / length_m).transpose();
   Row H = Row::Zero();
   H.segment<3>(kAttitude) = along * so3::hat(arm_W);
   H.segment<3>(kPosition) = along;

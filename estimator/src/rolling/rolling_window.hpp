@@ -56,7 +56,7 @@ struct Reading {
 class Readings {
  public:
   /// Where in the samples: before the next reading.
-  struct Place {
+  struct Cursor {
     TimeNs time_ns = 0;  ///< end of the last reading
     Eigen::Vector3d last_rate_rad_s = Eigen::Vector3d::Zero();
     std::size_t next = 0;  ///< sample
@@ -64,13 +64,13 @@ class Readings {
     Eigen::Vector3d gap_rate_rad_s = Eigen::Vector3d::Zero();  ///< before it
     TimeNs gap_start_ns = 0;
     int gap_piece = 0;
-    bool operator==(const Place&) const = default;
+    bool operator==(const Cursor&) const = default;
   };
 
-  Readings(const RollingParams& params, std::span<const ImuSample> samples, const Place& from)
-      : params_(params), samples_(samples), place_(from) {}
+  Readings(const RollingParams& params, std::span<const ImuSample> samples, const Cursor& from)
+      : params_(params), samples_(samples), cursor_(from) {}
 
-  const Place& place() const { return place_; }
+  const Cursor& cursor() const { return cursor_; }
   /// False at the end.
   bool next(Reading& out);
 
@@ -79,7 +79,7 @@ class Readings {
 
   const RollingParams& params_;
   std::span<const ImuSample> samples_;
-  Place place_;
+  Cursor cursor_;
 };
 
 /// Nominal trajectory at a sample.

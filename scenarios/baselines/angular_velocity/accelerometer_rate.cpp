@@ -38,11 +38,11 @@ struct AccelerometerFilter {
 
   // iterated: the last linearisation stands where the update ends
   void measure_difference(const Vector3d& p_I_m, const Vector3d& difference, double variance) {
-    const RigConstants place{.lever_arm_m = p_I_m};
+    const RigConstants rig{.lever_arm_m = p_I_m};
     const RateAndAcceleration before = x;
     RateCovariance after = P;
     for (int i = 0; i < kIterations; ++i) {
-      const RateFactor f = flight_factor({x.head<3>(), x.tail<3>()}, place, difference);
+      const RateFactor f = flight_factor({x.head<3>(), x.tail<3>()}, rig, difference);
       const Vector3d innovation = -(f.residual + f.by_knot * (before - x));
       after = P;
       x = before + vector_update<3, 6>(f.by_knot, innovation, variance * Eigen::Matrix3d::Identity(), after);
@@ -54,7 +54,7 @@ struct AccelerometerFilter {
 }  // namespace
 
 AccelerometerRate::AccelerometerRate(const Params& params)
-    : params_(params), rails_({.walls = params.rails, .tilted = params.tilted_rails}) {
+    : params_(params), rails_({.upright_rails = params.rails, .tilted = params.tilted_rails}) {
   require_fields(params);
 }
 
@@ -80,7 +80,7 @@ Status AccelerometerRate::estimate(std::span<const ImuSample> samples,
   for (std::size_t k = 0; k < samples.size(); ++k) {
     if (k > 0) filter.predict(seconds(samples[k].time_ns - samples[k - 1].time_ns), params_.jerk_psd);
     const Vector3d &reading = samples[k].angular_velocity_rad_s, &force = samples[k].specific_force_m_s2;
-    const int clipped = clippings[k].gyro | clippings[k].void_gyro;
+    const int clipped = clippings[k].gyro | clippings[k].missing_gyro;
     for (int j = 0; j < 3 && params_.use_gyro; ++j) {
       if ((clipped >> j & 1) == 0) filter.measure_axis(j, reading[j], gyro_variance);
     }

@@ -13,7 +13,7 @@
 
 namespace tumble::baselines {
 
-/// Rates from several accelerometers at known places: the gyro-free inertial system, as an extended Kalman filter.
+/// Rates from several accelerometers at known positions: the gyro-free inertial system, as an extended Kalman filter.
 ///
 /// State: rate and angular acceleration, driven by white jerk. Measured: the difference of the specific force at each
 /// auxiliary IMU and at the primary, alpha x p + w x (w x p), which holds in flight, in contact and at rest alike; and

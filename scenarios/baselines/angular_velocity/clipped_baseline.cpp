@@ -174,13 +174,13 @@ class Chain {
   std::vector<Moment> after_;
 };
 
-// The most likely curve that passes no clipped reading on the wrong side: walls where the smoothed curve violates them,
-// found in rounds. The variance is that of the curve without walls, cut at the reading.
+// The most likely curve that passes no clipped reading on the wrong side: hard bounds where the smoothed curve violates
+// them, found in rounds. The variance is that of the curve without bounds, cut at the reading.
 std::vector<Value> smooth_with_bounds(const Axis& axis, const ClippedBaseline::Params& params) {
   constexpr int kRounds = 8;
   const BoundedJerk process(params.snap_psd, params.rate_sigma_rad_s);
-  std::vector<NormalSite> walls(axis.samples.size());
-  std::vector<Value> values = Chain<BoundedJerk>(axis, process, walls).smoothed();
+  std::vector<NormalSite> active(axis.samples.size());
+  std::vector<Value> values = Chain<BoundedJerk>(axis, process, active).smoothed();
   std::vector<double> variances(values.size());
   for (std::size_t k = 0; k < values.size(); ++k) {
     const double side = std::copysign(1.0, axis.reading(k));
@@ -191,16 +191,16 @@ std::vector<Value> smooth_with_bounds(const Axis& axis, const ClippedBaseline::P
   }
   for (int round = 0; round < kRounds; ++round) {
     bool moved = false;
-    for (std::size_t k = 0; k < walls.size(); ++k) {
+    for (std::size_t k = 0; k < active.size(); ++k) {
       if (!axis.clipped[k] || axis.overflown[k]) continue;
       const double beyond = std::copysign(1.0, axis.reading(k)) * (values[k].rate - axis.reading(k));
-      const bool standing = walls[k].precision > 0.0;
+      const bool standing = active[k].precision > 0.0;
       if (standing ? beyond <= 0.0 : beyond >= 0.0) continue;
-      walls[k] = standing ? NormalSite{} : NormalSite{1.0 / axis.variance, axis.reading(k) / axis.variance};
+      active[k] = standing ? NormalSite{} : NormalSite{1.0 / axis.variance, axis.reading(k) / axis.variance};
       moved = true;
     }
     if (!moved) break;
-    values = Chain<BoundedJerk>(axis, process, walls).smoothed();
+    values = Chain<BoundedJerk>(axis, process, active).smoothed();
   }
   for (std::size_t k = 0; k < values.size(); ++k) values[k].variance = std::max(variances[k], 1e-3 * axis.variance);
   return values;
@@ -221,7 +221,7 @@ std::vector<Value> bridge(const Axis& axis, const ClippedBaseline::Params& param
 }  // namespace
 
 ClippedBaseline::ClippedBaseline(const Params& params)
-    : params_(params), rails_({.walls = params.rails, .tilted = params.tilted_rails}) {
+    : params_(params), rails_({.upright_rails = params.rails, .tilted = params.tilted_rails}) {
   require_fields(params);
 }
 
@@ -236,13 +236,13 @@ Status ClippedBaseline::estimate(std::span<const ImuSample> samples, std::vector
   for (axis.index = 0; axis.index < 3; ++axis.index) {
     const int bit = 1 << axis.index;
     for (std::size_t k = 0; k < count; ++k) {
-      axis.overflown[k] = (clippings[k].void_gyro & bit) != 0;
+      axis.overflown[k] = (clippings[k].missing_gyro & bit) != 0;
       axis.clipped[k] = axis.overflown[k] || (clippings[k].gyro & bit) != 0;
     }
     const std::vector<Value> values = bridge(axis, params_);
     for (std::size_t k = 0; k < count; ++k) {
       double rate = axis.reading(k);
-      if ((clippings[k].void_gyro & bit) != 0) {
+      if ((clippings[k].missing_gyro & bit) != 0) {
         rate = std::clamp(values[k].rate, -params_.rate_max_rad_s, params_.rate_max_rad_s);
       } else if (axis.clipped[k]) {
         const double low = std::abs(rate), side = std::copysign(1.0, rate);
@@ -254,7 +254,7 @@ Status ClippedBaseline::estimate(std::span<const ImuSample> samples, std::vector
   }
   for (std::size_t k = 0; k < count; ++k) {
     out[k].time_ns = samples[k].time_ns;
-    out[k].clipped_axes = clippings[k].gyro | clippings[k].void_gyro;
+    out[k].clipped_axes = clippings[k].gyro | clippings[k].missing_gyro;
     out[k].source = out[k].clipped_axes == 0 ? RateSource::measured : RateSource::bounded_only;
   }
   return {};

@@ -24,9 +24,9 @@ namespace tumble::baselines {
 ///   corrections by another sensor.
 /// - `constant_jerk`: a smoother whose jerk is a random walk (white noise on snap) over short times and whose rate is
 ///   bounded in the long run: the stationary process of Matern 5/2 with deviation `rate_sigma_rad_s`. A clipped reading
-///   is a wall that the curve leans on instead of being cut there. Works for swings that pass the rail without impacts
-///   and for gaps up to about 2 / lambda, lambda = (3 psd / (16 sigma^2))^(1/5), 0.15 s; over longer ones it falls back
-///   towards the rail, with the variance of a curve that is known to lie beyond it.
+///   is a hard bound that the curve leans on instead of being cut there. Works for swings that pass the rail without
+///   impacts and for gaps up to about 2 / lambda, lambda = (3 psd / (16 sigma^2))^(1/5), 0.15 s; over longer ones it
+///   falls back towards the rail, with the variance of a curve that is known to lie beyond it.
 ///
 /// Where a gap begins or ends with an impact its slope is carried into the gap, and both smooth ones leave the truth:
 /// on tumbles of the rig their means are worse than the clipped reading.

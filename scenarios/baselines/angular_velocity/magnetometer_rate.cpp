@@ -74,7 +74,7 @@ void start_field(const Vector3d& reading, double noise, double iron, FieldFilter
 }  // namespace
 
 MagnetometerRate::MagnetometerRate(const Params& params)
-    : params_(params), rails_({.walls = params.rails, .tilted = params.tilted_rails}) {
+    : params_(params), rails_({.upright_rails = params.rails, .tilted = params.tilted_rails}) {
   require_fields(params);
 }
 
@@ -100,7 +100,7 @@ Status MagnetometerRate::estimate(std::span<const ImuSample> samples, std::span<
     const double dt_s = k == 0 ? 0.0 : seconds(samples[k].time_ns - samples[k - 1].time_ns);
     if (k > 0) filter.predict(dt_s, params_.jerk_psd, disturbed * disturbance * disturbance);
     const Vector3d& reading = samples[k].angular_velocity_rad_s;
-    const int clipped = clippings[k].gyro | clippings[k].void_gyro;
+    const int clipped = clippings[k].gyro | clippings[k].missing_gyro;
     for (int j = 0; j < 3; ++j) {
       if ((clipped >> j & 1) == 0) filter.measure_axis(j, reading[j], gyro_variance);
     }

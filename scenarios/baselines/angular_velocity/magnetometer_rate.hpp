@@ -17,7 +17,7 @@ namespace tumble::baselines {
 ///
 /// State: rate, angular acceleration (white jerk), the field in IMU axes, which turns against the body
 /// (b' = -w x b), and the sensor's hard iron. Measured: the gyro's free axes and the magnetometer. The field's own
-/// change along the way (iron nearby) is process noise, which grows where its length is not the Earth's: the adaptive
+/// change along the path (iron nearby) is process noise, which grows where its length is not the Earth's: the adaptive
 /// part of Tan's family. Made for bodies that spin fast about an axis across the field, in the open (shells, balls):
 /// the rate about the field itself does not show, and follows from smoothness alone; steel at arm's length looks like
 /// rotation.
@@ -34,7 +34,7 @@ class MagnetometerRate {
     double field_noise_t = 5e-8;           ///< of one reading, one standard deviation [T]
     double hard_iron_t = 1e-6;             ///< offset of the sensor, one standard deviation [T]
     double earth_field_t = 0.0;            ///< length of the undisturbed field [T]; 0: unknown
-    double disturbance_t_sqrt_s = 1e-6;    ///< change of the field along the way [T/sqrt(s)]
+    double disturbance_t_sqrt_s = 1e-6;    ///< change of the field along the path [T/sqrt(s)]
     double disturbed_share = 0.02;         ///< deviation of length, as a share, that doubles it in power
     double jerk_psd = 1e7;                 ///< density of the white angular jerk [rad^2/s^5]
     double rate_max_rad_s = 50.0;          ///< no answer lies beyond
@@ -54,7 +54,7 @@ class MagnetometerRate {
             {"hard_iron_t", "T", 0.0, 1e-3, "offset of the magnetometer, one standard deviation", Rank::first});
       visit(p.earth_field_t, {"earth_field_t", "T", 0.0, 1e-3, "length of the undisturbed field; 0: unknown"});
       visit(p.disturbance_t_sqrt_s,
-            {"disturbance_t_sqrt_s", "T/sqrt(s)", 0.0, 1.0, "change of the field along the way", Rank::first});
+            {"disturbance_t_sqrt_s", "T/sqrt(s)", 0.0, 1.0, "change of the field along the path", Rank::first});
       visit(p.disturbed_share, {"disturbed_share", "1", 1e-4, 10.0,
                                 "deviation of the field's length that doubles that change in power", Rank::first});
       visit(p.jerk_psd, {"jerk_psd_rad2_s5", "rad^2/s^5", 1.0, 1e12, "density of the white angular jerk", Rank::first});

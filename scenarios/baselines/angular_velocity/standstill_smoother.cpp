@@ -183,7 +183,7 @@ void smooth(const Step& next, Belief& now, const Belief& next_smoothed) {
 }  // namespace
 
 StandstillSmoother::StandstillSmoother(const Params& params)
-    : params_(params), rails_({.walls = params.rails, .tilted = params.tilted_rails}) {
+    : params_(params), rails_({.upright_rails = params.rails, .tilted = params.tilted_rails}) {
   require_fields(params);
 }
 
@@ -214,7 +214,7 @@ Status StandstillSmoother::estimate(std::span<const ImuSample> samples, std::vec
       start_anew(samples[k], belief, step.transition);
     }
     step.before = belief;
-    const int clipped = clippings[k].gyro | clippings[k].void_gyro;
+    const int clipped = clippings[k].gyro | clippings[k].missing_gyro;
     for (int j = 0; j < 3; ++j) {
       if ((clippings[k].gyro >> j & 1) != 0) hold(params_, samples[k].angular_velocity_rad_s[j], j, belief);
       if ((clipped >> j & 1) != 0) continue;
@@ -232,7 +232,7 @@ Status StandstillSmoother::estimate(std::span<const ImuSample> samples, std::vec
     belief = smoothed;
     RateState& state = states[k];
     state.time_ns = samples[k].time_ns;
-    state.clipped_axes = clippings[k].gyro | clippings[k].void_gyro;
+    state.clipped_axes = clippings[k].gyro | clippings[k].missing_gyro;
     state.source = state.clipped_axes == 0 ? RateSource::measured : RateSource::bounded_only;
     for (int j = 0; j < 3; ++j) {
       const double reading = samples[k].angular_velocity_rad_s[j], side = std::copysign(1.0, reading);

@@ -29,8 +29,8 @@ class TrimmedIcp {
     double trim_min = 0.5;       ///< least share of matches kept
     double trim_max = 0.7;
     double trim_lambda = 2.35;
-    /// The trap of the original: shares are taken of all slots though unmatched ones are missing from the sorted list.
-    /// There it read past its end; here the index stops at the end.
+    /// A known error of the original: shares are taken of all slots though unmatched ones are missing from the sorted
+    /// list. There it read past its end; here the index stops at the end.
     bool count_unmatched_slots = false;
     int iterations_max = 40;
     double step_m = 0.01;  ///< both means over two increments must fall below their bound

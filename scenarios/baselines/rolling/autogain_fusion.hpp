@@ -13,7 +13,7 @@ namespace tumble::baselines {
 /// Position of a rolling sphere by the published fusion of rolling with the integrated accelerometer (Zevering et al.,
 /// IEEE MFI 2021, eqs 6-13), flat floor. The integral of the acceleration, gated by the rates and limited to a little
 /// more than the rolling velocity, is averaged with the rolling velocity: its sign decides alone, so a sphere that
-/// rolls without slip loses up to half of its way. Kept to compare with; the switches name what paper, code and sense
+/// rolls without slip loses up to half of its path. Kept to compare with; the switches name what paper, code and sense
 /// differ in.
 class AutogainFusion {
  public:

@@ -103,23 +103,23 @@ void SlipObserver::advance_closed(const Eigen::Vector2d& e, double dt_s, State& 
   if (!state.ignoring && e.norm() > params_.open_m_s2) open_event(e, state);
 }
 
-/// Starts an event with the contact velocity and the way that the residuals before it add up to.
+/// Starts an event with the contact velocity and the path that the residuals before it add up to.
 void SlipObserver::open_event(const Eigen::Vector2d& e, State& state) const {
   state.open = true;
   state.event_s = 0.0;
-  Eigen::Vector2d u = Eigen::Vector2d::Zero(), way = Eigen::Vector2d::Zero();
+  Eigen::Vector2d u = Eigen::Vector2d::Zero(), path = Eigen::Vector2d::Zero();
   const std::int64_t known = std::min<std::int64_t>(state.residuals, kHistory);
   for (std::int64_t back = 1; back <= known; ++back) {  // newest first
     const auto place = static_cast<std::size_t>((state.residuals - back) % kHistory);
     if (state.e_W_m_s2[place].dot(e) <= 0.0) break;
     const double dt_s = state.e_dt_s[place];
     u += dt_s * state.e_W_m_s2[place];
-    way += dt_s * state.event_s * state.e_W_m_s2[place];  // e of `event_s` ago has moved the sphere since
+    path += dt_s * state.event_s * state.e_W_m_s2[place];  // e of `event_s` ago has moved the sphere since
     state.event_s += dt_s;
   }
   state.u_W_m_s = u;
-  state.event_m = way;
-  state.pending_m += way;
+  state.event_m = path;
+  state.pending_m += path;
 }
 
 void SlipObserver::advance_open(const Eigen::Vector2d& e, double dt_s, State& state) const {

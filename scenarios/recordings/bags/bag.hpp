@@ -30,7 +30,7 @@ struct BagTrack {
     Eigen::Vector3d p_WB_m = Eigen::Vector3d::Zero();
     Eigen::Quaterniond q_WB = Eigen::Quaterniond::Identity();
     Eigen::Vector3d v_WB_B_m_s = Eigen::Vector3d::Zero(), w_WB_B_rad_s = Eigen::Vector3d::Zero();
-    /// Of (place in W, attitude error phi in W), as in PoseState; zero where nobody states one.
+    /// Of (position in W, attitude error phi in W), as in PoseState; zero where nobody states one.
     Eigen::Matrix<double, 6, 6> covariance = Eigen::Matrix<double, 6, 6>::Zero();
   };
   std::string name;  ///< letters, digits and _

@@ -88,12 +88,12 @@ std::vector<Event> first_readings(std::size_t imus, const std::vector<Event>& ev
 }
 
 /// Under which names a sensor stands in a bag.
-struct SensorPlace {
+struct SensorNames {
   std::string topic, frame;
 };
 
-std::vector<SensorPlace> imu_places(const sim::Sensors& sensors, const std::optional<ReaderNames>& names) {
-  std::vector<SensorPlace> out;
+std::vector<SensorNames> names_of_imus(const sim::Sensors& sensors, const std::optional<ReaderNames>& names) {
+  std::vector<SensorNames> out;
   for (const sim::ImuRecord& imu : sensors.imus) {
     const std::string name = file_stem(imu.name, "imu", out.size());
     out.push_back({"/" + name, name});
@@ -102,8 +102,8 @@ std::vector<SensorPlace> imu_places(const sim::Sensors& sensors, const std::opti
   return out;
 }
 
-std::vector<SensorPlace> lidar_places(const sim::Sensors& sensors, const std::optional<ReaderNames>& names) {
-  std::vector<SensorPlace> out;
+std::vector<SensorNames> names_of_lidars(const sim::Sensors& sensors, const std::optional<ReaderNames>& names) {
+  std::vector<SensorNames> out;
   for (const sim::LidarRecord& lidar : sensors.lidars) {
     const std::string name = file_stem(lidar.name, "lidar", out.size());
     out.push_back({"/" + name + "/points", name});
@@ -120,8 +120,8 @@ class Export {
         writing_(writing),
         bag_(bag),
         origin_ns_(bag_origin_ns(writing)),
-        imus_(imu_places(sensors, writing.names)),
-        lidars_(lidar_places(sensors, writing.names)),
+        imus_(names_of_imus(sensors, writing.names)),
+        lidars_(names_of_lidars(sensors, writing.names)),
         body_(writing.names ? writing.names->body_frame : kBody) {
     if (origin_ns_ < 0) throw BadInput("the recording begins before 1970: a bag has no such stamps");
   }
@@ -183,19 +183,19 @@ class Export {
   void write(const Event& event, std::int64_t stamp) {
     switch (event.kind) {
       case Event::imu: {
-        const SensorPlace& place = imus_[event.of];
-        return bag_.write(place.topic, stamp,
-                          imu_message(sensors_.imus[event.of], event.index, header_of(stamp, place.frame)));
+        const SensorNames& sensor = imus_[event.of];
+        return bag_.write(sensor.topic, stamp,
+                          imu_message(sensors_.imus[event.of], event.index, header_of(stamp, sensor.frame)));
       }
       case Event::sweep: {
         const sim::LidarRecord& lidar = sensors_.lidars[event.of];
-        const SensorPlace& place = lidars_[event.of];
+        const SensorNames& sensor = lidars_[event.of];
         const std::int64_t start_ns = stamp_of(lidar.sweep_start_ns[event.index]);
-        const ros::Header header = header_of(start_ns, place.frame);
+        const ros::Header header = header_of(start_ns, sensor.frame);
         if (writing_.points == nullptr)
-          return bag_.write(place.topic, stamp, sweep_message(lidar, event.index, writing_.sweeps, start_ns, header));
+          return bag_.write(sensor.topic, stamp, sweep_message(lidar, event.index, writing_.sweeps, start_ns, header));
         const sim::LidarRecord alone = sweep_alone(lidar, &writing_.points->at(event.of), event.index);
-        return bag_.write(place.topic, stamp, sweep_message(alone, 0, writing_.sweeps, start_ns, header));
+        return bag_.write(sensor.topic, stamp, sweep_message(alone, 0, writing_.sweeps, start_ns, header));
       }
       case Event::truth:
         return write_pose(pose_of(*writing_.truth, event.index), "truth", body_, stamp);
@@ -230,7 +230,7 @@ class Export {
   const BagWriting& writing_;
   BagWriter& bag_;
   std::int64_t origin_ns_;
-  std::vector<SensorPlace> imus_, lidars_;  ///< of those sensors that are written, the first ones
+  std::vector<SensorNames> imus_, lidars_;  ///< of those sensors that are written, the first ones
   std::string body_;                        ///< its frame
   std::optional<std::int64_t> tick_ns_;     ///< the clock's last one
 };

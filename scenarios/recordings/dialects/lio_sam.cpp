@@ -52,7 +52,7 @@ lio_sam:
   imuGyrBiasN: 3.5640318696367613e-05
   imuGravity: {gravity}           # m/s^2, of this recording
   imuRPYWeight: 0.0               # these readings have no attitude
-  extrinsicTrans: {T}   # place of the IMU in the lidar, m
+  extrinsicTrans: {T}   # position of the IMU in the lidar, m
   extrinsicRot: {R}   # turns the IMU's axes to the lidar's
   extrinsicRPY: {R}
   edgeThreshold: 1.0

@@ -94,17 +94,17 @@ void require_rates_in_range(const std::string& where, const sim::ImuRecord& imu,
                  (degrees ? kTakenInDegrees : ""));
 }
 
-constexpr double kTurnWindow_s = 0.2, kNearGravity = 0.1;
-constexpr double kLeastTurn = 0.0175, kMostTurn = 0.4;  // of the force, as shares of it: from one degree on
+constexpr double kRotationWindow_s = 0.2, kNearGravity = 0.1;
+constexpr double kLeastRotation = 0.0175, kMostRotation = 0.4;  // of the force, as shares of it: from one degree on
 constexpr int kLeastWindows = 10;
 constexpr double kLeastCorrelation = 0.8;
 /// Of gravity, at which a brisk window ends.
-constexpr double kBriskTurn = 0.25;
+constexpr double kBriskRotation = 0.25;
 
 }  // namespace
 
-GravityTurn gravity_turn(const sim::ImuRecord& imu, TurnWindows windows) {
-  GravityTurn turn;
+GravityRotation gravity_rotation(const sim::ImuRecord& imu, RotationWindows windows) {
+  GravityRotation turn;
   double said2 = 0.0, seen2 = 0.0, both = 0.0;
   const std::size_t count = imu.time_ns.size();
   const auto near = [&](std::size_t k) {
@@ -114,18 +114,18 @@ GravityTurn gravity_turn(const sim::ImuRecord& imu, TurnWindows windows) {
     std::size_t end = begin;
     Eigen::Vector3d angle = Eigen::Vector3d::Zero();
     const auto turned = [&] {
-      return windows == TurnWindows::brisk && end >= begin + 4 &&
-             (imu.accel_m_s2[end] - imu.accel_m_s2[begin]).norm() > kBriskTurn * kStandardGravity_m_s2;
+      return windows == RotationWindows::brisk && end >= begin + 4 &&
+             (imu.accel_m_s2[end] - imu.accel_m_s2[begin]).norm() > kBriskRotation * kStandardGravity_m_s2;
     };
     while (end + 1 < count && near(end) && !turned() &&
-           1e-9 * static_cast<double>(imu.time_ns[end] - imu.time_ns[begin]) < kTurnWindow_s) {
+           1e-9 * static_cast<double>(imu.time_ns[end] - imu.time_ns[begin]) < kRotationWindow_s) {
       ++end;
       // a sample is the mean over what ends at its stamp
       angle += imu.gyro_rad_s[end] * (1e-9 * static_cast<double>(imu.time_ns[end] - imu.time_ns[end - 1]));
     }
     const double length_s = 1e-9 * static_cast<double>(imu.time_ns[end] - imu.time_ns[begin]);
-    const bool whole =
-        near(end) && end >= begin + 4 && (length_s >= kTurnWindow_s || turned()) && length_s < 1.5 * kTurnWindow_s;
+    const bool whole = near(end) && end >= begin + 4 && (length_s >= kRotationWindow_s || turned()) &&
+                       length_s < 1.5 * kRotationWindow_s;
     if (whole) {
       // the ends' means over a quarter each, so that noise does not pass for turning
       const std::size_t quarter = std::max<std::size_t>(1, (end - begin) / 4);
@@ -135,7 +135,7 @@ GravityTurn gravity_turn(const sim::ImuRecord& imu, TurnWindows windows) {
       const Eigen::Vector3d seen = (last - first) / static_cast<double>(quarter);
       const double share = 1.0 - static_cast<double>(quarter - 1) / static_cast<double>(end - begin);
       const Eigen::Vector3d said = -share * angle.cross(middle / static_cast<double>(end - begin + 1));
-      if (seen.norm() > kLeastTurn * kStandardGravity_m_s2 && seen.norm() < kMostTurn * kStandardGravity_m_s2) {
+      if (seen.norm() > kLeastRotation * kStandardGravity_m_s2 && seen.norm() < kMostRotation * kStandardGravity_m_s2) {
         ++turn.windows;
         both += said.dot(seen), said2 += said.squaredNorm(), seen2 += seen.squaredNorm();
       }
@@ -151,12 +151,12 @@ GravityTurn gravity_turn(const sim::ImuRecord& imu, TurnWindows windows) {
 
 std::string require_plausible_rates(const std::string& where, const sim::ImuRecord& imu, GyroUnit unit) {
   require_rates_in_range(where, imu, unit);
-  const auto tells = [](const GravityTurn& found) {
+  const auto tells = [](const GravityRotation& found) {
     return found.windows >= kLeastWindows && std::abs(found.correlation) >= kLeastCorrelation;
   };
-  GravityTurn turn = gravity_turn(imu, TurnWindows::even);
+  GravityRotation turn = gravity_rotation(imu, RotationWindows::even);
   // a sphere that rolls turns too far within them
-  if (!tells(turn)) turn = gravity_turn(imu, TurnWindows::brisk);
+  if (!tells(turn)) turn = gravity_rotation(imu, RotationWindows::brisk);
   const bool dead =
       std::all_of(imu.gyro_rad_s.begin(), imu.gyro_rad_s.end(), [](const auto& w) { return w.isZero(0.0); });
   if (dead) {

@@ -34,12 +34,12 @@ std::string even_out_stamps(sim::ImuRecord& imu);
 /// -(angle turned) x force. `ratio`: the factor between them, 1 when the units agree; `correlation`: of the two.
 /// Brisk windows end before, once the force has turned by a quarter of gravity: within 0.2 s a sphere that rolls turns
 /// too far. O(N).
-enum class TurnWindows { even, brisk };
-struct GravityTurn {
+enum class RotationWindows { even, brisk };
+struct GravityRotation {
   int windows = 0;
   double ratio = 0.0, correlation = 0.0;
 };
-GravityTurn gravity_turn(const sim::ImuRecord& imu, TurnWindows windows = TurnWindows::even);
+GravityRotation gravity_rotation(const sim::ImuRecord& imu, RotationWindows windows = RotationWindows::even);
 
 /// A remark on the units that gravity shows, in even windows or else in brisk ones, or on a gyro that reads nothing but
 /// 0, or none where the motion does not tell. Throws BadInput beginning with `where` when the rates are in the other

@@ -18,7 +18,7 @@ namespace tumble::scenarios {
 namespace {
 
 constexpr double kFreeShare = 0.9;
-constexpr double kTurning_rad_s = 0.5;
+constexpr double kRotating_rad_s = 0.5;
 constexpr std::size_t kLeastSamples = 200;
 constexpr int kSearch_ms = 100;
 constexpr double kSlopeStep_s = 4e-3;
@@ -54,7 +54,7 @@ std::vector<SamplePair> free_samples(std::vector<SamplePair> pairs) {
   Eigen::Vector3d extreme = Eigen::Vector3d::Zero();
   for (const SamplePair& pair : pairs) extreme = extreme.cwiseMax(pair.w_I.cwiseAbs());
   std::erase_if(pairs, [&](const SamplePair& pair) {
-    return pair.speed_rad_s < kTurning_rad_s || (pair.w_I.cwiseAbs().array() > kFreeShare * extreme.array()).any();
+    return pair.speed_rad_s < kRotating_rad_s || (pair.w_I.cwiseAbs().array() > kFreeShare * extreme.array()).any();
   });
   return pairs;
 }

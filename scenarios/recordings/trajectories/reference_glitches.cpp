@@ -19,7 +19,7 @@ constexpr std::size_t kMargin = 3;          // samples
 constexpr std::int64_t kPair_ns = 500'000'000;
 constexpr double kThaw_rad = 0.02, kCatchUp = 1.5;
 
-double turn_rad(const ReferencePose& a, const ReferencePose& b) {
+double rotation_rad(const ReferencePose& a, const ReferencePose& b) {
   const Eigen::Quaterniond q = a.q_WA.conjugate() * b.q_WA;
   return 2.0 * std::atan2(q.vec().norm(), std::abs(q.w()));
 }
@@ -28,7 +28,7 @@ std::vector<double> step_rates_rad_s(const std::vector<ReferencePose>& poses) {
   std::vector<double> rates;
   for (std::size_t k = 0; k + 1 < poses.size(); ++k) {
     const double step_s = 1e-9 * static_cast<double>(poses[k + 1].time_ns - poses[k].time_ns);
-    rates.push_back(turn_rad(poses[k], poses[k + 1]) / step_s);
+    rates.push_back(rotation_rad(poses[k], poses[k + 1]) / step_s);
   }
   return rates;
 }
@@ -89,8 +89,8 @@ void leave_out_frozen(std::vector<ReferencePose>& poses, GlitchReport& report) {
     while (last + 1 < poses.size() && poses[last + 1].q_WA.coeffs() == poses[first].q_WA.coeffs()) ++last;
     // at rest a rounded attitude may repeat; it does not then catch up with a leap
     const bool thaws = last > first && last + 2 < poses.size();
-    const double thaw_rad = thaws ? turn_rad(poses[last], poses[last + 1]) : 0.0;
-    if (thaws && thaw_rad > kThaw_rad && thaw_rad > kCatchUp * turn_rad(poses[last + 1], poses[last + 2])) {
+    const double thaw_rad = thaws ? rotation_rad(poses[last], poses[last + 1]) : 0.0;
+    if (thaws && thaw_rad > kThaw_rad && thaw_rad > kCatchUp * rotation_rad(poses[last + 1], poses[last + 2])) {
       std::fill(out.begin() + static_cast<std::ptrdiff_t>(first + 1),
                 out.begin() + static_cast<std::ptrdiff_t>(last + 1), true);
       report.frozen += last - first;

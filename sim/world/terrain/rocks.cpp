@@ -14,8 +14,8 @@ std::vector<Rock> strew_rocks(Stream& stream, const RockField& field, const Grou
     const double a_m = stream.uniform(low, 1.0) * field.largest_m, b_m = stream.uniform(low, 1.0) * field.largest_m;
     const Eigen::Vector3d half_axes_m(a_m, b_m, stream.uniform(0.75 * low, 0.7) * field.largest_m);
     const double reach_m = field.clear.radius_m + half_axes_m.head<2>().maxCoeff();
-    const Eigen::Vector2d at = draw_place(stream, field.area, "rock", [&](const Eigen::Vector2d& place) {
-      return (place - field.clear.centre_m).norm() >= reach_m;
+    const Eigen::Vector2d at = draw_position(stream, field.area, "rock", [&](const Eigen::Vector2d& position) {
+      return (position - field.clear.centre_m).norm() >= reach_m;
     });
     const double z_m = ground.height_m(at.x(), at.y()) + 0.2 * half_axes_m.z();
     rocks.push_back({{at.x(), at.y(), z_m}, half_axes_m, stream.uniform(0.0, std::numbers::pi)});

@@ -12,11 +12,11 @@ std::vector<Trunk> plant_trunks(Stream& stream, const Stand& stand, const Ground
   std::vector<Trunk> trunks;
   for (int i = 0; i < stand.count; ++i) {
     const double radius_m = stream.uniform(0.4, 1.0) * stand.largest_radius_m;
-    const Eigen::Vector2d at = draw_place(stream, stand.area, "trunk", [&](const Eigen::Vector2d& place) {
-      if (std::abs(place.y()) < stand.lane_half_width_m + radius_m) return false;
-      if ((place - stand.clear.centre_m).norm() < stand.clear.radius_m + radius_m) return false;
+    const Eigen::Vector2d at = draw_position(stream, stand.area, "trunk", [&](const Eigen::Vector2d& position) {
+      if (std::abs(position.y()) < stand.lane_half_width_m + radius_m) return false;
+      if ((position - stand.clear.centre_m).norm() < stand.clear.radius_m + radius_m) return false;
       return std::none_of(trunks.begin(), trunks.end(), [&](const Trunk& other) {
-        return (other.centre_W_m.head<2>() - place).norm() < stand.spacing_m;
+        return (other.centre_W_m.head<2>() - position).norm() < stand.spacing_m;
       });
     });
     const double half_height_m = stream.uniform(1.5, 3.0);

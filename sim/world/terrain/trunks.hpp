@@ -6,7 +6,7 @@
 
 #include "sim/random/stream.hpp"
 #include "sim/world/terrain/ground.hpp"
-#include "sim/world/terrain/place.hpp"
+#include "sim/world/terrain/random_position.hpp"
 
 namespace tumble::sim {
 

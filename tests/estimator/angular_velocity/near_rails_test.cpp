@@ -104,7 +104,7 @@ TEST(NearRails, ARailThatWasNotSeenIsNotMet) {
   EXPECT_GT(positive, 0);
 }
 
-// The distance is that to the plane, not to a wall: motion beside moves it.
+// The distance is that to the plane, not to an upright rail: motion beside moves it.
 TEST(NearRails, TheRailIsThePlane) {
   std::vector<ImuSample> samples(3);
   for (std::size_t k = 0; k < samples.size(); ++k)

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The one judgement of rails: accelerometers with tilted elements, other IMUs on the body, families that keep the wall.
+// The one judgement of rails: accelerometers with tilted elements, other IMUs on the body, families that keep upright
+// rails.
 #include <gtest/gtest.h>
 
 #include <Eigen/LU>
@@ -236,23 +237,23 @@ TEST(RailJudgement, AnAuxiliaryImuIsReadAlongItsElements) {
   EXPECT_EQ(align(auxiliary_imu, tumble.samples, few, tumble.samples, 1.0, readings).trouble, Trouble::too_few);
 }
 
-// Published with the wall of each axis, judged by planes on demand.
-TEST(RailJudgement, PublishedFamiliesKeepTheWallUnlessAsked) {
+// Published with the upright rail of each axis, judged by planes on demand.
+TEST(RailJudgement, PublishedFamiliesKeepUprightRailsUnlessAsked) {
   const TumbleRecording tumble = tilted_gyro();
-  std::vector<RateState> wall, planes;
+  std::vector<RateState> upright, planes;
   ASSERT_TRUE(baselines::ClippedBaseline({.kind = baselines::ClippedBaseline::Kind::interpolate})
-                  .estimate(tumble.samples, wall)
+                  .estimate(tumble.samples, upright)
                   .ok());
   ASSERT_TRUE(baselines::ClippedBaseline({.kind = baselines::ClippedBaseline::Kind::interpolate, .tilted_rails = true})
                   .estimate(tumble.samples, planes)
                   .ok());
-  Share by_wall, by_planes;
-  for (std::size_t k = 0; k < wall.size(); ++k) {
-    by_wall.add(tumble.hidden[k], wall[k].clipped_axes);
+  Share by_rails, by_planes;
+  for (std::size_t k = 0; k < upright.size(); ++k) {
+    by_rails.add(tumble.hidden[k], upright[k].clipped_axes);
     by_planes.add(tumble.hidden[k], planes[k].clipped_axes);
   }
   ASSERT_GT(by_planes.deep, 20);
-  EXPECT_LT(by_wall.found, 0.3 * by_wall.deep);  // measured: 0.22, readings that happen to repeat the largest
+  EXPECT_LT(by_rails.found, 0.3 * by_rails.deep);  // measured: 0.22, readings that happen to repeat the largest
   EXPECT_GT(by_planes.found, 0.95 * by_planes.deep);
 }
 
@@ -297,7 +298,7 @@ TEST(RailJudgement, TheWatchJudgesByWhatComesAfterToo) {
     clipped += batch.clippings[k].gyro != 0;
     apart += watch.judge(before, now, state, after).gyro != batch.clippings[k].gyro;
     apart_by_before += watch.judge(before, now, state).gyro != batch.clippings[k].gyro;
-    watch.walls().classify(now, state.known.walls);
+    watch.upright_rails().classify(now, state.known.upright_rails);
   }
   std::printf("%d clipped, apart %d, without the sample after %d\n", clipped, apart, apart_by_before);
   ASSERT_GT(clipped, 50);
@@ -311,7 +312,7 @@ TEST(RailJudgement, TellsWhatAReadingIsWorth) {
   sample.specific_force_m_s2 = {1.0, -50.0, 2.0};
   Clipping clipping;
   clipping.gyro = 3;
-  clipping.void_gyro = 4;
+  clipping.missing_gyro = 4;
   clipping.accel = 2;
   EXPECT_EQ(element_reading(sample, clipping, Triad::gyro, 0), ElementReading::clipped_high);
   EXPECT_EQ(element_reading(sample, clipping, Triad::gyro, 1), ElementReading::clipped_low);

@@ -112,7 +112,7 @@ TEST(RailPlanes, NothingIsFoundWhereNothingClips) {
   }
 }
 
-// The first tries' traps. A spin is a constant rate that begins and ends with an impact; a top turns around slowly.
+// What misled first tries. A spin is a constant rate that begins and ends with an impact; a top turns around slowly.
 TEST(RailPlanes, SpinsTopsRestAndCreepingAreNoRails) {
   for (std::uint64_t seed = 1; seed <= 10; ++seed) {
     oracles::Gaussian noise(seed);

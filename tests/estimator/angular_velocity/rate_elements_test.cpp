@@ -112,11 +112,11 @@ RailPlanes plane_of_x(double distance_rad_s) {
 }
 
 // The top of straight lines has hidden 2 rad/s; half a step at either end is what whole samples leave open.
-TEST(UnseenRails, ALevelTopNearTheOthersMayHideWhereItsSlopesMeet) {
+TEST(UnseenRails, APlateauOfTheMotionNearTheOthersMayHideWhereItsSlopesMeet) {
   for (const int sign : {-1, 1}) {
     for (const double down : {0.25, 0.5}) {
       std::vector<RateObservation> tops = cut_tops(8.5, 0.4, down, sign);
-      doubt_level_tops(plane_of_x(8.7), {}, 0.02, 0.005, tops);
+      doubt_motion_plateaus(plane_of_x(8.7), {}, 0.02, 0.005, tops);
       EXPECT_NEAR(2.0 * tops[30].lost_sigma_rad_s.y(), 2.0, 0.5 * (0.4 + down)) << down;
       EXPECT_EQ(tops[30].doubted, 2u);
       EXPECT_EQ(tops[5].doubted, 0u);
@@ -130,7 +130,7 @@ TEST(UnseenRails, ALevelTopNearTheOthersMayHideWhereItsSlopesMeet) {
 
 TEST(UnseenRails, NothingIsDoubtedThatIsKnownOrFarFromTheRails) {
   const auto doubted = [](const RailPlanes& planes, std::vector<RateObservation> tops) {
-    doubt_level_tops(planes, {}, 0.02, 0.005, tops);
+    doubt_motion_plateaus(planes, {}, 0.02, 0.005, tops);
     return std::any_of(tops.begin(), tops.end(), [](const RateObservation& o) { return o.doubted != 0; });
   };
   const std::vector<RateObservation> top = cut_tops(8.5, 0.4, 0.4, 1);
@@ -159,7 +159,7 @@ TEST(UnseenRails, WhatWasReadFarBeyondRefutesThem) {
   for (const bool beyond : {false, true}) {
     std::vector<RateObservation> top = cut_tops(8.5, 0.4, 0.4, 1);
     const LeastRails known = beyond ? least : LeastRails{};
-    doubt_level_tops(plane_of_x(8.7), known, 0.02, 0.005, top);
+    doubt_motion_plateaus(plane_of_x(8.7), known, 0.02, 0.005, top);
     EXPECT_EQ(top[30].doubted != 0, !beyond);
     RateObservation single = top[30];
     single.doubted = 0;

@@ -144,7 +144,7 @@ TEST(RateStream, SplittingAnywhereChangesNothing) {
   EXPECT_FALSE(RateStream::equal(other, whole));
   // all that a later step reads of a sample counts
   other = whole;
-  other.window[3].observation.partial ^= 1;
+  other.window[3].observation.subsample_saturated ^= 1;
   EXPECT_FALSE(RateStream::equal(other, whole));
   other = whole;
   other.window[3].observation.lost_rad_s.x() += 1e-12;

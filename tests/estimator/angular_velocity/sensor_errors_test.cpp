@@ -67,11 +67,11 @@ TEST(SensorErrors, WhatNoMotionTellsIsDiscounted) {
   SensorErrorEvidence evidence;
   evidence.information = root * root.transpose();
   for (double& x : evidence.gradient) x = noise();
-  SensorErrors both_turned;
-  both_turned.gyro = both_turned.accel = so3::hat({0.3, -0.2, 0.5});
-  SensorErrors gyro_longer, accel_longer, gyro_turned, one_axis;
+  SensorErrors both_rotated;
+  both_rotated.gyro = both_rotated.accel = so3::hat({0.3, -0.2, 0.5});
+  SensorErrors gyro_longer, accel_longer, gyro_rotated, one_axis;
   gyro_longer.gyro.setIdentity(), accel_longer.accel.setIdentity();
-  gyro_turned.gyro = so3::hat({0.3, -0.2, 0.5}), gyro_turned.accel = -gyro_turned.gyro;
+  gyro_rotated.gyro = so3::hat({0.3, -0.2, 0.5}), gyro_rotated.accel = -gyro_rotated.gyro;
   one_axis.gyro.diagonal() << 2.0, -1.0, -1.0;
   SensorErrors late;
   late.accel_delay_s = 1.0;
@@ -85,11 +85,11 @@ TEST(SensorErrors, WhatNoMotionTellsIsDiscounted) {
     const SensorErrors::Vector v = error.vector();
     return std::pair(v.dot(of.gradient), v.dot(of.information * v));
   };
-  for (const SensorErrors& untold : {both_turned, gyro_longer, accel_longer}) {
+  for (const SensorErrors& untold : {both_rotated, gyro_longer, accel_longer}) {
     EXPECT_NEAR(along(untold, tenth).first, 0.1 * along(untold, evidence).first, 1e-12);
     EXPECT_NEAR(along(untold, tenth).second, 0.01 * along(untold, evidence).second, 1e-10);
   }
-  for (const SensorErrors& told : {gyro_turned, one_axis, late}) {
+  for (const SensorErrors& told : {gyro_rotated, one_axis, late}) {
     EXPECT_NEAR(along(told, tenth).first, along(told, evidence).first, 1e-12);
     EXPECT_NEAR(along(told, tenth).second, along(told, evidence).second, 1e-10);
   }

@@ -73,7 +73,7 @@ double inclination_rms_rad(const CarriedRecording& recording, const CarriedEstim
 /// A third value beside free and clipped: a reading that has wrapped over the rail is neither measurement nor bound.
 TEST(CarriedSmoother, ReadingsThatWrapSayNothing) {
   const CarriedRecording clipped = testing::record({}, 100.0, 12.0, 7.3);
-  const CarriedRecording wrapped = testing::with_wraps(clipped, ClipSigns::kVoid);
+  const CarriedRecording wrapped = testing::with_wraps(clipped, ClipSigns::kMissing);
   const auto median = [](const CarriedRecording& recording) {
     const CarriedEstimate result = smoothed_carriage(recording);
     std::vector<double> errors;
@@ -173,10 +173,10 @@ TEST(CarriedSmoother, AJudgedSampleHasASignForEachElement) {
   sample.specific_force_m_s2 = {1.0, -150.0, 150.0};
   Clipping clipping;
   clipping.gyro = 0b011;
-  clipping.void_gyro = 0b100;
+  clipping.missing_gyro = 0b100;
   clipping.accel = 0b110;
   const ClipSigns signs = clip_signs(sample, clipping);
-  EXPECT_EQ(signs.gyro, (std::array<std::int8_t, 3>{1, -1, ClipSigns::kVoid}));
+  EXPECT_EQ(signs.gyro, (std::array<std::int8_t, 3>{1, -1, ClipSigns::kMissing}));
   EXPECT_EQ(signs.accel, (std::array<std::int8_t, 3>{0, -1, 1}));
 }
 

@@ -161,7 +161,7 @@ TEST(CarriedStream, GivesEachRateWhereSamplesComeSparserThanIsSaid) {
 /// Readings that have wrapped over the rail say nothing; taken for free ones they would say the contrary.
 TEST(CarriedStream, ReadingsThatWrapSayNothing) {
   const CarriedRecording clipped = testing::record({}, 100.0, 12.0, 7.3);
-  const CarriedRecording wrapped = testing::with_wraps(clipped, ClipSigns::kVoid);
+  const CarriedRecording wrapped = testing::with_wraps(clipped, ClipSigns::kMissing);
   const CarriedRecording believed = testing::with_wraps(clipped, 0);
   const auto median = [](const CarriedRecording& recording, const std::vector<RateState>& rates) {
     std::vector<double> errors;

@@ -19,7 +19,8 @@ namespace {
 using testing::kGravity_m_s2;
 
 constexpr int kCount = 3, kSeconds = 6;
-const std::array<Eigen::Vector3d, kCount> kPlaces = {{{0.08, 0.0, 0.01}, {-0.04, 0.069, 0.01}, {-0.04, -0.069, 0.01}}};
+const std::array<Eigen::Vector3d, kCount> kPositions = {
+    {{0.08, 0.0, 0.01}, {-0.04, 0.069, 0.01}, {-0.04, -0.069, 0.01}}};
 using UnitReadings = std::array<ImuSample, kCount>;
 
 ImuMerge::Params unit_params() {
@@ -27,7 +28,7 @@ ImuMerge::Params unit_params() {
   out.count = kCount;
   for (std::size_t k = 0; k < kCount; ++k) {
     out.T_CI[k] = Eigen::Isometry3d::Identity();
-    out.T_CI[k].translation() = kPlaces[k];
+    out.T_CI[k].translation() = kPositions[k];
   }
   out.gyro_range_rad_s = 34.0;
   out.accel_range_m_s2 = 76.0;
@@ -62,7 +63,7 @@ HarmedMerge merge_harmed(int rate_hz, double top_rad_s, double noise,
     for (std::size_t unit = 0; unit < kCount; ++unit) {
       now[unit].time_ns = std::llround(t * 1e9);
       now[unit].specific_force_m_s2 =
-          kGravity_m_s2 * up + a * axis.cross(kPlaces[unit]) + w.cross(w.cross(kPlaces[unit]));
+          kGravity_m_s2 * up + a * axis.cross(kPositions[unit]) + w.cross(w.cross(kPositions[unit]));
       now[unit].angular_velocity_rad_s = w;
       for (int j = 0; j < 3; ++j) {
         double& gyro = now[unit].angular_velocity_rad_s[j];
@@ -75,8 +76,8 @@ HarmedMerge merge_harmed(int rate_hz, double top_rad_s, double noise,
     std::optional<ImuSample> merged;
     const Status status = merge.step(now, out.state, merged);
     EXPECT_TRUE(status.ok()) << status.message();
-    const Eigen::Vector3d place = (kPlaces[0] + kPlaces[1] + kPlaces[2]) / 3.0;
-    const Eigen::Vector3d force = kGravity_m_s2 * up + a * axis.cross(place) + w.cross(w.cross(place));
+    const Eigen::Vector3d position = (kPositions[0] + kPositions[1] + kPositions[2]) / 3.0;
+    const Eigen::Vector3d force = kGravity_m_s2 * up + a * axis.cross(position) + w.cross(w.cross(position));
     if (t < 3.0) continue;
     out.worst_rate_rad_s = std::max(out.worst_rate_rad_s, (merged->angular_velocity_rad_s - w).norm());
     out.worst_force_m_s2 = std::max(out.worst_force_m_s2, (merged->specific_force_m_s2 - force).norm());

@@ -28,7 +28,7 @@ constexpr std::uint8_t kGyroFlags = kClipGyroX | kClipGyroY | kClipGyroZ;
 struct TiltedSpin {
   double top = 0.0, rail = 1e3;
   std::array<Matrix3d, 3> rows = {Matrix3d::Identity(), Matrix3d::Identity(), Matrix3d::Identity()};
-  std::array<Vector3d, 3> place_m{{{0.08, 0.0, 0.01}, {-0.04, 0.069, 0.01}, {-0.04, -0.069, 0.01}}};
+  std::array<Vector3d, 3> position_m{{{0.08, 0.0, 0.01}, {-0.04, 0.069, 0.01}, {-0.04, -0.069, 0.01}}};
   Vector3d axis = Vector3d(0.2, 0.95, -0.24).normalized();
 
   Vector3d rate(double t) const { return top * std::clamp(std::min(t, 2.0 - t) / 0.4, 0.0, 1.0) * axis; }
@@ -45,7 +45,7 @@ struct TiltedSpin {
       out.device_clip_flags = static_cast<std::uint8_t>(out.device_clip_flags | kClipGyroX << axis_);
     }
     const Vector3d up = so3::exp(-angle * axis) * Vector3d::UnitZ();
-    out.specific_force_m_s2 = kGravity_m_s2 * up + a.cross(place_m[unit]) + w.cross(w.cross(place_m[unit]));
+    out.specific_force_m_s2 = kGravity_m_s2 * up + a.cross(position_m[unit]) + w.cross(w.cross(position_m[unit]));
     return out;
   }
 };
@@ -55,7 +55,7 @@ ImuMerge::Params tilted_params(const TiltedSpin& spin, int count) {
   out.count = count;
   for (std::size_t k = 0; k < 3; ++k) {
     out.T_CI[k] = Eigen::Isometry3d::Identity();
-    out.T_CI[k].translation() = spin.place_m[k];
+    out.T_CI[k].translation() = spin.position_m[k];
     out.gyro_elements[k].rows = spin.rows[k];
   }
   out.gyro_range_rad_s = 0.98 * kStated_rad_s;

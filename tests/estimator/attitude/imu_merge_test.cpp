@@ -21,7 +21,7 @@ constexpr TimeNs kUnitPeriod_ns = 4'000'000;
 
 /// Three IMUs at 8 cm about the centre of a body that turns about a fixed level axis.
 struct Spin {
-  std::array<Eigen::Vector3d, 3> place_m{{{0.08, 0.0, 0.01}, {-0.04, 0.069, 0.01}, {-0.04, -0.069, 0.01}}};
+  std::array<Eigen::Vector3d, 3> position_m{{{0.08, 0.0, 0.01}, {-0.04, 0.069, 0.01}, {-0.04, -0.069, 0.01}}};
   Eigen::Vector3d axis = Eigen::Vector3d(0.2, 0.95, -0.24).normalized();
 
   /// Rises to `top` within 0.4 s, stays, and falls again.
@@ -35,7 +35,7 @@ struct Spin {
     ImuSample out;
     out.time_ns = k * kUnitPeriod_ns;
     out.angular_velocity_rad_s = w.cwiseMax(-kGyroRange).cwiseMin(kGyroRange);
-    out.specific_force_m_s2 = kGravity_m_s2 * up + a.cross(place_m[unit]) + w.cross(w.cross(place_m[unit]));
+    out.specific_force_m_s2 = kGravity_m_s2 * up + a.cross(position_m[unit]) + w.cross(w.cross(position_m[unit]));
     out.specific_force_m_s2 = out.specific_force_m_s2.cwiseMax(-kAccelRange).cwiseMin(kAccelRange);
     return out;
   }
@@ -46,7 +46,7 @@ ImuMerge::Params spin_params(const Spin& spin, const Eigen::Vector3d& first_arm_
   out.count = 3;
   for (std::size_t k = 0; k < 3; ++k) {
     out.T_CI[k] = Eigen::Isometry3d::Identity();
-    out.T_CI[k].translation() = spin.place_m[k];
+    out.T_CI[k].translation() = spin.position_m[k];
   }
   out.T_CI[0].translation() += first_arm_error_m;
   out.gyro_range_rad_s = 0.98 * kGyroRange;
@@ -131,11 +131,11 @@ TEST(ImuMerge, LeavesOutTheOneThatDisagrees) {
   EXPECT_EQ(state.units[0].left_out, 0);
 }
 
-/// What the mean of all units should read, at their mean place.
+/// What the mean of all units should read, at their mean position.
 Eigen::Vector3d exact_force(const Spin& spin, int k, double angle, double top) {
   const double t = seconds(k * kUnitPeriod_ns);
   const Eigen::Vector3d w = spin.rate(t, top) * spin.axis, a = spin.acceleration(t, top) * spin.axis;
-  const Eigen::Vector3d p = (spin.place_m[0] + spin.place_m[1] + spin.place_m[2]) / 3.0;
+  const Eigen::Vector3d p = (spin.position_m[0] + spin.position_m[1] + spin.position_m[2]) / 3.0;
   return kGravity_m_s2 * (so3::exp(-angle * spin.axis) * Eigen::Vector3d::UnitZ()) + a.cross(p) + w.cross(w.cross(p));
 }
 

@@ -201,12 +201,12 @@ TEST(ImuPlausibility, APendulumIsHeldToItsLiftNotToItsSwing) {
   const ImuPlausibility plausibility({});
   const ImuPlausibility::State good = of_a_pendulum(1.0);
   EXPECT_TRUE(plausibility.verdict(good).ok()) << plausibility.verdict(good).message();
-  EXPECT_LT(plausibility.force_turned_share(good), 0.8) << "it does swing";
-  EXPECT_NEAR(plausibility.turning_slope(good), 1.0, 0.1);
+  EXPECT_LT(plausibility.force_rotated_share(good), 0.8) << "it does swing";
+  EXPECT_NEAR(plausibility.rotation_slope(good), 1.0, 0.1);
   for (const double scale : {-1.0, 0.5, 2.0}) {
     const ImuPlausibility::State wrong = of_a_pendulum(scale);
     EXPECT_FALSE(plausibility.verdict(wrong).ok()) << scale;
-    EXPECT_NEAR(plausibility.turning_slope(wrong), 1.0 / scale, 0.1) << scale;
+    EXPECT_NEAR(plausibility.rotation_slope(wrong), 1.0 / scale, 0.1) << scale;
   }
 }
 
@@ -215,13 +215,13 @@ TEST(ImuPlausibility, ASlopeIsToldWhereItExplainsWhatTheGyroLeaves) {
   const ImuPlausibility plausibility({});
   const auto verdict_at = [&](double by_force_rad2, double correlation) {
     ImuPlausibility::State state;
-    constexpr double kTurned_rad2 = 10.0;  // by the gyro, well beyond what little is left out
-    state.by_force_rad2 = kTurned_rad2 * by_force_rad2;
-    state.by_gyro_rad2 = kTurned_rad2;
-    state.turned_windows = 100.0;
-    const double unexplained = kTurned_rad2 * (by_force_rad2 + 1.0 - 2.0 * correlation * std::sqrt(by_force_rad2));
+    constexpr double kRotated_rad2 = 10.0;  // by the gyro, well beyond what little is left out
+    state.by_force_rad2 = kRotated_rad2 * by_force_rad2;
+    state.by_gyro_rad2 = kRotated_rad2;
+    state.rotated_windows = 100.0;
+    const double unexplained = kRotated_rad2 * (by_force_rad2 + 1.0 - 2.0 * correlation * std::sqrt(by_force_rad2));
     std::fill(state.unexplained_rad2.begin(), state.unexplained_rad2.end(), unexplained);
-    EXPECT_NEAR(plausibility.turning_agreement(state), correlation, 1e-9);
+    EXPECT_NEAR(plausibility.rotation_agreement(state), correlation, 1e-9);
     return plausibility.verdict(state).ok();
   };
   EXPECT_TRUE(verdict_at(1.0, 0.4));
@@ -243,7 +243,7 @@ TEST(ImuPlausibility, ASlopeIsToldWhereItExplainsWhatTheGyroLeaves) {
 // hill 85124: one window of a flight, in which the force at the IMU's place is of gravity's size, and turns
 TEST(ImuPlausibility, AFewWindowsSayNothingOfTheTurning) {
   const ImuPlausibility plausibility({});
-  const auto after_turns = [&](int turns) {
+  const auto after_rotations = [&](int turns) {
     ImuPlausibility::State state;
     for (int k = 0; k < 400; ++k) {
       const double t_s = 0.01 * k, angle = 3.0 * std::clamp(t_s - 1.0, 0.0, 0.2 * turns);
@@ -254,8 +254,8 @@ TEST(ImuPlausibility, AFewWindowsSayNothingOfTheTurning) {
     }
     return plausibility.verdict(state);
   };
-  EXPECT_TRUE(after_turns(2).ok()) << after_turns(2).message();
-  EXPECT_FALSE(after_turns(8).ok()) << "the other sense throughout";
+  EXPECT_TRUE(after_rotations(2).ok()) << after_rotations(2).message();
+  EXPECT_FALSE(after_rotations(8).ok()) << "the other sense throughout";
 }
 
 TEST(ImuPlausibility, WhereTheGyroIsAtItsRailNothingIsCompared) {
@@ -269,7 +269,7 @@ TEST(ImuPlausibility, WhereTheGyroIsAtItsRailNothingIsCompared) {
   EXPECT_TRUE(plausibility.verdict(state).ok()) << plausibility.verdict(state).message();
 }
 
-// Nor is its size: what a rig that spins in flight feels at its place is as steady.
+// Nor is its size: what a rig that spins in flight feels at its position is as steady.
 TEST(ImuPlausibility, AForceIsNotTakenForGravityWhileTheGyroIsAtItsRail) {
   const auto verdict = [](double range_rad_s) {
     const ImuPlausibility plausibility({.gyro_range_rad_s = range_rad_s});

@@ -18,7 +18,7 @@ namespace {
 
 using Harm = std::function<void(ImuSample&)>;
 
-struct Way {
+struct Span {
   Eigen::Vector3d rate_rad_s = {1.5, 2.0, -0.7};
   double turns_s = 3.0, rate_sigma_rad_s = 0.01;
   RateSource source = RateSource::measured;
@@ -27,35 +27,36 @@ struct Way {
 
 // Of the world, for three whole periods on each axis: what it adds to the velocity it takes again.
 Eigen::Vector3d shaken_m_s2(double share_of_turn) {
-  constexpr double kTurn_rad = 6.283185307179586;
-  return {20.0 * std::sin(3.0 * kTurn_rad * share_of_turn), 30.0 * std::cos(3.0 * kTurn_rad * share_of_turn),
-          -15.0 * std::sin(6.0 * kTurn_rad * share_of_turn)};
+  constexpr double kRevolution_rad = 6.283185307179586;
+  return {20.0 * std::sin(3.0 * kRevolution_rad * share_of_turn),
+          30.0 * std::cos(3.0 * kRevolution_rad * share_of_turn),
+          -15.0 * std::sin(6.0 * kRevolution_rad * share_of_turn)};
 }
 
 // At rest, turning at a constant rate while it is shaken, and at rest again: R is known in closed form.
-RestGravity::State after(const Way& way, const Harm& harm, double scale_of_estimate = 1.0,
+RestGravity::State after(const Span& span, const Harm& harm, double scale_of_estimate = 1.0,
                          const RestGravity::Params& params = {}) {
   const RestGravity gravity(params);
   RestGravity::State state;
   oracles::Gaussian noise(3);
   const Eigen::Vector3d up = Eigen::Vector3d(0.3, -0.2, 1.0).normalized();
   for (int k = 0; k < 700; ++k) {
-    const double t_s = 0.01 * k, turned_s = std::clamp(t_s - 2.0, 0.0, way.turns_s);
-    const bool turns = turned_s > 0.0 && turned_s < way.turns_s;
+    const double t_s = 0.01 * k, turned_s = std::clamp(t_s - 2.0, 0.0, span.turns_s);
+    const bool turns = turned_s > 0.0 && turned_s < span.turns_s;
     ImuSample sample;
     sample.time_ns = TimeNs{k} * 10'000'000;
-    if (turns || turned_s == way.turns_s)
-      sample.angular_velocity_rad_s = turns ? way.rate_rad_s : Eigen::Vector3d(0, 0, 0);
+    if (turns || turned_s == span.turns_s)
+      sample.angular_velocity_rad_s = turns ? span.rate_rad_s : Eigen::Vector3d(0, 0, 0);
     Eigen::Vector3d force = 9.80665 * up;
-    if (turns && way.shaken) force += shaken_m_s2(turned_s / way.turns_s);
-    sample.specific_force_m_s2 = so3::exp(turned_s * way.rate_rad_s).conjugate() * force;
+    if (turns && span.shaken) force += shaken_m_s2(turned_s / span.turns_s);
+    sample.specific_force_m_s2 = so3::exp(turned_s * span.rate_rad_s).conjugate() * force;
     for (int j = 0; j < 3; ++j) sample.specific_force_m_s2[j] += 0.01 * noise();
     harm(sample);
     RateState rate;
     rate.time_ns = sample.time_ns;
     rate.w_WI_I_rad_s = scale_of_estimate * sample.angular_velocity_rad_s;
-    if (turns) rate.source = way.source;
-    rate.covariance_rad2_s2 = way.rate_sigma_rad_s * way.rate_sigma_rad_s * Eigen::Matrix3d::Identity();
+    if (turns) rate.source = span.source;
+    rate.covariance_rad2_s2 = span.rate_sigma_rad_s * span.rate_sigma_rad_s * Eigen::Matrix3d::Identity();
     gravity.step(sample, rate, state);
   }
   return state;
@@ -67,19 +68,19 @@ TEST(RestGravity, RatesCarryGravityFromOneRestToTheNext) {
   const RestGravity gravity({});
   const RestGravity::State good = after({}, kNone);
   EXPECT_TRUE(gravity.verdict(good).ok()) << gravity.verdict(good).message();
-  EXPECT_EQ(good.ways, 1u);
+  EXPECT_EQ(good.spans, 1u);
   EXPECT_LT(good.miss_rad, 0.04) << "a sample of the turn, at most";
   EXPECT_LT(good.velocity_share, 0.04);
   EXPECT_NEAR(gravity.size_share(good), 1.0, 1e-3);
 }
 
 // BROAD 16: three minutes in a hand, in which a bias of 3 mrad/s turns gravity by half a radian
-TEST(RestGravity, OfALongWayNothingIsSaid) {
+TEST(RestGravity, OfALongSpanNothingIsSaid) {
   const Harm halved = [](ImuSample& s) { s.angular_velocity_rad_s *= 0.5; };
   EXPECT_FALSE(RestGravity({}).verdict(after({}, halved)).ok());
-  const RestGravity::Params brief = {.way_most_s = 2.5};
+  const RestGravity::Params brief = {.span_most_s = 2.5};
   const RestGravity::State state = after({}, halved, 1.0, brief);
-  EXPECT_EQ(state.ways, 0u) << "three seconds from rest to rest";
+  EXPECT_EQ(state.spans, 0u) << "three seconds from rest to rest";
   EXPECT_TRUE(RestGravity(brief).verdict(state).ok());
 }
 
@@ -152,13 +153,13 @@ TEST(RestGravity, ErrorsOfAClippedSegmentLastAsLongAsIt) {
 TEST(RestGravity, RatesThatMeetGravityByChanceLeaveAVelocity) {
   const RestGravity gravity({});
   const Eigen::Vector3d axis = Eigen::Vector3d(1.0, 0.4, -0.1).normalized();
-  const Way whole = {.rate_rad_s = 2.0 * 3.141592653589793 / 3.0 * axis};
+  const Span whole = {.rate_rad_s = 2.0 * 3.141592653589793 / 3.0 * axis};
   const RestGravity::State good = after(whole, kNone);
   EXPECT_TRUE(gravity.verdict(good).ok()) << gravity.verdict(good).message();
   const double across = axis.cross(Eigen::Vector3d(0.3, -0.2, 1.0).normalized()).norm();
   for (const double scale : {-1.0, 2.0}) {
-    // gravity may be anywhere by what these rates state; of the way 3.0 s are turned, 0.4 s it stands already
-    const Way unsure = {.rate_rad_s = whole.rate_rad_s, .rate_sigma_rad_s = 0.5, .shaken = false};
+    // gravity may be anywhere by what these rates state; of the span 3.0 s are turned, 0.4 s it stands already
+    const Span unsure = {.rate_rad_s = whole.rate_rad_s, .rate_sigma_rad_s = 0.5, .shaken = false};
     const RestGravity::State wrong = after(unsure, kNone, scale);
     EXPECT_LT(wrong.miss_rad, 0.1) << "by chance";
     EXPECT_NEAR(wrong.velocity_share, 2.0 * across * 3.0 / 3.4, 0.05) << scale;
@@ -167,7 +168,7 @@ TEST(RestGravity, RatesThatMeetGravityByChanceLeaveAVelocity) {
   }
 }
 
-// Wherever on the way it arises, an error of the turn by an angle counts as that angle, from both sides together.
+// Wherever in the span it arises, an error of the turn by an angle counts as that angle, from both sides together.
 TEST(RestGravity, OneErrorOfTheTurnLeavesNoMoreVelocityThanItMisses) {
   const RestGravity gravity({});
   for (const int at : {210, 350, 490}) {
@@ -214,26 +215,26 @@ TEST(RestGravity, WhatTheAccelerometersRailHidIsAllowed) {
   EXPECT_FALSE(struck(RestGravity({.accel_range_m_s2 = 2.0 * kRange_m_s2}), false).ok());
 }
 
-// What the body did while nothing was read is not known: such a way compares nothing, however well its ends are read.
-TEST(RestGravity, OfAWayWithAGapNothingIsSaid) {
+// What the body did while nothing was read is not known: such a span compares nothing, however well its ends are read.
+TEST(RestGravity, OfASpanWithAGapNothingIsSaid) {
   const auto silent_for = [](TimeNs gap_ns) {
     return Harm([gap_ns](ImuSample& sample) {
       if (sample.time_ns >= 3'000'000'000 && sample.time_ns < 3'000'000'000 + gap_ns)
         sample.specific_force_m_s2.x() = std::numeric_limits<double>::quiet_NaN();  // passed over
     });
   };
-  EXPECT_EQ(after({}, silent_for(300'000'000)).ways, 0u);
-  EXPECT_EQ(after({}, silent_for(80'000'000)).ways, 1u);
+  EXPECT_EQ(after({}, silent_for(300'000'000)).spans, 0u);
+  EXPECT_EQ(after({}, silent_for(80'000'000)).spans, 1u);
   // negative control: as if what is read after the gap had been so all along
   RestGravity::Params believed;
   believed.gap_max_s = 1.0;
-  EXPECT_EQ(after({}, silent_for(300'000'000), 1.0, believed).ways, 1u);
+  EXPECT_EQ(after({}, silent_for(300'000'000), 1.0, believed).spans, 1u);
 }
 
 TEST(RestGravity, OfOneRestOrATurnAboutTheVerticalNothingIsSaid) {
   const RestGravity gravity({});
   EXPECT_TRUE(gravity.verdict({}).ok());
-  EXPECT_EQ(after({.turns_s = 10.0}, kNone, -1.0).ways, 0u);
+  EXPECT_EQ(after({.turns_s = 10.0}, kNone, -1.0).spans, 0u);
   const Eigen::Vector3d about_up = 2.0 * Eigen::Vector3d(0.3, -0.2, 1.0).normalized();
   EXPECT_TRUE(gravity.verdict(after({.rate_rad_s = about_up}, kNone, -1.0)).ok());
   EXPECT_THROW(RestGravity({.gravity_m_s2 = 0.0}), InvalidParams);

@@ -35,18 +35,18 @@ class BelievedImu {
   /// Adds the errors of a sweep to its samples.
   void err(std::span<ImuSample> sweep) {
     const double span_s = 1e-9 * static_cast<double>(test::kSweep_ns);
-    double pushed_m_s = 0.0, turned_rad = 0.0;
+    double pushed_m_s = 0.0, rotated_rad = 0.0;
     for (const ImuSample& sample : sweep) {
       pushed_m_s += span_s / static_cast<double>(sweep.size()) * sample.specific_force_m_s2.norm();
-      turned_rad += span_s / static_cast<double>(sweep.size()) * sample.angular_velocity_rad_s.norm();
+      rotated_rad += span_s / static_cast<double>(sweep.size()) * sample.angular_velocity_rad_s.norm();
     }
     const Eigen::Vector3d velocity_m_s =
         std::hypot(params_.expert.prior.sigma_m_s, params_.expert.prior.force_share * pushed_m_s) * noise_.vector();
-    const Eigen::Vector3d turn_rad =
-        std::hypot(params_.expert.prior.sigma_rad, params_.expert.prior.turn_share * turned_rad) * noise_.vector();
+    const Eigen::Vector3d rotation_rad =
+        std::hypot(params_.expert.prior.sigma_rad, params_.expert.prior.rotation_share * rotated_rad) * noise_.vector();
     for (ImuSample& sample : sweep) {
       sample.specific_force_m_s2 += velocity_m_s / span_s;
-      sample.angular_velocity_rad_s += turn_rad / span_s;
+      sample.angular_velocity_rad_s += rotation_rad / span_s;
     }
   }
 

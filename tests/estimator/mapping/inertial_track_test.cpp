@@ -88,10 +88,10 @@ TEST(InertialTrack, AFastImuIsHeldNoLongerThanItRests) {
   listener.hear(1004, kBias_rad_s);
   const Eigen::Vector3d push_rad_s(0.0, 5.0, 0.0);
   listener.hear(20, kBias_rad_s + push_rad_s);
-  double turned_rad = 0.0;
+  double rotated_rad = 0.0;
   for (const MotionSample& sample : listener.track.samples())
-    turned_rad += seconds(sample.time_ns - sample.from_ns) * sample.w_WI_I_rad_s.norm();
-  EXPECT_NEAR(turned_rad, 0.02 * push_rad_s.norm(), 1e-9);
+    rotated_rad += seconds(sample.time_ns - sample.from_ns) * sample.w_WI_I_rad_s.norm();
+  EXPECT_NEAR(rotated_rad, 0.02 * push_rad_s.norm(), 1e-9);
   EXPECT_LE(listener.resting(), 1004);
   EXPECT_GT(listener.resting(), 1004 - 10);
 }

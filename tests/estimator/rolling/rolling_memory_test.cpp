@@ -40,7 +40,7 @@ namespace {
 
 using testing::kLeverArm;
 
-testing::RollingTruth way(double duration_s) {
+testing::RollingTruth path(double duration_s) {
   return testing::roll({.velocity_m_s = testing::l_shape,
                         .contact_velocity_m_s = testing::no_slip,
                         .duration_s = duration_s,
@@ -52,7 +52,7 @@ struct Held {
 };
 
 Held held_by(double duration_s) {
-  const testing::RollingTruth truth = way(duration_s);
+  const testing::RollingTruth truth = path(duration_s);
   RollingSmoother::Params params;
   params.filter.radius_m = testing::kRadius_m;
   params.filter.lever_arm_m = kLeverArm;
@@ -93,7 +93,7 @@ TEST(RollingMemory, ALagBeyondAllRunsTakesNoMoreThanARun) {
   params.filter.lever_arm_m = kLeverArm;
   params.lag_s = 0.1 * RollingSmoother::kWholeRun;
   const RollingSmoother smoother(params);
-  const testing::RollingTruth truth = way(2.0);
+  const testing::RollingTruth truth = path(2.0);
   std::vector<RollingEstimate> out;
   const std::size_t before = held;
   const auto state = std::make_unique<RollingSmoother::State>();
@@ -111,7 +111,7 @@ std::vector<double> told(std::span<const ImuSample> samples, std::span<const rol
   params.lever_arm_m = kLeverArm;
   params.radius_sigma_m = 1e-3;
   rolling::LastPass pass(params, samples, path, distance, segment);
-  rolling::LastPass::Place start;
+  rolling::LastPass::Checkpoint start;
   start.filter.nominal = rolling::start_nominal(params, Eigen::Quaterniond::Identity(), Eigen::Vector3d::Zero());
   rolling::set_prior(params, Eigen::Vector3d::Zero(), start.filter.P);
   start.reading.next = 1;
@@ -134,7 +134,7 @@ std::vector<double> told(std::span<const ImuSample> samples, std::span<const rol
 }
 
 TEST(RollingMemory, HowMuchIsHeldAtATimeChangesNoBit) {
-  const testing::RollingTruth truth = way(10.0);
+  const testing::RollingTruth truth = path(10.0);
   constexpr std::size_t kNodes = 499;
   std::vector<rolling::PathNode> path(kNodes);
   for (std::size_t n = 150; n < 170; ++n) path[n].mode = RollingMode::slip;

@@ -177,11 +177,11 @@ TEST(RollingRates, AStartInMotionIsToldAndBelievedLess) {
     }
     const Smoothed moving = smoothed_samples(samples, testing::lagged_params(RollingSmoother::kWholeRun));
     EXPECT_TRUE(moving.state->live.started_in_motion);
-    // heading and place of the start are those of the world: about its own heading the way is as long
+    // heading and place of the start are those of the world: about its own heading the path is as long
     const Eigen::Quaterniond q = truth.q_WI[first] * moving.out.front().q_WI.conjugate();
     const Eigen::Quaterniond yaw = Eigen::Quaterniond(q.w(), 0.0, 0.0, q.z()).normalized();
-    const Eigen::Vector3d way = truth.p_WG_m.back() - truth.p_WG_m[first];
-    const Eigen::Vector3d error = yaw * moving.out.back().p_WG_m - way;
+    const Eigen::Vector3d path = truth.p_WG_m.back() - truth.p_WG_m[first];
+    const Eigen::Vector3d error = yaw * moving.out.back().p_WG_m - path;
     const double sigma = std::sqrt(moving.out.back().covariance.topLeftCorner<3, 3>().trace());
     EXPECT_LT(error.norm(), 3.0 * sigma) << from_s;
   }

@@ -59,7 +59,7 @@ TEST(RollingSmoother, OneEstimateForEachSampleWithWholeRunAndWithLag) {
   }
 }
 
-TEST(RollingSmoother, MendsTheWayInsideAnEvent) {
+TEST(RollingSmoother, MendsThePathInsideAnEvent) {
   const testing::RollingTruth truth = slipping();
   const std::vector<RollingEstimate> whole = smoothed_truth(truth, RollingSmoother::kWholeRun);
   const RollingFilter filter(testing::lagged_params(1.0).filter);
@@ -80,7 +80,7 @@ TEST(RollingSmoother, MendsTheWayInsideAnEvent) {
 
 /// The same way with a slip of its own, the constant errors of gyro, accelerometer and lever arm drawn as the filter
 /// holds them possible.
-testing::RollingTruth drawn_way(std::uint64_t seed, const RollingParams& believed) {
+testing::RollingTruth drawn_path(std::uint64_t seed, const RollingParams& believed) {
   oracles::Gaussian normal(seed);
   const Eigen::Vector3d slip_m(-normal.uniform(0.1, 0.4), 0.02 * normal(), 0.0);
   testing::RollingTruth truth =
@@ -108,7 +108,7 @@ Normalised normalised_errors(double lag_s) {
   constexpr std::size_t kWithin = 1500;  // 6 s: the slip is over, the second leg is not
   Normalised mean;
   for (std::uint64_t seed = 1; seed <= kDraws; ++seed) {
-    const testing::RollingTruth truth = drawn_way(seed, testing::lagged_params(1.0).filter);
+    const testing::RollingTruth truth = drawn_path(seed, testing::lagged_params(1.0).filter);
     const std::vector<RollingEstimate> out = smoothed_truth(truth, lag_s);
     const auto add = [&](std::size_t k, double& sum) {
       const Eigen::Vector3d error = out[k].p_WG_m - truth.p_WG_m[k];

@@ -43,11 +43,11 @@ TYPED_TEST(Baseline, RefusesBadParams) {
 /// Those that correct the attitude that they have predicted, with a force that agrees, stay on it to rounding; Mahony's
 /// compares the force with the attitude of the step before, |w| dt behind, and its integral takes that for a bias.
 template <typename Filter>
-double turn_error_max_rad() {
+double rotation_error_max_rad() {
   return 1e-10;  // measured 1e-12
 }
 template <>
-double turn_error_max_rad<Mahony>() {
+double rotation_error_max_rad<Mahony>() {
   return 7e-3;  // measured 5.2e-3
 }
 
@@ -62,7 +62,7 @@ TYPED_TEST(Baseline, FollowsAPerfectTurnExactly) {
     ASSERT_TRUE(filter.step({k * kPeriod_ns, rate, f_I, 0}, state).ok());
     error_max_rad = std::max(error_max_rad, so3::log(truth.conjugate() * state.q_WI).norm());
   }
-  EXPECT_LT(error_max_rad, turn_error_max_rad<TypeParam>());
+  EXPECT_LT(error_max_rad, rotation_error_max_rad<TypeParam>());
 }
 
 /// At rest with a gyro bias of 0.3 deg/s about a horizontal axis.

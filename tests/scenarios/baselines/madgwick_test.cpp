@@ -125,7 +125,7 @@ TEST(Madgwick, UpsideDownIsASaddleThatTheGyroLeaves) {
 }
 
 TEST(Madgwick, StandingGyroStillCorrects) {
-  // reference implementations return q unchanged when the rate is exactly zero; that is a trap, not the filter
+  // reference implementations return q unchanged when the rate is exactly zero; that is an error, not the filter
   const Madgwick filter({.gain_rad_s = 0.1});
   Madgwick::State state;
   state.q_WI = so3::exp({0.1, 0.0, 0.0});

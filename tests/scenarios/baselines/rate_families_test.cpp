@@ -15,8 +15,8 @@
 #include "scenarios/baselines/angular_velocity/clipped_baseline.hpp"
 #include "scenarios/baselines/angular_velocity/magnetometer_rate.hpp"
 #include "scenarios/baselines/angular_velocity/standstill_smoother.hpp"
-#include "tumble/angular_velocity/detail/partial_clipping.hpp"
 #include "tumble/angular_velocity/detail/rate_observation.hpp"
+#include "tumble/angular_velocity/detail/subsample_saturation.hpp"
 
 namespace tumble::baselines {
 namespace {
@@ -205,27 +205,27 @@ TEST(PublishedFamilies, RefuseBadInput) {
 }
 
 // A rate that passes the rail with constant slope: loss and reading in closed form.
-TEST(PartialLoss, IsExactForAConstantSlope) {
+TEST(SubsampleSaturation, IsExactForAConstantSlope) {
   for (const double slope : {0.5, 2.0, 5.0}) {    // per window
     for (const double share : {0.2, 0.5, 0.8}) {  // of the window that is hidden
       const double free = 1.0 - share, reading = kRail - 0.5 * free * free * slope;
       const double unclipped = reading + 0.5 * share * share * slope, neighbour = unclipped - slope;
-      const PartialLoss loss = partial_loss(reading, neighbour, kRail, 1e-6);
-      ASSERT_TRUE(loss.partial) << slope << " " << share;
+      const SubsampleSaturation loss = subsample_saturation(reading, neighbour, kRail, 1e-6);
+      ASSERT_TRUE(loss.saturated) << slope << " " << share;
       EXPECT_NEAR(loss.lost_rad_s, 0.5 * share * share * slope, 1e-9) << slope << " " << share;
       EXPECT_GT(loss.sigma_rad_s, 0.0);
     }
   }
-  EXPECT_FALSE(partial_loss(kRail, 9.0, kRail, 1e-3).partial);         // hidden all along
-  EXPECT_FALSE(partial_loss(kRail - 1e-3, 0.0, kRail, 1e-6).partial);  // but for a hundredth
+  EXPECT_FALSE(subsample_saturation(kRail, 9.0, kRail, 1e-3).saturated);         // hidden all along
+  EXPECT_FALSE(subsample_saturation(kRail - 1e-3, 0.0, kRail, 1e-6).saturated);  // but for a hundredth
   // a plateau that sinks, as of a rail tilted by a thousandth: flagged throughout, and no step to a neighbour
-  EXPECT_FALSE(partial_loss(kRail - 2e-3, kRail - 2.1e-3, kRail, 5e-3).partial);
-  EXPECT_TRUE(partial_loss(kRail - 0.05, kRail - 0.3, kRail, 5e-3).partial);
+  EXPECT_FALSE(subsample_saturation(kRail - 2e-3, kRail - 2.1e-3, kRail, 5e-3).saturated);
+  EXPECT_TRUE(subsample_saturation(kRail - 0.05, kRail - 0.3, kRail, 5e-3).saturated);
 }
 
 // Readings that sink from sample to sample along a tilted rail, all of them flagged: none of them met it in a part of
 // its window, but for the one that comes after a free one.
-TEST(PartialLoss, OfAFlaggedNeighbourNothingIsTold) {
+TEST(SubsampleSaturation, OfAFlaggedNeighbourNothingIsTold) {
   RailDetector::State state;
   state.channels[0].rail = kRail;
   const RailDetector rails({});
@@ -241,13 +241,13 @@ TEST(PartialLoss, OfAFlaggedNeighbourNothingIsTold) {
     RateObservation now;
     now.sample = samples[k];
     now.clipping.gyro = 1;
-    mark_partial(rails, state, 5e-3, &samples[k - 1], now, &samples[k + 1]);
-    EXPECT_EQ(now.partial, k == 1 ? 1 : 0) << k;
+    mark_subsample_saturation(rails, state, 5e-3, &samples[k - 1], now, &samples[k + 1]);
+    EXPECT_EQ(now.subsample_saturated, k == 1 ? 1 : 0) << k;
     // negative control: as if the one before had been free
     ImuSample before = samples[k - 1];
     before.device_clip_flags = 0;
-    mark_partial(rails, state, 5e-3, &before, now, &samples[k + 1]);
-    EXPECT_EQ(now.partial, 1) << k;
+    mark_subsample_saturation(rails, state, 5e-3, &before, now, &samples[k + 1]);
+    EXPECT_EQ(now.subsample_saturated, 1) << k;
   }
 }
 

@@ -74,7 +74,7 @@ TEST(TrimmedIcp, ACorridorLooksLikeASuccess) {
   Eigen::Isometry3d prior = Eigen::Isometry3d::Identity();
   prior.translation().x() = 0.4;
   const auto result = icp.align(sweep_of(test::Room::corridor()), prior, map_of(test::Room::corridor()));
-  EXPECT_EQ(result.verdict, RegistrationVerdict::converged);  // the published chain's trap, kept
+  EXPECT_EQ(result.verdict, RegistrationVerdict::converged);  // the published chain's known error, kept
 }
 
 // the published rule against a search over every share

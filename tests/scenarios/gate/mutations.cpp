@@ -10,7 +10,7 @@ namespace {
 
 constexpr double kShift_ns = 1e6;
 constexpr double kBumpLeast_m = 0.004;  // above its height at the start, the sphere stands on something
-constexpr double kMapTurn_rad = 0.02;
+constexpr double kMapRotation_rad = 0.02;
 
 /// Every IMU on the other side of the body's origin.
 void flip_lever_arms(sim::Sensors& sensors) {
@@ -109,7 +109,7 @@ void draw_map_twice(const sim::Recording&, Estimate& estimate) {
 void draw_map_twice_turned(const sim::Recording&, Estimate& estimate) {
   if (estimate.poses.empty()) return;
   const Eigen::Vector3d centre = estimate.poses.front().p_WA_m;
-  const Eigen::AngleAxisd turn(kMapTurn_rad, Eigen::Vector3d::UnitZ());
+  const Eigen::AngleAxisd turn(kMapRotation_rad, Eigen::Vector3d::UnitZ());
   const std::vector<MapPoint> once = estimate.map;
   for (MapPoint point : once) {
     point.position_W_m = (turn * (point.position_W_m.cast<double>() - centre) + centre).cast<float>();

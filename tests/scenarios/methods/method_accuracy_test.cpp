@@ -154,7 +154,7 @@ TEST(MethodAccuracy, TumbleBettersTheClippedGyroOfAForcedTurn) {
   EXPECT_LT(tumble.at("rate_error_free_median_rad_s"), 0.02);
 }
 
-TEST(MethodAccuracy, RollingGivesTheWayOfASphereThatGrips) {
+TEST(MethodAccuracy, RollingGivesThePathOfASphereThatGrips) {
   for (const double direction_rad : {0.0, 0.6, -2.5}) {
     const auto rolling = scores_of("rolling", testing::synthetic_sphere(2.0, direction_rad));
     // measured: below 1e-3 for each direction (trapezoid over window means)
@@ -177,7 +177,8 @@ TEST(MethodAccuracy, RollingIsWrongWhenTheSphereSlips) {
   EXPECT_NEAR(scores_of("rolling", recording).at("position_end_error_share"), 0.1, 2e-3);
 }
 
-/// Two walls along the way and the floor, seen with the noise of a Mid-100: nothing holds the way along the walls.
+/// Two walls along the path and the floor, seen with the noise of a Mid-100: nothing holds the position along the
+/// walls.
 sim::Recording corridor_of_a_sphere(unsigned draw) {
   sim::Recording recording = testing::synthetic_sphere(2.0, 0.0);
   sim::LidarRecord& lidar = recording.sensors.lidars.front();
@@ -245,7 +246,7 @@ TEST(MethodAccuracy, SlamOracleEndsWhereTheTruthEnds) {
   EXPECT_GT(oracle.at("map_coverage"), 0.8);
 }
 
-// A pendulum whose level tops look like a rail and are no clear one: they are doubted and not called clipped. What
+// A pendulum whose plateaus look like a rail and are no clear one: they are doubted and not called clipped. What
 // stands for them is what the smoother says, not the reading: an attitude by the readings is 0.6 rad off from the first
 // on.
 TEST(MethodAccuracy, AnAttitudeIsNotTurnedByReadingsThatAreDoubted) {

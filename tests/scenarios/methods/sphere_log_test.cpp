@@ -74,7 +74,7 @@ TEST_P(SphereLog, AllThreeFormsGoTheWayOfRollingWithoutSeeingSlipEverywhere) {
 }
 
 /// Lines as `rostopic echo -p` writes a sensor_msgs/Imu: columns by place, the stamp in seconds and nanoseconds.
-void write_by_place(const std::filesystem::path& from, const std::filesystem::path& to, double force_scale) {
+void write_by_column(const std::filesystem::path& from, const std::filesystem::path& to, double force_scale) {
   std::ifstream in(from);
   std::ofstream out(to);
   std::string line;
@@ -105,19 +105,19 @@ void write_by_place(const std::filesystem::path& from, const std::filesystem::pa
   }
 }
 
-TEST_P(SphereLog, EveryFormOfTheFileGivesTheSameWay) {
+TEST_P(SphereLog, EveryFormOfTheFileGivesTheSamePath) {
   const auto folder = std::filesystem::path(::testing::TempDir()) / "sphere_log_forms";
   std::filesystem::create_directories(folder);
-  write_by_place(path_, folder / "g.csv", 1.0);
-  write_by_place(path_, folder / "m_s2.csv", 9.80665);
+  write_by_column(path_, folder / "g.csv", 1.0);
+  write_by_column(path_, folder / "m_s2.csv", 9.80665);
   const Estimate by_name = run("position/tumble_live", sphere(import_imu_csv(path_, {}, AccelUnit::g)));
-  const Estimate by_place = run("position/tumble_live", sphere(import_imu_csv(folder / "g.csv", {}, AccelUnit::g)));
+  const Estimate by_column = run("position/tumble_live", sphere(import_imu_csv(folder / "g.csv", {}, AccelUnit::g)));
   const Estimate si = run("position/tumble_live", sphere(import_imu_csv(folder / "m_s2.csv", {}, AccelUnit::m_s2)));
   std::filesystem::remove_all(folder);
-  ASSERT_EQ(by_place.poses.size(), by_name.poses.size());
+  ASSERT_EQ(by_column.poses.size(), by_name.poses.size());
   ASSERT_EQ(si.poses.size(), by_name.poses.size());
   ASSERT_FALSE(by_name.poses.empty());
-  EXPECT_EQ(by_place.poses.back().p_WA_m, by_name.poses.back().p_WA_m);
+  EXPECT_EQ(by_column.poses.back().p_WA_m, by_name.poses.back().p_WA_m);
   EXPECT_LT((si.poses.back().p_WA_m - by_name.poses.back().p_WA_m).norm(), 1e-6);  // rounding of the text
 }
 

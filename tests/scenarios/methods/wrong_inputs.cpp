@@ -81,7 +81,7 @@ void scale_ranges(sim::Sensors& sensors, float by) {
   }
 }
 
-void turn_lidar(sim::Sensors& sensors, double rad, double m) {
+void rotate_lidar(sim::Sensors& sensors, double rad, double m) {
   for (sim::LidarRecord& lidar : sensors.lidars) {
     lidar.T_BL.translate(Eigen::Vector3d::Constant(m));
     for (int axis = 0; axis < 3; ++axis) {
@@ -157,8 +157,8 @@ const std::map<std::string, std::function<void(sim::Sensors&)>>& wrong_inputs() 
       {"lidar_100_ms", [](sim::Sensors& s) { shift_lidar(s, 100'000'000); }},
       {"lidar_ranges_long", [](sim::Sensors& s) { scale_ranges(s, 1.1F); }},
       {"lidar_ranges_short", [](sim::Sensors& s) { scale_ranges(s, 0.9F); }},
-      {"mounting_2_deg", [](sim::Sensors& s) { turn_lidar(s, 0.03, 0.015); }},
-      {"mounting_10_deg", [](sim::Sensors& s) { turn_lidar(s, 0.1, 0.05); }},
+      {"mounting_2_deg", [](sim::Sensors& s) { rotate_lidar(s, 0.03, 0.015); }},
+      {"mounting_10_deg", [](sim::Sensors& s) { rotate_lidar(s, 0.1, 0.05); }},
       {"mounting_90_deg",
        [](sim::Sensors& s) {
          for (sim::LidarRecord& l : s.lidars) l.T_BL.rotate(Eigen::AngleAxisd(1.5707963, Vector::UnitZ()));

@@ -46,7 +46,7 @@ class ImportSphere : public fixture::Folder {
 TEST_F(ImportSphere, RatesInDegreesAreMetByTheTurning) {
   constexpr double kDegrees = 57.29577951308232;
   const Imported good = import(rolled(4.0, 1.0), 150.0);
-  EXPECT_EQ(gravity_turn(good.sensors.imus[0], TurnWindows::even).windows, 0);
+  EXPECT_EQ(gravity_rotation(good.sensors.imus[0], RotationWindows::even).windows, 0);
   EXPECT_THAT(good.notes, testing::Contains(HasSubstr("units and axes agree")));
   EXPECT_THAT(complaint_of(rolled(4.0, kDegrees), 150.0), HasSubstr("are the rates in deg/s?"));
   EXPECT_EQ(complaint_of(rolled(4.0, kDegrees), 150.0, GyroUnit::deg_s), "");

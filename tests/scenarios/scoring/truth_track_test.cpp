@@ -41,7 +41,7 @@ TEST(TruthTrack, InterpolatesBetweenPhysicsSamples) {
   EXPECT_FALSE(track.covers(6000000001));
 }
 
-TEST(TruthTrack, PathOfTheBodyIsTheLengthOfItsStraightWay) {
+TEST(TruthTrack, PathOfTheBodyIsTheLengthOfItsStraightPath) {
   const testing::SyntheticMotion motion;
   const sim::Recording recording = testing::synthetic_rig(motion);
   EXPECT_NEAR(TruthTrack(recording.truth, Frame::body).path_m(6000000000), motion.displacement_m.norm(), 1e-9);
@@ -79,7 +79,7 @@ TEST(TruthTrack, DoesNotCoverWhatAReferenceDidNotSee) {
   EXPECT_TRUE(track.covers(4001 * period_ns));
   EXPECT_EQ(track.pose(3999 * period_ns).p_WA_m, before.p_WA_m) << "the unknown neighbour has no part in it";
   EXPECT_EQ(track.pose(3999 * period_ns).q_WA.coeffs(), before.q_WA.coeffs());
-  // two steps of at most 1 m/s are missing from the way
+  // two steps of at most 1 m/s are missing from the path
   EXPECT_NEAR(track.path_m(track.last_ns()), path_m, 1e-3);
 }
 

@@ -33,17 +33,17 @@ TEST(Rolling, ObeysVelocityEqualsRadiusTimesRate) {
   situation.robot.values.set("inner_x_m", 0.008);
   situation.robot.values.set("inner_z_m", -0.01);
   const Truth truth = simulate(built(situation)).truth;
-  double way_m = 0.0, rolled_m = 0.0;
+  double path_length_m = 0.0, rolled_m = 0.0;
   Vector3d difference = Vector3d::Zero();
   for (std::size_t k = 0; k < truth.q_WB.size(); ++k) {
     const Vector3d v = centre_velocity(truth, k), r = rolling_velocity(truth, k);
-    way_m += v.head<2>().norm() * 0.0005;
+    path_length_m += v.head<2>().norm() * 0.0005;
     rolled_m += r.head<2>().norm() * 0.0005;
     difference += (v - r) * 0.0005;
   }
-  EXPECT_NEAR(way_m, 1.0, 0.02);
-  EXPECT_NEAR(rolled_m / way_m, 1.0, 1e-3);
-  EXPECT_LT(difference.head<2>().norm(), 1e-3 * way_m);
+  EXPECT_NEAR(path_length_m, 1.0, 0.02);
+  EXPECT_NEAR(rolled_m / path_length_m, 1.0, 1e-3);
+  EXPECT_LT(difference.head<2>().norm(), 1e-3 * path_length_m);
   EXPECT_EQ(share(truth, ContactLabel::slip) + share(truth, ContactLabel::slide), 0.0);
   EXPECT_GT(share(truth, ContactLabel::grip), 0.99);
   EXPECT_LT(centre_velocity(truth, 0).norm(), 0.005);

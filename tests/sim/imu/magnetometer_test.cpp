@@ -22,10 +22,10 @@ Values numbers(const std::map<std::string, double>& given) {
   return values;
 }
 
-std::vector<Vector3d> straight_way() {
-  std::vector<Vector3d> way;
-  for (int k = 0; k <= 1000; ++k) way.emplace_back(0.005 * k, 0, 0.1);
-  return way;
+std::vector<Vector3d> straight_path() {
+  std::vector<Vector3d> path;
+  for (int k = 0; k <= 1000; ++k) path.emplace_back(0.005 * k, 0, 0.1);
+  return path;
 }
 
 TEST(MagneticField, OfADipoleAgreesWithTheTextbook) {
@@ -50,7 +50,7 @@ TEST(MagneticField, OfADipoleHasNoSourceAndNoCurl) {
 
 TEST(MagneticField, EarthDipsAndPointsNorth) {
   const Values values = numbers({{"earth_field_t", 5e-5}, {"earth_inclination_rad", 1.0}, {"earth_north_rad", 0.5}});
-  const MagneticField field = draw_magnetic_field(values, straight_way(), 1);
+  const MagneticField field = draw_magnetic_field(values, straight_path(), 1);
   EXPECT_TRUE(field.dipoles.empty());
   EXPECT_NEAR(field.earth_W_t.norm(), 5e-5, 1e-18);
   EXPECT_LT(field.earth_W_t.z(), 0.0);
@@ -60,19 +60,19 @@ TEST(MagneticField, EarthDipsAndPointsNorth) {
 
 TEST(MagneticField, SourcesKeepTheirDistanceAndFollowTheSeed) {
   const Values values = numbers({{"magnetic_sources", 30}, {"magnetic_source_moment_a_m2", 5.0}});
-  const std::vector<Vector3d> way = straight_way();
-  const MagneticField field = draw_magnetic_field(values, way, 7);
+  const std::vector<Vector3d> path = straight_path();
+  const MagneticField field = draw_magnetic_field(values, path, 7);
   ASSERT_EQ(field.dipoles.size(), 30u);
   for (const MagneticDipole& dipole : field.dipoles) {
     double nearest_m = 1e9;
-    for (const Vector3d& p : way) nearest_m = std::min(nearest_m, (p - dipole.p_W_m).norm());
-    EXPECT_GE(nearest_m, 0.4 - 0.01);  // held against every other place of the way, 1 cm apart
+    for (const Vector3d& p : path) nearest_m = std::min(nearest_m, (p - dipole.p_W_m).norm());
+    EXPECT_GE(nearest_m, 0.4 - 0.01);  // held against every other position of the path, 1 cm apart
     EXPECT_LE(nearest_m, 1.5);
     EXPECT_GE(dipole.moment_W_a_m2.norm(), 5.0 / 3.0 - 1e-12);
     EXPECT_LE(dipole.moment_W_a_m2.norm(), 15.0 + 1e-12);
   }
-  EXPECT_EQ(draw_magnetic_field(values, way, 7).dipoles[3].p_W_m, field.dipoles[3].p_W_m);
-  EXPECT_NE(draw_magnetic_field(values, way, 8).dipoles[3].p_W_m, field.dipoles[3].p_W_m);
+  EXPECT_EQ(draw_magnetic_field(values, path, 7).dipoles[3].p_W_m, field.dipoles[3].p_W_m);
+  EXPECT_NE(draw_magnetic_field(values, path, 8).dipoles[3].p_W_m, field.dipoles[3].p_W_m);
 }
 
 TEST(Magnetometer, OffReadsTheTrueFieldBitForBit) {
@@ -156,7 +156,7 @@ TEST(ImuMagnetometer, ReadsTheEarthInItsOwnAxes) {
   }
 }
 
-TEST(ImuMagnetometer, SourcesDisturbTheFieldBesideTheWay) {
+TEST(ImuMagnetometer, SourcesDisturbTheFieldBesideThePath) {
   const SimulatedImu calm = measured_field({{"magnetometer", 1}}),
                      disturbed = measured_field({{"magnetometer", 1}, {"magnetic_sources", 8}});
   double largest = 0.0, smallest = 1.0;

@@ -90,8 +90,8 @@ TEST(LaneNoise, IsPhiloxAndBoxMuller) {
 
 SceneGeometry some_cage() {
   SceneGeometry cage;
-  const auto add = [&](ShapeKind kind, const Vector3d& size, const Vector3d& at, double turn_rad) {
-    Shape shape{kind, size, Eigen::AngleAxisd(turn_rad, Vector3d(1, 1, 0.3).normalized()).toRotationMatrix(), at};
+  const auto add = [&](ShapeKind kind, const Vector3d& size, const Vector3d& at, double rotation_rad) {
+    Shape shape{kind, size, Eigen::AngleAxisd(rotation_rad, Vector3d(1, 1, 0.3).normalized()).toRotationMatrix(), at};
     cage.shapes.push_back({shape, kOwnCage, 0.5f});
   };
   add(ShapeKind::capsule, {0.01, 0.3, 0}, {0.3, 0.1, 0.0}, 0.4);

@@ -15,7 +15,7 @@ namespace {
 
 using Eigen::Vector2d;
 
-std::vector<Vector2d> way(const PathPlan& plan, std::uint64_t seed = 1) {
+std::vector<Vector2d> path(const PathPlan& plan, std::uint64_t seed = 1) {
   Stream stream(seed, "test");
   return plan_path(plan, stream);
 }
@@ -28,7 +28,7 @@ double length_m(const std::vector<Vector2d>& nodes) {
 
 TEST(Path, HasItsLengthShapeAndHeading) {
   for (const PathShape shape : {PathShape::line, PathShape::l, PathShape::eight, PathShape::free}) {
-    const auto nodes = way({shape, 3.0});
+    const auto nodes = path({shape, 3.0});
     EXPECT_NEAR(length_m(nodes), 3.0, 1e-3);
     Vector2d low = nodes[0], high = nodes[0];
     for (const Vector2d& node : nodes) {
@@ -37,15 +37,15 @@ TEST(Path, HasItsLengthShapeAndHeading) {
     }
     EXPECT_LT((low + high).norm(), 1e-12);  // centred
   }
-  const auto line = way({PathShape::line, 2.0, std::numbers::pi / 2});
+  const auto line = path({PathShape::line, 2.0, std::numbers::pi / 2});
   EXPECT_LT((line.back() - line.front() - Vector2d(0, 2.0)).norm(), 1e-12);
-  const auto l = way({PathShape::l, 2.0});
+  const auto l = path({PathShape::l, 2.0});
   EXPECT_LT((l.back() - l.front() - Vector2d(1.0, 1.0)).norm(), 1e-12);
-  const auto eight = way({PathShape::eight, 5.0});
+  const auto eight = path({PathShape::eight, 5.0});
   EXPECT_LT((eight.back() - eight.front()).norm(), 1e-12);
   EXPECT_LT((eight[eight.size() / 2] - eight.front()).norm(), 0.01);  // through its crossing
-  EXPECT_GT((way({PathShape::free, 3.0}, 1).back() - way({PathShape::free, 3.0}, 2).back()).norm(), 0.01);
-  const auto swaying = way({PathShape::line, 4.0, 0.0, 0.3, 2.0});
+  EXPECT_GT((path({PathShape::free, 3.0}, 1).back() - path({PathShape::free, 3.0}, 2).back()).norm(), 0.01);
+  const auto swaying = path({PathShape::line, 4.0, 0.0, 0.3, 2.0});
   double widest_m = 0.0;
   for (const Vector2d& node : swaying) widest_m = std::max(widest_m, std::abs(node.y()));
   EXPECT_NEAR(widest_m, 0.3, 0.01);
@@ -82,14 +82,14 @@ Eigen::Vector3d centre_m(const Truth& truth, std::size_t k) {
   return truth.p_WB_m[k] + truth.q_WB[k] * truth.p_BG_m;
 }
 
-TEST(HandPath, LeadsTheSphereAlongTheWayFromRestToRest) {
+TEST(HandPath, LeadsTheSphereAlongThePathFromRestToRest) {
   for (const double shape : {1.0, 2.0}) {
     const Truth truth = simulate(built(along(shape))).truth;
-    double way_m = 0.0;
+    double path_length_m = 0.0;
     for (std::size_t k = 1; k < truth.q_WB.size(); ++k)
-      way_m += (centre_m(truth, k) - centre_m(truth, k - 1)).head<2>().norm();
+      path_length_m += (centre_m(truth, k) - centre_m(truth, k - 1)).head<2>().norm();
     // corners are rounded: averaging over 0.3 s at 0.6 m/s cuts 4 cm; the tremor adds some
-    EXPECT_NEAR(way_m, 3.0, 0.08) << shape;
+    EXPECT_NEAR(path_length_m, 3.0, 0.08) << shape;
     const Eigen::Vector3d moved = centre_m(truth, truth.q_WB.size() - 1) - centre_m(truth, 0);
     const Eigen::Vector3d aim = shape == 1.0 ? Eigen::Vector3d(1.5, 1.5, 0.0) : Eigen::Vector3d::Zero();
     EXPECT_LT((moved - aim).norm(), 0.02);

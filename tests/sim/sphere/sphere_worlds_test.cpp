@@ -68,15 +68,15 @@ TEST(SphereWorlds, NothingTouchesTheVaultOfTheTube) {
   EXPECT_EQ(world.model->geom_contype[vault] & world.model->geom_conaffinity[shell], 0);
 }
 
-/// Way of the contact point along the shell over the way of the centre, both from `from_s` on.
+/// Path of the contact point along the shell over the path of the centre, both from `from_s` on.
 double rolled_share(const Truth& truth, const Vector3d& normal_W, double from_s) {
-  double way_m = 0.0, rolled_m = 0.0;
+  double path_length_m = 0.0, rolled_m = 0.0;
   for (std::size_t k = static_cast<std::size_t>(from_s / 0.0005); k < truth.q_WB.size(); ++k) {
     const Vector3d w_W = truth.q_WB[k] * truth.w_WB_B_rad_s[k];
-    way_m += truth.v_WB_m_s[k].norm();
+    path_length_m += truth.v_WB_m_s[k].norm();
     rolled_m += kRadius_m * w_W.cross(normal_W).norm();
   }
-  return rolled_m / way_m;
+  return rolled_m / path_length_m;
 }
 
 Situation on_ramp(double friction) {

@@ -15,11 +15,11 @@ namespace tumble {
 
 /// What the rails of an IMU are known to be.
 struct KnownRails {
-  RailDetector::State walls;   ///< levels of equal readings, stated ranges
-  RailPlanes planes;           ///< of the gyro's elements, where they were seen
-  RailPlanes accel_planes;     ///< of the accelerometer's
-  bool upright = false;        ///< the device clips what it delivers: nothing is off on the axes beside
-  bool accel_upright = false;  ///< the same of the accelerometer
+  RailDetector::State upright_rails;  ///< levels of equal readings, stated ranges
+  RailPlanes planes;                  ///< of the gyro's elements, where they were seen
+  RailPlanes accel_planes;            ///< of the accelerometer's
+  bool upright = false;               ///< the device clips what it delivers: nothing is off on the axes beside
+  bool accel_upright = false;         ///< the same of the accelerometer
 
   /// The planes by which readings are judged: where rails are upright equal readings tell them to the bit, and planes
   /// what else there is.
@@ -58,20 +58,20 @@ struct HeardRails {
 class ClippingFinder {
  public:
   struct Params {
-    RailDetector::Params walls = {};
-    RailPlaneFinder::Params planes = {};  ///< without a stated range of its own: that of `walls`
+    RailDetector::Params upright_rails = {};
+    RailPlaneFinder::Params planes = {};  ///< without a stated range of its own: that of `upright_rails`
     RailPlaneFinder::Params accel_planes = RailPlaneFinder::Params::for_accelerometer();  ///< likewise
-    /// False: by flags and walls alone, as methods were published that know no other rail.
+    /// False: by flags and upright rails alone, as methods were published that know no other rail.
     bool tilted = true;
 
     /// Every number of it, stated once.
     template <class Self, class Visitor>
     static void fields(Self& p, Visitor& visit) {
-      visit.group("rails_", p.walls);
+      visit.group("rails_", p.upright_rails);
       visit.group("planes_", p.planes);
       visit.group("accel_planes_", p.accel_planes);
       visit(p.tilted,
-            on_off("tilted", "0: by flags and walls alone, as methods were published that know no other rail"));
+            on_off("tilted", "0: by flags and upright rails alone, as methods were published that know no other rail"));
     }
   };
   struct Found {
@@ -85,13 +85,13 @@ class ClippingFinder {
   /// Samples must be finite and in order of time. O(N) apart from the search of RailPlaneFinder.
   Found find(std::span<const ImuSample> samples) const;
 
-  const RailDetector& walls() const { return walls_; }
+  const RailDetector& upright_rails() const { return upright_rails_; }
 
  private:
-  RailPlanes find_planes(std::span<const ImuSample> samples, Triad triad, const RailDetector::State& walls,
+  RailPlanes find_planes(std::span<const ImuSample> samples, Triad triad, const RailDetector::State& upright_rails,
                          bool& upright) const;
 
-  RailDetector walls_;
+  RailDetector upright_rails_;
   // of gyro and accelerometer; the second of each where readings contradict the stated range
   std::array<std::array<RailPlaneFinder, 2>, 2> planes_;
   bool tilted_;

@@ -14,9 +14,9 @@ namespace tumble {
 
 /// Which readings of a sample say less than they show.
 struct Clipping {
-  std::uint8_t gyro = 0;       ///< bit j: axis j at its rail, the truth lies at or beyond the reading
-  std::uint8_t accel = 0;      ///< likewise for the accelerometer
-  std::uint8_t void_gyro = 0;  ///< bit j: the reading of axis j says nothing (sign flipped at the rail: overflow)
+  std::uint8_t gyro = 0;          ///< bit j: axis j at its rail, the truth lies at or beyond the reading
+  std::uint8_t accel = 0;         ///< likewise for the accelerometer
+  std::uint8_t missing_gyro = 0;  ///< bit j: the reading of axis j says nothing (sign flipped at the rail: overflow)
   bool operator==(const Clipping&) const = default;
 };
 

@@ -79,8 +79,8 @@ struct RateReport {
   bool rate_unit_suspect = false;   ///< a reading beyond RateModelParams::rate_max_rad_s: perhaps degrees
   bool force_unit_suspect = false;  ///< the median specific force is near 1: perhaps given in g
   std::size_t samples = 0, clipped = 0, recovered_flight = 0, recovered_contact = 0, bounded_only = 0;
-  std::size_t void_readings = 0;  ///< samples with an overflow (sign flipped at the rail)
-  double flight_share = 0.0;      ///< share of the samples that count as free flight
+  std::size_t missing_readings = 0;  ///< samples with an overflow (sign flipped at the rail)
+  double flight_share = 0.0;         ///< share of the samples that count as free flight
   /// Bit j, one per sample: the reading of axis j may stand at a rail that was not seen, though nothing says that it is
   /// clipped.
   std::vector<std::uint8_t> doubted_axes;

@@ -31,7 +31,7 @@ class Saave {
     /// t: from the centre of mass to the IMU, IMU axes [m]; bound |t_j| <= 10. Needed to about a millimetre; has no
     /// default.
     Eigen::Vector3d lever_arm_m = Eigen::Vector3d::Constant(std::numeric_limits<double>::quiet_NaN());
-    /// A reading strictly beyond this counts as clipped [rad/s]. Trap, kept as published: a device
+    /// A reading strictly beyond this counts as clipped [rad/s]. Known error, kept as published: a device
     /// whose plateau is exactly this value never exceeds it and nothing is recovered; pass a value slightly below. Has
     /// no default.
     double saturation_point_rad_s = 0.0;

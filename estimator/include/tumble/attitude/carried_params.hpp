@@ -34,7 +34,7 @@ struct CarriedReadingParams {
   double tilt_share = 0.02;             ///< error of a free element per deficit of a clipped one
   double rail_sigma_rad_s = 0.01;       ///< how sharp a rail is
   double accel_error_share = 0.02;      ///< more, per m/s^2 away from gravity
-  double turn_error_sqrts = 1e-3;       ///< random walk of the attitude per rad/s turned
+  double rotation_error_sqrts = 1e-3;   ///< random walk of the attitude per rad/s turned
   double recovered_sigma_rad_s = 1.0;   ///< a clipped rate known better is recovered
   double recovered_tau_s = 0.005;       ///< memory of the error of a rate that was recovered
   double recovered_scale_share = 6e-3;  ///< beside recovered rates: of the turning, by which gyros misread all of it
@@ -46,8 +46,8 @@ struct CarriedReadingParams {
     visit(p.rail_sigma_rad_s, {"rail_sigma_rad_s", "rad/s", 1e-4, 1.0, "how sharp a rail is"});
     visit(p.accel_error_share,
           {"accel_error_share", "1", 0.0, 1.0, "noise of the specific force more, per m/s^2 away from gravity"});
-    visit(p.turn_error_sqrts,
-          {"turn_error_sqrts", "sqrt(s)", 0.0, 1.0, "angle random walk per rad/s turned: scale", Rank::first});
+    visit(p.rotation_error_sqrts,
+          {"rotation_error_sqrts", "sqrt(s)", 0.0, 1.0, "angle random walk per rad/s turned: scale", Rank::first});
     visit(p.recovered_sigma_rad_s,
           {"recovered_sigma_rad_s", "rad/s", 0.0, 1e4,
            "a clipped rate known better than this is recovered, not only bounded", Rank::first});
@@ -126,7 +126,7 @@ struct CarriedParams {
     visit(p.accel_bias_sigma_m_s2,
           {"accel_bias_sigma_m_s2", "m/s^2", 1e-6, 10.0, "prior of the accelerometer's bias", Rank::first});
     visit(p.lever_arm_sigma_m,
-          {"lever_arm_sigma_m", "m", 1e-6, 10.0, "prior of the way from the carried point", Rank::first});
+          {"lever_arm_sigma_m", "m", 1e-6, 10.0, "prior of the lever arm from the carried point", Rank::first});
     visit(p.jerk_rad_s3_sqrts,
           {"jerk_rad_s3_sqrts", "rad/s^3 sqrt(s)", 1e-2, 1e6, "root density of the angular jerk", Rank::first});
     visit(p.hand_m_s2, {"hand_m_s2", "m/s^2", 1e-3, 1e3, "deviation of the carried point's acceleration", Rank::first});

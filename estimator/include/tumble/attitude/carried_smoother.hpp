@@ -18,9 +18,9 @@
 namespace tumble {
 
 /// Which elements of an IMU stand at a rail in one sample: -1 the negative one, 1 the positive one, 0 free; of the gyro
-/// kVoid where the reading says nothing (one that has wrapped over the rail): neither measurement nor bound.
+/// kMissing where the reading says nothing (one that has wrapped over the rail): neither measurement nor bound.
 struct ClipSigns {
-  static constexpr std::int8_t kVoid = 2;
+  static constexpr std::int8_t kMissing = 2;
   std::array<std::int8_t, 3> gyro{}, accel{};
 };
 /// Those of a judged sample.
@@ -39,11 +39,12 @@ struct ClippedElements {
 /// Attitude and angular velocity of a body that is carried (held, swung, twirled), from one IMU, also where its gyro
 /// clips: a smoother over a whole recording.
 ///
-/// What a hand does is bounded: its acceleration is short-lived and its velocity and place come back. So the specific
-/// force is gravity at the attitude, the lever arm's share and a bounded rest, and gravity turning in the sensor tells
-/// the rate that the gyro lost. Nodes at equal times of attitude, rate, angular acceleration and the carried point's
-/// acceleration, velocity, place; constants of the device beside them; Gauss-Newton on the arrow matrix (ArrowSystem),
-/// covariances from the same factors. O(time) in memory (about 7 kB a node) and work, whatever the IMU's rate.
+/// What a hand does is bounded: its acceleration is short-lived and its velocity and position come back. So the
+/// specific force is gravity at the attitude, the lever arm's share and a bounded rest, and gravity turning in the
+/// sensor tells the rate that the gyro lost. Nodes at equal times of attitude, rate, angular acceleration and the
+/// carried point's acceleration, velocity, position; constants of the device beside them; Gauss-Newton on the arrow
+/// matrix (ArrowSystem), covariances from the same factors. O(time) in memory (about 7 kB a node) and work, whatever
+/// the IMU's rate.
 ///
 /// Not modelled: flight (a body that is thrown: `hand_mahalanobis` tells), contact beyond what a hand's acceleration
 /// explains, walk of the biases, heading.
@@ -65,10 +66,10 @@ class CarriedSmoother {
     /// long and unknown enough to be asked, in how many another number of turns was the better one and was taken (a
     /// segment counts anew in each round), and in how many others stay possible, at odds of 1 to 1000 or better: there
     /// the covariance holds their spread.
-    int turns_asked = 0, turns_taken = 0, turns_open = 0;
+    int revolutions_asked = 0, revolutions_taken = 0, revolutions_open = 0;
     /// Turns that were to be taken and from which the whole could not be solved: the answer without them stands, and
     /// they count as possible.
-    int turns_failed = 0;
+    int revolutions_failed = 0;
   };
 
   /// Throws InvalidParams when a parameter is outside of its bound.

@@ -51,11 +51,11 @@ struct ImuMergeParams {
   }
 };
 
-/// Several IMUs on one rigid body as one: in common axes C, at the mean of their places.
+/// Several IMUs on one rigid body as one: in common axes C, at the mean of their positions.
 ///
-/// On a rigid body specific force is linear in the place, so the mean of the forces is exactly the force at the mean
+/// On a rigid body specific force is linear in the position, so the mean of the forces is exactly the force at the mean
 /// place: no angular acceleration is needed. Where three or more agree but for one, that one is left out of the sample,
-/// and what its place would have added is made up for with the rate of the others. Each unit's own bias, scale,
+/// and what its position would have added is made up for with the rate of the others. Each unit's own bias, scale,
 /// misalignment and time offset about the mean are estimated by a small Kalman filter while the body turns; the time
 /// offset is taken out when it is beyond doubt, the others average out. The accelerometers' do not in fast turns, where
 /// large forces cancel in the mean: they are told apart and taken out (ForceErrors).
@@ -91,11 +91,12 @@ class ImuMerge {
 
   explicit ImuMerge(const Params& params);
 
-  /// What the forces differ by from unit to unit, as a share of what the turning makes of their places: 1 when all is
-  /// as it should be, -1 when the accelerometers' sign is flipped. None while the body has not turned enough to tell.
+  /// What the forces differ by from unit to unit, as a share of what the turning makes of their positions: 1 when all
+  /// is as it should be, -1 when the accelerometers' sign is flipped. None while the body has not turned enough to
+  /// tell.
   static std::optional<double> arm_share(const State& state);
 
-  /// Place of the merged IMU in C.
+  /// Position of the merged IMU in C.
   Eigen::Vector3d p_C_m() const { return p_C_m_; }
 
   /// `samples` are those of all units at one time (their time stamps are the first's); `merged` is in C, the mean over

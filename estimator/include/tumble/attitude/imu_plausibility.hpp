@@ -48,13 +48,13 @@ struct ImuPlausibilityParams {
 ///
 /// Where the force is steady in size over a fifth of a second it is nearly gravity: its size must be g, and the gyro
 /// must say how its direction turns, u(t + T) = R^T u(t). A steady force of another size is no gravity: of a body
-/// that flies and spins it is what its turning makes of the sensor's place, and stands still in the sensor's axes. Of
-/// that its direction is not asked, nor anything of a window in which the gyro is at its rail. Where the force turned,
-/// it must have turned as the gyro says: the slope of one over the other is 1 of a sound IMU, 2 of a gyro of half the
-/// scale, -1 of one of the other sense, and about 0 of axes that are swapped. Pushes and a rod that a force points
-/// along spread about that slope and do not move it far. A body that turns about the one axis which a wrong naming
-/// leaves alone (a sphere that rolls along x = y with x and y swapped) keeps it; but the right naming leaves less
-/// unexplained, so every naming is asked. A force that does not turn at all while the body does is told apart from
+/// that flies and spins it is what its turning makes of the sensor's position, and stands still in the sensor's axes.
+/// Of that its direction is not asked, nor anything of a window in which the gyro is at its rail. Where the force
+/// turned, it must have turned as the gyro says: the slope of one over the other is 1 of a sound IMU, 2 of a gyro of
+/// half the scale, -1 of one of the other sense, and about 0 of axes that are swapped. Pushes and a rod that a force
+/// points along spread about that slope and do not move it far. A body that turns about the one axis which a wrong
+/// naming leaves alone (a sphere that rolls along x = y with x and y swapped) keeps it; but the right naming leaves
+/// less unexplained, so every naming is asked. A force that does not turn at all while the body does is told apart from
 /// that.
 ///
 /// A gyro or an accelerometer that repeats one reading to the last bit, for a second and ten times as long as ever
@@ -87,7 +87,7 @@ class ImuPlausibility {
     double force_sum_m_s2 = 0.0, windows = 0.0;
     std::array<double, kAxisLabels> unexplained_rad2{};  ///< by how axes are named; the first: as they are
     double by_force_rad2 = 0.0, by_gyro_rad2 = 0.0;      ///< where the force turned, in
-    double turned_windows = 0.0;                         ///< windows
+    double rotated_windows = 0.0;                        ///< windows
     double all_force_rad2 = 0.0, all_gyro_rad2 = 0.0;    ///< where either did
     TimeNs last_time_ns = 0;
     bool started = false;
@@ -105,12 +105,12 @@ class ImuPlausibility {
   /// Share of the force's turning that the gyro does not explain; 0 while nothing is known.
   double unexplained_share(const State& state) const;
   /// Slope of the force's turning over the gyro's (I17); 1 while nothing is known.
-  double turning_slope(const State& state) const;
+  double rotation_slope(const State& state) const;
   /// Correlation of the two turnings, -1 to 1: 1 of a gyro of any scale, -1 of the other sense, about 0 of axes that
   /// are swapped, between where pushes are taken for gravity. 1 while too little turned.
-  double turning_agreement(const State& state) const;
+  double rotation_agreement(const State& state) const;
   /// The force's turning as a share of the gyro's, also where the force did not turn; 1 while nothing is known.
-  double force_turned_share(const State& state) const;
+  double force_rotated_share(const State& state) const;
   /// How axes are named where gravity turns with the gyro, when they clearly are not as they say (I18).
   std::optional<AxisLabels> other_labels(const State& state) const;
   /// Longest time for which the gyro or the accelerometer was frozen [s]; 0: never.

@@ -94,7 +94,7 @@ class TumbleAttitude {
     // integrals since the last node
     Eigen::Matrix3d R_WI_s = Eigen::Matrix3d::Zero();
     Eigen::Vector3d f_W_m_s = Eigen::Vector3d::Zero();
-    double turned_rad2_s = 0.0;
+    double rotated_rad2_s = 0.0;
     Eigen::Vector2d recovered_rad2 = Eigen::Vector2d::Zero();  ///< variance of tilt and heading by recovered rates
     double node_s = 0.0;
     Eigen::Vector2d recovered_rad = Eigen::Vector2d::Zero();  ///< deviations that a run of them has gathered
@@ -127,7 +127,7 @@ class TumbleAttitude {
  private:
   void start(State& state) const;
   void take_average(State& state) const;
-  bool turns_by_bias_alone(const State& state) const;
+  bool rotates_by_bias_alone(const State& state) const;
   void integrate(const ImuSample& sample, double dt_s, State& state) const;
   void add_recovered(double dt_s, State& state) const;
   void predict_node(State& state) const;

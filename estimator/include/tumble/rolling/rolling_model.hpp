@@ -61,7 +61,7 @@ struct RollingSums {
   Eigen::Matrix<double, 3, 9> R_f = Eigen::Matrix<double, 3, 9>::Zero(), R_w = Eigen::Matrix<double, 3, 9>::Zero();
   Eigen::Vector3d R_wxf = Eigen::Vector3d::Zero();
   Eigen::Vector3d w_I_rad = Eigen::Vector3d::Zero(), f_I_m_s = Eigen::Vector3d::Zero();
-  double turned_rad2_s = 0.0;
+  double rotated_rad2_s = 0.0;
   double rate_clipped_s = 0.0, force_clipped_s = 0.0;  ///< with a reading that says nothing
   double recovered_s = 0.0;                            ///< with a rate that was recovered
   double impact_m_s = 0.0;                             ///< of | |f| - g | beyond the usual

@@ -12,7 +12,8 @@
 
 namespace tumble {
 
-/// ClippingFinder as a stream: the rails that the readings so far show, walls and planes, of gyro and accelerometer.
+/// ClippingFinder as a stream: the rails that the readings so far show, upright ones and planes, of gyro and
+/// accelerometer.
 ///
 /// Of each it keeps up to `readings_max` distinct readings, the latest and those about the extremes before others, and
 /// searches them as the batch does: when a segment near an extreme has ended, and within one after each eighth more of
@@ -60,7 +61,7 @@ class RailWatch {
   Clipping judge(const ImuSample* before, const ImuSample& sample, const State& state,
                  const ImuSample* after = nullptr) const;
 
-  const RailDetector& walls() const { return walls_; }
+  const RailDetector& upright_rails() const { return upright_rails_; }
 
   /// Whether two states will behave alike for ever, bit for bit.
   static bool equal(const State& a, const State& b);
@@ -74,7 +75,7 @@ class RailWatch {
   bool observe(const Eigen::Vector3d& reading, Triad triad, State& state) const;
   RailPlanes search(Triad triad, State& state) const;
 
-  RailDetector walls_;
+  RailDetector upright_rails_;
   std::array<std::array<RailPlaneFinder, 2>, 2> planes_;  // as ClippingFinder has them
   std::size_t readings_max_;
 };

@@ -27,7 +27,7 @@ struct RateReadingParams {
   }
 };
 
-/// A body that flies: no force but at its place on the rig, no torque.
+/// A body that flies: no force but at its position on the rig, no torque.
 struct RateFlightParams {
   double sigma_m_s2 = 0.02;  ///< what the model misses of the specific force (drag, bias in motion), besides noise
   double euler_sigma_rad_s2 = 0.3;  ///< what Euler's equation without torque misses of the angular acceleration

@@ -28,7 +28,7 @@ namespace tumble {
 /// A sample in the window.
 struct RateStreamKnot {
   RateObservation observation;
-  Clipping by_walls;  ///< what the device and upright rails say; the observation's knows planes too
+  Clipping by_upright_rails;  ///< what the device and upright rails say; the observation's knows planes too
   RateEstimate estimate;
   Eigen::Matrix3d covariance_rad2_s2 = Eigen::Matrix3d::Zero();
   /// By how much the size of each axis has grown in each of the two steps up to this sample, the lesser; 0 or more.

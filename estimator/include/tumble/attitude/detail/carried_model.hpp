@@ -17,10 +17,10 @@ inline constexpr int kBorder = 9;  ///< of the constants: see ConstantIndex
 using System = ArrowSystem<kState, kBorder>;
 
 /// Where the parts of a node's error lie; that of the attitude is phi with q_true = q_WI Exp(phi).
-enum Index { kPhi = 0, kRate = 3, kAngular = 6, kHand = 9, kVelocity = 12, kPlace = 15 };
+enum Index { kPhi = 0, kRate = 3, kAngular = 6, kHand = 9, kVelocity = 12, kPosition = 15 };
 enum ConstantIndex { kGyroBias = 0, kAccelBias = 3, kLever = 6 };
 
-/// One node. The carried point is what the hand holds; its acceleration, velocity and place are bounded.
+/// One node. The carried point is what the hand holds; its acceleration, velocity and position are bounded.
 struct Node {
   Eigen::Quaterniond q_WI = Eigen::Quaterniond::Identity();
   Eigen::Vector3d w_WI_I_rad_s = Eigen::Vector3d::Zero();
@@ -87,13 +87,13 @@ double add_force(const NodeReadings& readings, const Eigen::Vector3d& g_W_m_s2, 
 double add_rest(const ReadingNoise& noise, const Node& node, System::Block& block);
 
 /// The motion from one node to the next, per step of `h` seconds: white angular jerk; the hand's acceleration a bounded
-/// process of its own memory, its velocity and place about zero over theirs.
+/// process of its own memory, its velocity and position about zero over theirs.
 class Motion {
  public:
   struct Params {
     double step_s = 0.01;
-    double jerk_rad_s3_sqrts = 0.0;  ///< root of the density of the angular jerk
-    double turn_error_sqrts = 0.0;   ///< random walk of the attitude per rad/s turned: scale, misalignment
+    double jerk_rad_s3_sqrts = 0.0;     ///< root of the density of the angular jerk
+    double rotation_error_sqrts = 0.0;  ///< random walk of the attitude per rad/s turned: scale, misalignment
     double hand_m_s2 = 0.0, hand_tau_s = 0.0;
     double velocity_m_s = 0.0, velocity_tau_s = 0.0;
     double position_m = 0.0, position_tau_s = 0.0, position_leak_s = 10.0;
@@ -104,7 +104,7 @@ class Motion {
   /// density of the angular jerk.
   double add_step(const Node& from, const Node& to, double hand, System::Block& block, System::Block& next,
                   double jerk = 1.0) const;
-  /// Velocity and place about zero: the share of one node.
+  /// Velocity and position about zero: the share of one node.
   double add_bounds(const Node& node, System::Block& block) const;
   /// The first node: heading 0 as it stands, everything else as wide as the process.
   double add_first(const Node& node, System::Block& block) const;
@@ -113,8 +113,8 @@ class Motion {
   double add_attitude(const Node& from, const Node& to, double jerk, System::Block& block, System::Block& next) const;
 
   Params params_;
-  Eigen::Matrix4d jerk_;                    // information of (rate, angular acceleration) here and next, one axis
-  Eigen::Matrix<double, 6, 6> hand_, way_;  // of (acceleration, velocity, place) here and next, one axis
+  Eigen::Matrix4d jerk_;  // information of (rate, angular acceleration) here and next, one axis
+  Eigen::Matrix<double, 6, 6> hand_, kinematics_;  // of (acceleration, velocity, position) here and next, one axis
   double phi_variance_;
 };
 

@@ -10,17 +10,18 @@ namespace tumble {
 
 /// Errors of several accelerometers on one rigid body, told by what they disagree in.
 ///
-/// Turning fast, units at different places measure large forces that cancel in their mean; what scale and misalignment
-/// make of those forces does not. A Kalman filter holds, for each unit, bias, scale and misalignment, and the error of
-/// its place: f_k = c + A p_k + b_k + M_k f_k + A dp_k, A = [a]x + [w]x[w]x, and measures each unit's difference from
-/// the mean of all, averaged over kSpan_s (all of it is linear, so the average loses nothing but what turns within it).
-/// What all units share shows in no difference and stays about zero: it is left to the user of the mean.
+/// Turning fast, units at different positions measure large forces that cancel in their mean; what scale and
+/// misalignment make of those forces does not. A Kalman filter holds, for each unit, bias, scale and misalignment, and
+/// the error of its place: f_k = c + A p_k + b_k + M_k f_k + A dp_k, A = [a]x + [w]x[w]x, and measures each unit's
+/// difference from the mean of all, averaged over kSpan_s (all of it is linear, so the average loses nothing but what
+/// turns within it). What all units share shows in no difference and stays about zero: it is left to the user of the
+/// mean.
 ///
 /// Not modelled: errors that change, a body that bends.
 class ForceErrors {
  public:
   static constexpr int kUnits = 4;
-  static constexpr int kPerUnit = 15;  ///< bias, rows of M, error of place
+  static constexpr int kPerUnit = 15;  ///< bias, rows of M, error of position
   static constexpr int kStates = kUnits * kPerUnit;
   static constexpr double kSpan_s = 0.032;
   using Vector = Eigen::Matrix<double, kStates, 1>;
@@ -31,7 +32,7 @@ class ForceErrors {
     int count = 1;                                ///< bound [1, kUnits]
     double bias_sigma_m_s2 = 0.05;                ///< prior; bound [0, 1e3]
     double scale_sigma = 4e-3;                    ///< prior of each entry of M; bound [0, 1]
-    double place_sigma_m = 1.5e-3;                ///< prior; bound [0, 10]
+    double position_sigma_m = 1.5e-3;             ///< prior; bound [0, 10]
     double noise_m_s2 = 0.06;                     ///< of one difference, over a span; bound (0, 1e3]
     double acceleration_share = 0.02;  ///< more, of what the angular acceleration makes of the distance; bound [0, 1]
     double doubt = 5.0;                ///< sigmas beyond which a difference is no error of these; bound (0, 1e3]
@@ -42,7 +43,7 @@ class ForceErrors {
     // sums over the span
     Eigen::Matrix<double, 3, kUnits> difference_m_s2 = Eigen::Matrix<double, 3, kUnits>::Zero();
     Eigen::Matrix<double, 3, kUnits> force_m_s2 = Eigen::Matrix<double, 3, kUnits>::Zero();
-    Eigen::Matrix3d by_place = Eigen::Matrix3d::Zero();
+    Eigen::Matrix3d by_position = Eigen::Matrix3d::Zero();
     double acceleration_rad_s2 = 0.0;
     int samples = 0;
     double span_s = 0.0;
@@ -61,8 +62,8 @@ class ForceErrors {
   /// The force of unit `k` without its own bias, scale and misalignment.
   static Eigen::Vector3d corrected(int k, const Eigen::Vector3d& force_m_s2, const State& state);
 
-  /// The error of its place.
-  static Eigen::Vector3d place_error_m(int k, const State& state) {
+  /// The error of its position.
+  static Eigen::Vector3d position_error_m(int k, const State& state) {
     return state.x.segment<3>(kPerUnit * k + kPerUnit - 3);
   }
 

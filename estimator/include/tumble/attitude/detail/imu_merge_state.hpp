@@ -54,7 +54,7 @@ struct ImuMergeState {
   RateRecovery::State recovery;
   Eigen::Vector3d rate_rad_s = Eigen::Vector3d::Zero();         ///< merged, mean over the last window
   Eigen::Vector3d rate_before_rad_s = Eigen::Vector3d::Zero();  ///< and over the one before
-  double turning_rad_s = 0.0;                                   ///< mean of the rate over half a second
+  double rotation_rate_rad_s = 0.0;                             ///< mean of the rate over half a second
   double window_s = 0.0;                                        ///< length of the one that is open
   double length_s = 0.0, length_before_s = 0.0;                 ///< of the last windows
   double arm_product = 0.0, arm_square_m2_s3 = 0.0;             ///< of arm_share()

@@ -20,27 +20,28 @@ struct SteadyForceParams {
 };
 
 /// How gravity's direction turns beside what the gyro says.
-struct GravityTurningParams {
+struct GravityRotationParams {
   /// Slope of gravity's turning over the gyro's; pendulums and wands leave 0.75 to 1.21.
   double slope_min = 0.65, slope_max = 1.5;
-  double turned_min_rad2 = 0.5;  ///< sum of squares below which nothing is said of it
-  double turn_least_rad = 0.15;  ///< of a window, to count as turning
-  /// So many of them: in one or two a push may pass for gravity, or what a rig that spins in flight feels at its place.
-  double turned_windows_min = 5.0;
+  double rotation_min_rad2 = 0.5;    ///< sum of squares below which nothing is said of it
+  double rotation_least_rad = 0.15;  ///< of a window, to count as turning
+  /// So many of them: in one or two a push may pass for gravity, or what a rig that spins in flight feels at its
+  /// position.
+  double rotated_windows_min = 5.0;
   /// Of what the gyro leaves unexplained, by one of the slope's scale, where that is not between 0 and 1.
   double unexplained_share_max = 0.75;
   double still_share = 1e-6;  ///< of the gyro's turning; a spin in flight leaves 0.006 and less
 
   template <class Self, class Visitor>
   static void fields(Self& p, Visitor& visit) {
-    visit(p.slope_min, {"turning_min", "1", 0.0, 1.0, "least slope of gravity's turning over the gyro's"});
-    visit(p.slope_max, {"turning_max", "1", 1.0, 1e6, "largest slope of gravity's turning over the gyro's"});
-    visit(p.turned_min_rad2,
-          {"turned_min_rad2", "rad^2", 1e-12, 1e6, "sum of squares below which nothing is said of it"});
-    visit(p.turn_least_rad, {"turn_least_rad", "rad", 1e-12, 3.0, "of a window, to count as turning"});
-    visit(p.turned_windows_min,
-          {"turned_windows_min", "1", 1.0, 1e6, "windows in which the force turned, to say something of it"});
-    visit(p.unexplained_share_max, {"turning_unexplained_share_max", "1", 0.0, 1.0,
+    visit(p.slope_min, {"rotation_slope_min", "1", 0.0, 1.0, "least slope of gravity's turning over the gyro's"});
+    visit(p.slope_max, {"rotation_slope_max", "1", 1.0, 1e6, "largest slope of gravity's turning over the gyro's"});
+    visit(p.rotation_min_rad2,
+          {"rotation_min_rad2", "rad^2", 1e-12, 1e6, "sum of squares below which nothing is said of it"});
+    visit(p.rotation_least_rad, {"rotation_least_rad", "rad", 1e-12, 3.0, "of a window, to count as turning"});
+    visit(p.rotated_windows_min,
+          {"rotated_windows_min", "1", 1.0, 1e6, "windows in which the force turned, to say something of it"});
+    visit(p.unexplained_share_max, {"rotation_unexplained_share_max", "1", 0.0, 1.0,
                                     "of what the gyro leaves unexplained: one of such a scale or sense leaves less"});
     visit(p.still_share, {"still_share", "1", 0.0, 1.0, "of the gyro's turning, by which a force stands still"});
   }
@@ -80,7 +81,7 @@ struct FrozenTriadParams {
 /// What few need of ImuPlausibilityParams, by meaning.
 struct ImuPlausibilityExpertParams {
   SteadyForceParams force = {};
-  GravityTurningParams turning = {};
+  GravityRotationParams turning = {};
   AxisNamingParams naming = {};
   FrozenTriadParams frozen = {};
 

@@ -16,18 +16,18 @@ namespace tumble {
 /// Of PivotCheck.
 struct PivotCheckParams {
   double gravity_m_s2 = 9.80665;
-  double accel_range_m_s2 = 0.0;   ///< as the device states it; 0: not stated
-  double reading_s = 0.01;         ///< readings are averaged to this length
-  double segment_s = 2.0;          ///< of motion that is explained at once, and half of it at least
-  double turned_least_rad = 1.0;   ///< within a segment, to count
-  double explains_m_s = 0.3;       ///< root mean square of a velocity below which a segment is explained
-  double noise_m_s = 0.03;         ///< nothing is explained better than so
-  double evidence_least = 5.0;     ///< sum over the segments of the logarithm of the ratio of squares, and
-  double evidence_of_each = 0.6;   ///< on the average of a segment at least
-  double segments_least = 6.0;     ///< that are explained better; each moment is in two
-  double better_over_worse = 4.0;  ///< and so many for each that is explained worse
-  double arm_most_m = 0.25;        ///< of a segment that tells the scale
-  double scale_off = 0.025;        ///< and five deviations, by which the scale differs from 1
+  double accel_range_m_s2 = 0.0;    ///< as the device states it; 0: not stated
+  double reading_s = 0.01;          ///< readings are averaged to this length
+  double segment_s = 2.0;           ///< of motion that is explained at once, and half of it at least
+  double rotation_least_rad = 1.0;  ///< within a segment, to count
+  double explains_m_s = 0.3;        ///< root mean square of a velocity below which a segment is explained
+  double noise_m_s = 0.03;          ///< nothing is explained better than so
+  double evidence_least = 5.0;      ///< sum over the segments of the logarithm of the ratio of squares, and
+  double evidence_of_each = 0.6;    ///< on the average of a segment at least
+  double segments_least = 6.0;      ///< that are explained better; each moment is in two
+  double better_over_worse = 4.0;   ///< and so many for each that is explained worse
+  double arm_most_m = 0.25;         ///< of a segment that tells the scale
+  double scale_off = 0.025;         ///< and five deviations, by which the scale differs from 1
   double scale_deviations = 5.0;
   double scale_segments_least = 10.0;  ///< and this share of those that the rates explain: others hang on a rod
   double scale_share_least = 0.5;
@@ -40,7 +40,7 @@ struct PivotCheckParams {
     visit(p.accel_range_m_s2, {"accel_range_m_s2", "m/s^2", 0.0, kUnbounded, "as the device states it; 0: not stated"});
     visit(p.reading_s, {"reading_s", "s", 1e-3, 1.0, "readings are averaged to this length"});
     visit(p.segment_s, {"segment_s", "s", 0.1, 100.0, "of motion that is explained at once"});
-    visit(p.turned_least_rad, {"turned_least_rad", "rad", 0.0, 1e3, "turned within a segment, to count"});
+    visit(p.rotation_least_rad, {"rotation_least_rad", "rad", 0.0, 1e3, "turned within a segment, to count"});
     visit(p.explains_m_s, {"explains_m_s", "m/s", 1e-3, 1e3, "rms of velocity below which a segment is explained"});
     visit(p.noise_m_s, {"noise_m_s", "m/s", 1e-6, 1e3, "rms of velocity below which nothing is explained better"});
     visit(p.evidence_least, {"evidence_least", "1", 0.0, 1e6, "of all segments, for another reading of the gyro"});

@@ -13,15 +13,15 @@ namespace tumble {
 
 /// The rate of a body beyond the range of its gyros, from what the turning does to several accelerometers on it.
 ///
-/// An extended Kalman filter of rate, angular acceleration and the specific force at the units' mean place, which turns
-/// in the body as gravity does, with the error of each unit's lever arm: f_k = c + a x r_k + w x (w x r_k). It runs
-/// while a gyro is clipped or reads more than kFast of its range, so that the lever arms are learnt before the gyro
-/// stands at its rail. A reading is clipped where its flag says so (which whoever has judged the unit sets, see
+/// An extended Kalman filter of rate, angular acceleration and the specific force at the units' mean position, which
+/// turns in the body as gravity does, with the error of each unit's lever arm: f_k = c + a x r_k + w x (w x r_k). It
+/// runs while a gyro is clipped or reads more than kFast of its range, so that the lever arms are learnt before the
+/// gyro stands at its rail. A reading is clipped where its flag says so (which whoever has judged the unit sets, see
 /// ClippingFinder: a device that flags nothing may clip below its range) and from the range on; of gyro and
 /// accelerometer, such readings are bounds and no measurements.
 ///
-/// Not modelled: errors of scale (the gyro's is what the lever arms are learnt with), units that share a place, which
-/// tell nothing. An impact on the body reads as a spell of doubt, not as a rate.
+/// Not modelled: errors of scale (the gyro's is what the lever arms are learnt with), units that share a position,
+/// which tell nothing. An impact on the body reads as a spell of doubt, not as a rate.
 class RateRecovery {
  public:
   static constexpr int kUnits = 4;
@@ -40,7 +40,7 @@ class RateRecovery {
     double force_share = 0.004;  ///< more, as a share of the reading; bound [0, 1]
   };
   struct Params {
-    std::array<Eigen::Isometry3d, kUnits> T_CI{};   ///< mountings of the units, about their mean place
+    std::array<Eigen::Isometry3d, kUnits> T_CI{};   ///< mountings of the units, about their mean position
     int count = 1;                                  ///< bound [1, kUnits]
     double gyro_range_rad_s = 1e3;                  ///< from here on a reading is at its rail; bound (0, 1e3]
     double accel_range_m_s2 = 1e5;                  ///< bound (0, 1e5]

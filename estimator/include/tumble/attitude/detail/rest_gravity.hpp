@@ -18,8 +18,8 @@ namespace tumble {
 /// by any angle, after a tumble of several turns by less than `miss_least_rad` in one of fifty; an accelerometer of
 /// another unit shows in the size. The rates are those of an estimate, whose covariance makes the bound wider.
 ///
-/// Between two rests nothing is left of the velocity either: turned back by the rates, the forces of the way add to
-/// gravity alone. Rates that miss the direction at its end by chance hardly do so all the way.
+/// Between two rests nothing is left of the velocity either: turned back by the rates, the forces of the span add to
+/// gravity alone. Rates that miss the direction at its end by chance hardly do so all along.
 ///
 /// The equations are imu_merge.md (I19), (I20), (I22), (I23). Not seen: a body that comes to rest as it lay (a
 /// pendulum), turns about the vertical, an accelerometer with all three axes flipped, a run with less than two rests.
@@ -31,15 +31,15 @@ class RestGravity {
     double gravity_m_s2 = 9.80665;
     /// In whatever unit the force comes; a gyro's bias is no motion.
     RestDetector::Params rests = {.rate_max_rad_s = 0.15, .force_min_m_s2 = 0.3};
-    double size_share_max = 0.15;   ///< by which a force at rest may differ from gravity: 80 mg of bias, 3 % of scale
-    double miss_deviations = 5.0;   ///< allowed, of what the rates' covariance makes of the way; a chord, and
-    double miss_least_rad = 0.3;    ///< at least so much: a bias, pushes at rest
-    double miss_most_rad = 0.6;     ///< at most: rates that may be off by more tell nothing of the way
-    double correlation_s = 0.1;     ///< for which errors of a rate last at least
-    double turned_least_rad = 1.0;  ///< of the way between two rests, to count
-    double way_most_s = 60.0;       ///< likewise: in so long a good gyro's bias turns by a part of `miss_most_rad`
-    double gap_max_s = 0.1;         ///< a longer gap parts the rests: an impact inside of it turns a rate by rad/s
-    double accel_range_m_s2 = 0.0;  ///< as the device states it; 0: not stated
+    double size_share_max = 0.15;     ///< by which a force at rest may differ from gravity: 80 mg of bias, 3 % of scale
+    double miss_deviations = 5.0;     ///< allowed, of what the rates' covariance makes of the span; a chord, and
+    double miss_least_rad = 0.3;      ///< at least so much: a bias, pushes at rest
+    double miss_most_rad = 0.6;       ///< at most: rates that may be off by more tell nothing of the way
+    double correlation_s = 0.1;       ///< for which errors of a rate last at least
+    double rotation_least_rad = 1.0;  ///< of the span between two rests, to count
+    double span_most_s = 60.0;        ///< likewise: in so long a good gyro's bias turns by a part of `miss_most_rad`
+    double gap_max_s = 0.1;           ///< a longer gap parts the rests: an impact inside of it turns a rate by rad/s
+    double accel_range_m_s2 = 0.0;    ///< as the device states it; 0: not stated
 
     /// Every number of it, stated once.
     template <class Self, class Visitor>
@@ -53,8 +53,9 @@ class RestGravity {
       visit(p.miss_least_rad, {"miss_least_rad", "rad", 1e-3, 2.0, "and at least so much"});
       visit(p.miss_most_rad, {"miss_most_rad", "rad", 1e-3, 2.0, "and at most"});
       visit(p.correlation_s, {"correlation_s", "s", 1e-4, 1e3, "for which errors of a rate last"});
-      visit(p.turned_least_rad, {"turned_least_rad", "rad", 0.0, 1e3, "of the way between two rests, to be compared"});
-      visit(p.way_most_s, {"way_most_s", "s", 0.1, 1e6, "between two rests, at most, to be compared"});
+      visit(p.rotation_least_rad,
+            {"rotation_least_rad", "rad", 0.0, 1e3, "of the span between two rests, to be compared"});
+      visit(p.span_most_s, {"span_most_s", "s", 0.1, 1e6, "between two rests, at most, to be compared"});
       visit(p.gap_max_s, {"gap_max_s", "s", 1e-6, 3600.0, "a longer time between two samples parts the rests"});
       visit(p.accel_range_m_s2,
             {"accel_range_m_s2", "m/s^2", 0.0, kUnbounded, "as the device states it; 0: not stated"});
@@ -64,15 +65,15 @@ class RestGravity {
     RestDetector::State rest, weightless;
     Eigen::Vector3d from_m_s2 = Eigen::Vector3d::Zero();  ///< force at the last rest in the sensor's axes; 0: none
     Eigen::Quaterniond turned = Eigen::Quaterniond::Identity();  ///< since then
-    double way_rad = 0.0, variance_rad2 = 0.0;                   ///< likewise
+    double span_angle_rad = 0.0, variance_rad2 = 0.0;            ///< likewise
     Eigen::Vector3d velocity_sum_m_s = Eigen::Vector3d::Zero();  ///< likewise, of force in the axes of that rest
-    double way_s = 0.0, hidden_m_s = 0.0;                        ///< likewise, and what the accelerometer's rail hid
+    double span_s = 0.0, hidden_m_s = 0.0;                       ///< likewise, and what the accelerometer's rail hid
     double segment_s = 0.0, segment_rad2_s = 0.0;                ///< of samples in a row that the gyro did not measure
     double rest_s = 0.0, force_sum_m = 0.0;                      ///< of all rests, and of force by time
     double weightless_s = 0.0;                                   ///< of what would be rest but that no force holds it
-    double miss_rad = 0.0, miss_sigma_rad = 0.0;                 ///< of the worst of the ways between two rests
+    double miss_rad = 0.0, miss_sigma_rad = 0.0;                 ///< of the worst of the spans between two rests
     double velocity_share = 0.0, velocity_allowed_share = 0.0;   ///< likewise, over what gravity gives in its time
-    std::size_t ways = 0;                                        ///< that were compared
+    std::size_t spans = 0;                                       ///< that were compared
     TimeNs last_time_ns = 0;
     bool started = false, rests = false;
   };
@@ -89,7 +90,7 @@ class RestGravity {
   double size_share(const State& state) const;
   /// `out_of_range` where that is not 1.
   Status size_verdict(const State& state) const;
-  /// The same, and where the rates of the worst way between two rests miss gravity, or leave a velocity, by more than
+  /// The same, and where the rates of the worst span between two rests miss gravity, or leave a velocity, by more than
   /// they may.
   Status verdict(const State& state) const;
 

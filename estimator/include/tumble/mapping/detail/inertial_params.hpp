@@ -71,7 +71,7 @@ struct InertialNoiseParams {
   double sigma_rad = 0.002;
   double sigma_m_s = 0.01;
   /// Of the angle turned, as a share of it: scale, misalignment, and a rate that changes within a sample.
-  double turn_share = 0.001;
+  double rotation_share = 0.001;
   /// Of the specific force, as a share of its magnitude: velocity is uncertain by this times the integral of the force,
   /// which counts at impacts.
   double force_share = 0.03;
@@ -86,7 +86,8 @@ struct InertialNoiseParams {
     visit(p.sigma_m, {"prior_sigma_m", "m", 1e-9, 1e3, "inertial prior over 0.1 s: position", Rank::first});
     visit(p.sigma_rad, {"prior_sigma_rad", "rad", 1e-9, 1e3, "inertial prior over 0.1 s: attitude", Rank::first});
     visit(p.sigma_m_s, {"prior_sigma_m_s", "m/s", 1e-9, 1e3, "inertial prior over 0.1 s: velocity", Rank::first});
-    visit(p.turn_share, {"turn_sigma_share", "1", 0.0, 1.0, "inertial prior: of the angle turned", Rank::first});
+    visit(p.rotation_share,
+          {"rotation_sigma_share", "1", 0.0, 1.0, "inertial prior: of the angle turned", Rank::first});
     visit(p.force_share, {"force_sigma_share", "1", 0.0, 1.0, "inertial prior: of the force's integral", Rank::first});
     visit(p.gap_velocity_walk_m_s_sqrt_s, {"gap_velocity_walk_m_s_sqrt_s", "m/s/sqrt(s)", 0.0, 1e3,
                                            "of a gap of the IMU, over which the velocity goes on"});

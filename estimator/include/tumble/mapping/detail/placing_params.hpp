@@ -105,7 +105,7 @@ struct RelocalizationParams {
   int deficit_tries_max = 5;  ///< larger saturation deficits tried for one sweep, all axes together
   int starts_per_sweep = 3;   ///< of a lost sensor, the prior among them
   double shift_m = 1.0;       ///< such starts reach so far at first
-  double turn_rad = 0.3;      ///< likewise in attitude
+  double rotation_rad = 0.3;  ///< likewise in attitude
   int rounds = 3;             ///< each reaches that much further than the last
 
   template <class Self, class Visitor>
@@ -113,7 +113,7 @@ struct RelocalizationParams {
     visit(p.deficit_tries_max, {"deficit_tries_max", "1", 0, 12, "larger saturation deficits tried for one sweep"});
     visit(p.starts_per_sweep, {"starts_per_sweep", "1", 1, 100, "starts of a lost sensor, the prior among them"});
     visit(p.shift_m, {"shift_m", "m", 0.3, 100.0, "reach of such starts, first round"});
-    visit(p.turn_rad, {"turn_rad", "rad", 0.1, 3.15, "reach of such starts in attitude, first round"});
+    visit(p.rotation_rad, {"rotation_rad", "rad", 0.1, 3.15, "reach of such starts in attitude, first round"});
     visit(p.rounds, {"rounds", "1", 1, 100, "of starts, each of which reaches that much further than the last"});
   }
 };

@@ -22,10 +22,10 @@ namespace tumble::carried {
 /// `problem` has its covariances. Fills the counts in `report`. Not modelled: turns of two segments that hang on each
 /// other; other modes than whole turns about the clipped element's axis; that the constants move with a turn. Two
 /// sweeps over all nodes and O(nodes of the segments asked).
-void ask_turns(Problem& problem, CarriedSmoother::Report& report);
+void ask_revolutions(Problem& problem, CarriedSmoother::Report& report);
 
 /// The same, the whole solved again by `again`, which a test may let fail.
 using SolveAgain = Status (*)(Problem& problem, CarriedSmoother::Report& report);
-void ask_turns(Problem& problem, CarriedSmoother::Report& report, SolveAgain again);
+void ask_revolutions(Problem& problem, CarriedSmoother::Report& report, SolveAgain again);
 
 }  // namespace tumble::carried

@@ -10,7 +10,7 @@
 
 #include "estimator/attitude/filter_contract.hpp"
 #include "estimator/src/attitude/carried_problem.hpp"
-#include "estimator/src/attitude/turn_hypotheses.hpp"
+#include "estimator/src/attitude/revolution_hypotheses.hpp"
 #include "tumble/attitude/carried_smoother.hpp"
 
 namespace tumble {
@@ -94,9 +94,10 @@ SpinEstimate estimated_spin(const ClippedSpin& spin) {
   EXPECT_TRUE(status.ok()) << status.message();
   EXPECT_EQ(out.rates.size(), readings.samples.size());
   const auto middle = static_cast<std::size_t>(kHz * (spin.from_s + 0.5 * spin.lasts_s));
-  std::printf("asked %d, taken %d, open %d; in the middle %.2f of %.2f, deviation %.2f rad/s\n", out.report.turns_asked,
-              out.report.turns_taken, out.report.turns_open, out.rates[middle].w_WI_I_rad_s.x(),
-              spin.rate(spin.from_s + 0.5 * spin.lasts_s), std::sqrt(out.rates[middle].covariance_rad2_s2(0, 0)));
+  std::printf("asked %d, taken %d, open %d; in the middle %.2f of %.2f, deviation %.2f rad/s\n",
+              out.report.revolutions_asked, out.report.revolutions_taken, out.report.revolutions_open,
+              out.rates[middle].w_WI_I_rad_s.x(), spin.rate(spin.from_s + 0.5 * spin.lasts_s),
+              std::sqrt(out.rates[middle].covariance_rad2_s2(0, 0)));
   return out;
 }
 
@@ -106,13 +107,13 @@ RateState middle(const ClippedSpin& spin, const SpinEstimate& result) {
 
 /// Where white jerk alone joins both sides, an angle theta beyond the even spin costs 720 theta^2 / (T^5 q), and the
 /// rate that makes it is theta/T 30 u^2 (1 - u)^2: turns more are as likely as that says, fewer lie below the rail.
-TEST(TurnHypotheses, WhatNothingTellsIsCountedInTheCovariance) {
+TEST(RevolutionHypotheses, WhatNothingTellsIsCountedInTheCovariance) {
   ClippedSpin spin;
   spin.more_rad_s = 4.0;
   const SpinEstimate result = estimated_spin(spin);
-  EXPECT_EQ(result.report.turns_asked, 1);
-  EXPECT_EQ(result.report.turns_taken, 0);
-  EXPECT_EQ(result.report.turns_open, 1);
+  EXPECT_EQ(result.report.revolutions_asked, 1);
+  EXPECT_EQ(result.report.revolutions_taken, 0);
+  EXPECT_EQ(result.report.revolutions_open, 1);
   const double q = std::pow(smoother_params().jerk_rad_s3_sqrts, 2.0), T = spin.lasts_s + 1.0 / kHz;
   const double theta = 0.5 * spin.more_rad_s * spin.lasts_s;
   double sum = 0.0, second = 0.0;
@@ -133,28 +134,28 @@ TEST(TurnHypotheses, WhatNothingTellsIsCountedInTheCovariance) {
 /// A spin of which the first descent, begun at the rail, loses a turn and is held there by the bound: gravity behind
 /// the segment tells the angle but for whole turns, and of these the one with the least jerk is taken. More stay
 /// possible.
-TEST(TurnHypotheses, WhatFollowsDecides) {
+TEST(RevolutionHypotheses, WhatFollowsDecides) {
   ClippedSpin spin;
   spin.more_rad_s = 7.5;
   const SpinEstimate result = estimated_spin(spin);
   const RateState state = middle(spin, result);
   const double error = std::abs(state.w_WI_I_rad_s.x() - spin.rate(spin.from_s + 0.5 * spin.lasts_s));
-  EXPECT_GE(result.report.turns_taken, 1);
-  EXPECT_EQ(result.report.turns_open, 1);
+  EXPECT_GE(result.report.revolutions_taken, 1);
+  EXPECT_EQ(result.report.revolutions_open, 1);
   EXPECT_LT(error, 1.5);
   EXPECT_LT(error, 3.0 * std::sqrt(state.covariance_rad2_s2(0, 0)));
 }
 
 /// Negative control: an accelerometer that sees the spin leaves nothing to ask, and its deviation stays small.
-TEST(TurnHypotheses, ASegmentThatIsKnownIsNotAsked) {
+TEST(RevolutionHypotheses, ASegmentThatIsKnownIsNotAsked) {
   ClippedSpin spin;
   spin.more_rad_s = 4.0;
   spin.lasts_s = 0.6;
   spin.blind = false;
   const SpinEstimate result = estimated_spin(spin);
-  EXPECT_EQ(result.report.turns_asked, 0);
-  EXPECT_EQ(result.report.turns_taken, 0);
-  EXPECT_EQ(result.report.turns_open, 0);
+  EXPECT_EQ(result.report.revolutions_asked, 0);
+  EXPECT_EQ(result.report.revolutions_taken, 0);
+  EXPECT_EQ(result.report.revolutions_open, 0);
   EXPECT_LT(std::sqrt(middle(spin, result).covariance_rad2_s2(0, 0)), 2.0);
 }
 
@@ -183,7 +184,7 @@ struct Solved {
 
 /// A turn is taken and the whole is solved from there to no end: the answer before stands, with its own figures, and
 /// the turn that is likelier than what stands is in its covariance.
-TEST(TurnHypotheses, WhereTheWholeCannotBeSolvedAgainTheAnswerBeforeStands) {
+TEST(RevolutionHypotheses, WhereTheWholeCannotBeSolvedAgainTheAnswerBeforeStands) {
   ClippedSpin spin;
   spin.more_rad_s = 7.5;
   Solved solved(spin, smoother_params());
@@ -193,11 +194,11 @@ TEST(TurnHypotheses, WhereTheWholeCannotBeSolvedAgainTheAnswerBeforeStands) {
     EXPECT_TRUE(problem.solve(changed).ok());
     return Status{Trouble::diverged, "iteration of the carried body", 1.0, 0.0};
   };
-  carried::ask_turns(solved.problem, solved.report, fails);
-  EXPECT_EQ(solved.report.turns_asked, 1);
-  EXPECT_EQ(solved.report.turns_taken, 0);
-  EXPECT_EQ(solved.report.turns_failed, 1);
-  EXPECT_EQ(solved.report.turns_open, 1);
+  carried::ask_revolutions(solved.problem, solved.report, fails);
+  EXPECT_EQ(solved.report.revolutions_asked, 1);
+  EXPECT_EQ(solved.report.revolutions_taken, 0);
+  EXPECT_EQ(solved.report.revolutions_failed, 1);
+  EXPECT_EQ(solved.report.revolutions_open, 1);
   EXPECT_EQ(solved.report.cost, report.cost);
   EXPECT_EQ(solved.report.constants.lever_arm_m, report.constants.lever_arm_m);
   ASSERT_EQ(solved.problem.nodes().size(), before.size());

@@ -19,10 +19,10 @@ struct Disc {
   double radius_m = 0.0;
 };
 
-/// A place drawn evenly from the area until `fits` takes it. Throws InvalidSituation after 1000 refusals, naming
+/// A position drawn evenly from the area until `fits` takes it. Throws InvalidSituation after 1000 refusals, naming
 /// `what`.
 template <typename Fits>
-Eigen::Vector2d draw_place(Stream& stream, const Rectangle& area, const char* what, Fits fits) {
+Eigen::Vector2d draw_position(Stream& stream, const Rectangle& area, const char* what, Fits fits) {
   constexpr int kAttempts = 1000;
   for (int i = 0; i < kAttempts; ++i) {
     const double x_m = stream.uniform(area.low_x_m, area.high_x_m);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "turn_hypotheses.hpp"
+#include "revolution_hypotheses.hpp"
 
 #include <Eigen/LU>
 #include <algorithm>
@@ -23,7 +23,7 @@ using Matrix9 = Eigen::Matrix<double, 9, 9>;
 constexpr double kPi = std::numbers::pi;
 constexpr double kAngleShare = 1.0 / 3.0;  // of pi: a deviation of the angle that may hide a turn at six sigma
 constexpr double kAgainst = 3.0;           // deviations of the rail beyond it, on the mean of a segment
-constexpr double kTurnCost = 100.0;        // of the jerk that makes a turn: ten deviations
+constexpr double kRevolutionCost = 100.0;  // of the jerk that makes a turn: ten deviations
 constexpr double kAround_s = 0.3;          // solved with a segment, on either side
 constexpr double kLogOdds = 6.9;           // 1 to 1000: less likely turns are not counted
 constexpr double kTakeLogOdds = 3.0;       // 1 to 20: for a turn that is taken, costs leave out what the model misses
@@ -49,7 +49,7 @@ struct Open {
 };
 
 /// Least cost of white jerk for a whole turn more within so many steps, carried.md (C30): 2 pi / T 30 u^2 (1 - u)^2.
-double turn_cost(const Problem& problem, std::size_t steps) {
+double revolution_cost(const Problem& problem, std::size_t steps) {
   const double span_s = static_cast<double>(steps) * problem.node_s(), jerk = problem.jerk_rad_s3_sqrts();
   return 720.0 * std::pow(2.0 * kPi / jerk, 2.0) / std::pow(span_s, 5.0);
 }
@@ -78,7 +78,7 @@ std::vector<Segment> doubtful_segments(const Problem& problem) {
       // one that begins or ends with the recording has nothing behind it that would tell whole turns apart
       if (segment.first == 0 || segment.last + 1 >= count) continue;
       const bool against_rail = beyond_rad_s < kAgainst * problem.rail_sigma_rad_s() * clipped &&
-                                turn_cost(problem, segment.last + 2 - segment.first) < kTurnCost;
+                                revolution_cost(problem, segment.last + 2 - segment.first) < kRevolutionCost;
       if (angle_rad > kAngleShare * kPi || against_rail) out.push_back(segment);
     }
   }
@@ -87,7 +87,8 @@ std::vector<Segment> doubtful_segments(const Problem& problem) {
 
 /// The nodes of a part turned `turns` more about `axis` between its nodes a and b: a smooth bump of the rate, the
 /// attitudes that follow from it, and what they miss at b spread evenly.
-std::vector<Node> turned_more(const Problem& part, const Vector3d& axis, double turns, std::size_t a, std::size_t b) {
+std::vector<Node> with_more_revolutions(const Problem& part, const Vector3d& axis, double turns, std::size_t a,
+                                        std::size_t b) {
   std::vector<Node> nodes(part.nodes().begin(), part.nodes().end());
   const double h = part.node_s(), span_s = static_cast<double>(b - a) * h, mean = 2.0 * kPi * turns / span_s;
   const auto along = [&](std::size_t i) { return static_cast<double>(i - a) / static_cast<double>(b - a); };
@@ -138,7 +139,7 @@ std::vector<Hypothesis> hypotheses(const Problem& whole, const Segment& segment,
   for (const double sign : {1.0, -1.0}) {
     for (int n = 1; n <= kTurnsMax; ++n) {
       Problem other(whole, part);
-      other.place(0, turned_more(as_it_is, axis, sign * n, a, b));
+      other.place(0, with_more_revolutions(as_it_is, axis, sign * n, a, b));
       if (!keep(other)) break;
     }
   }
@@ -228,13 +229,13 @@ Status solve_again(Problem& problem, CarriedSmoother::Report& report) {
 
 }  // namespace
 
-void ask_turns(Problem& problem, CarriedSmoother::Report& report) {
-  ask_turns(problem, report, solve_again);
+void ask_revolutions(Problem& problem, CarriedSmoother::Report& report) {
+  ask_revolutions(problem, report, solve_again);
 }
 
-void ask_turns(Problem& problem, CarriedSmoother::Report& report, SolveAgain again) {
+void ask_revolutions(Problem& problem, CarriedSmoother::Report& report, SolveAgain again) {
   const std::vector<Segment> segments = doubtful_segments(problem);
-  report.turns_asked = static_cast<int>(segments.size());
+  report.revolutions_asked = static_cast<int>(segments.size());
   if (segments.empty()) return;
   std::vector<Part> parts = with_surroundings(problem, segments);
   std::vector<Open> open;
@@ -254,13 +255,13 @@ void ask_turns(Problem& problem, CarriedSmoother::Report& report, SolveAgain aga
     if (!again(problem, report).ok()) {
       problem.restore(before);
       report = report_before;
-      report.turns_failed += static_cast<int>(taken);
+      report.revolutions_failed += static_cast<int>(taken);
       open = left_open(asked, false);
       break;
     }
-    report.turns_taken += static_cast<int>(taken);
+    report.revolutions_taken += static_cast<int>(taken);
   }
-  report.turns_open = static_cast<int>(open.size());
+  report.revolutions_open = static_cast<int>(open.size());
   // carried.md (C31)
   for (const Open& segment : open) {
     for (const auto& [share, nodes] : segment.others) {

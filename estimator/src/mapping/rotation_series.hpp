@@ -5,7 +5,7 @@
 
 /// Cosine and sine of half a small angle by their series: c = s = 1, then for each pair, with h the half angle squared,
 /// c = 1 - h first c and s = 1 - h second s, which is sin(x) / x.
-namespace tumble::turn_series {
+namespace tumble::rotation_series {
 
 /// Of the whole angle. Beyond it more terms would be needed.
 inline constexpr double kAngle2_rad2 = 1.0;
@@ -14,4 +14,4 @@ inline constexpr std::pair<double, double> kRatios[] = {
     {1.0 / 182, 1.0 / 210}, {1.0 / 132, 1.0 / 156}, {1.0 / 90, 1.0 / 110}, {1.0 / 56, 1.0 / 72},
     {1.0 / 30, 1.0 / 42},   {1.0 / 12, 1.0 / 20},   {1.0 / 2, 1.0 / 6}};
 
-}  // namespace tumble::turn_series
+}  // namespace tumble::rotation_series

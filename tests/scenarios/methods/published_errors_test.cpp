@@ -46,7 +46,7 @@ double velocity_error_m_s(double late_velocity) {
   return errors[errors.size() / 2];
 }
 
-TEST(PublishedTraps, VelocityIsHalfASweepLateAsLaunched) {
+TEST(PublishedErrors, VelocityIsHalfASweepLateAsLaunched) {
   const double late = velocity_error_m_s(1.0), in_time = velocity_error_m_s(0.0);
   // half a sweep of 0.1 s at 0.5 to 2 m/s^2
   EXPECT_GT(late, 0.03);
@@ -54,7 +54,7 @@ TEST(PublishedTraps, VelocityIsHalfASweepLateAsLaunched) {
 }
 
 // a misspelt parameter ("fixed_frame_for_laser" where the node reads "fixed_frame_for_lidar") was silently ignored
-TEST(PublishedTraps, AMisspeltParameterIsRefusedByEverySlamMethod) {
+TEST(PublishedErrors, AMisspeltParameterIsRefusedByEverySlamMethod) {
   const sim::Recording recording = testing::synthetic_rig();
   int tried = 0;
   for (const Method& method : methods()) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "tumble/angular_velocity/detail/partial_clipping.hpp"
+#include "tumble/angular_velocity/detail/subsample_saturation.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -16,7 +16,8 @@ constexpr double kOfLoss = 0.5, kOfDepth = 0.25, kDepthMax = 1.0;
 }  // namespace
 
 // A rate of constant slope that passes the rail: rails.md (R69), (R70).
-PartialLoss partial_loss(double reading_rad_s, double neighbour_rad_s, double rail_rad_s, double noise_rad_s) {
+SubsampleSaturation subsample_saturation(double reading_rad_s, double neighbour_rad_s, double rail_rad_s,
+                                         double noise_rad_s) {
   const double depth = rail_rad_s - reading_rad_s, slope = reading_rad_s - neighbour_rad_s;
   // a mean of clipped values stands on the rail exactly; noise before the rail lowers it by less than this
   if (!(depth > 0.1 * noise_rad_s)) return {};
