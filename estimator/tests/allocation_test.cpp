@@ -59,8 +59,8 @@ TEST(Allocation, NoneForASampleAfterTheSecondPassTookOver) {
   test::ThrownBody body;
   body.end_s = 4.2;  // it lies long enough for the second pass to catch up
   TumblingOdometry::Params params;
-  params.lever_arm_I_m = body.lever_arm_I_m + Eigen::Vector3d(0.006, -0.006, 0.006);  // it has something to put right
-  params.T_IL.linear() = Eigen::AngleAxisd(0.015, Eigen::Vector3d(1.0, -2.0, 2.0).normalized()).toRotationMatrix();
+  params.lever_arm_I_m = body.lever_arm_I_m + Eigen::Vector3d(-0.006, 0.006, -0.006);  // it has something to put right
+  params.T_IL.linear() = Eigen::AngleAxisd(0.015, Eigen::Vector3d(-1.0, 2.0, -2.0).normalized()).toRotationMatrix();
   params.imu.rate_hz = body.imu_hz;
   params.expert.again.after_s = 0.9;
   TumblingOdometry odometry(params);
