@@ -67,7 +67,8 @@ if(NOT ALONE)
 endif()
 
 # a copy of the folder, elsewhere: builds, tests itself, installs; its package laid into a clean root; its archive
-# builds the same once more
+# builds the same once more. Through the compiler cache where the tree is: what was compiled alike is what it says
+list(APPEND OPTIONS -DTUMBLE_ACCELERATE=${ACCELERATE})
 file(COPY ${SOURCE}/estimator DESTINATION ${WORK}/copy)
 run(passes ${CMAKE_COMMAND} -S ${WORK}/copy/estimator -B ${WORK}/alone ${common} ${OPTIONS} -DTUMBLE_BUILD_TESTS=ON
     -DTUMBLE_PCL=ON)
