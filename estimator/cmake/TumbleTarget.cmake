@@ -21,6 +21,7 @@ endfunction()
 include_guard()
 
 option(TUMBLE_EIGEN_NAN "Initialise Eigen matrices to NaN, so that use before assignment shows" OFF)
+option(TUMBLE_WARNINGS "Ask the compiler for its warnings: who builds what others have read does without" ON)
 option(TUMBLE_WARNINGS_AS_ERRORS "Warnings fail the build" OFF)
 option(TUMBLE_PRECOMPILE "Parse the headers that nearly every file includes once per library, and once for all tests" OFF)
 option(TUMBLE_LIGHT "Every target as LIGHT: fast to compile" OFF)
@@ -46,7 +47,8 @@ function(tumble_target target)
   endif()
   # -Wrestrict of GCC 12 cries wolf at every concatenation of strings (GCC bug 105329)
   # no contraction into fused multiply-add: the same source gives the same bits on every x86-64
-  target_compile_options(${target} PRIVATE -Wall -Wextra -Wshadow -Wnon-virtual-dtor -Woverloaded-virtual
+  target_compile_options(${target} PRIVATE
+    $<$<BOOL:${TUMBLE_WARNINGS}>:-Wall -Wextra -Wshadow -Wnon-virtual-dtor -Woverloaded-virtual>
     $<$<CXX_COMPILER_ID:GNU>:-Wno-restrict>
     -ffp-contract=off
     $<$<CONFIG:Release>:$<IF:$<BOOL:${arg_LIGHT}>,-O1,-O3>>)

@@ -2,14 +2,19 @@
 """The notebooks of docs/notebooks, run from the first cell to the last. They are kept without outputs."""
 import os
 import pathlib
+import shutil
+import sys
 
+import h5py
+import numpy as np
 import pytest
+from conftest import run_script
 
 nbclient = pytest.importorskip("nbclient", reason="the extra `notebooks`")
 nbformat = pytest.importorskip("nbformat")
 
 FOLDER = pathlib.Path(__file__).parents[2] / "docs/notebooks"
-pytestmark = pytest.mark.program
+RECORDING = FOLDER / "twirl.h5"
 
 
 def pictures(notebook):
@@ -18,10 +23,37 @@ def pictures(notebook):
 
 
 def ran(notebook, folder):
+    shutil.copy(RECORDING, folder)
     nbclient.NotebookClient(notebook, timeout=300, kernel_name="python3", resources={"metadata": {"path": str(folder)}}).execute()
     return notebook
 
 
+def test_the_first_needs_no_program(tmp_path, monkeypatch):
+    """As after `pip install` alone: nothing of the tree is on the path."""
+    for name in ("REPOIMU", "TUMBLE_PROGRAM", "TUMBLE_ROOT"):
+        monkeypatch.delenv(name, raising=False)
+    monkeypatch.setenv("PATH", f"{pathlib.Path(sys.executable).parent}:/usr/bin:/bin")
+    drawn = pictures(ran(nbformat.read(FOLDER / "saturated_rate.ipynb", as_version=4), tmp_path))
+    assert len(drawn) == 1 and drawn[0] > 10_000, drawn
+
+
+def datasets(path):
+    found = {}
+    with h5py.File(path) as file:
+        file.visititems(lambda name, item: found.update({name: item[()]}) if isinstance(item, h5py.Dataset) else None)
+    return found
+
+
+@pytest.mark.program
+def test_the_kept_recording_is_what_its_command_makes(program, tmp_path):
+    """Where the simulation has changed, `python docs/notebooks/keep_twirl.py` makes it anew."""
+    run_script(FOLDER / "keep_twirl.py", tmp_path, tmp_path / "anew.h5")
+    kept, anew = datasets(RECORDING), datasets(tmp_path / "anew.h5")
+    assert len(kept) > 20 and kept.keys() == anew.keys()
+    assert [name for name in kept if not np.array_equal(kept[name], anew[name], equal_nan=kept[name].dtype.kind == "f")] == []
+
+
+@pytest.mark.program
 @pytest.mark.parametrize("name, figures", [("saturated_rate", 1), ("map_of_a_tumble", 2), ("own_rate_method", 1)])
 def test_notebook(name, figures, tmp_path, monkeypatch):
     monkeypatch.delenv("REPOIMU", raising=False)
@@ -37,6 +69,7 @@ def test_all_are_run():
     assert {path.stem for path in FOLDER.glob("*.ipynb")} == {"saturated_rate", "map_of_a_tumble", "own_rate_method"}
 
 
+@pytest.mark.program
 def test_a_real_wand(tmp_path, monkeypatch, real_data):
     """Where the recording is at hand."""
     if real_data is None:
