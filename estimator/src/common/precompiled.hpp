@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // What nearly every source of the library includes, and the types of Eigen's expressions that at least a dozen of them
-// instantiate: the classes behind an expression of three numbers take a compiler longer than its code (docs/figures.md).
-// Precompiled (CMakeLists.txt), included by no source: it saves time alone.
+// instantiate: the classes behind an expression of three numbers take a compiler longer than its code
+// (docs/figures.md). Precompiled (CMakeLists.txt), included by no source: it saves time alone.
 #pragma once
 
 #include <Eigen/Cholesky>
@@ -24,7 +24,7 @@ constexpr bool known = (... && (sizeof(std::remove_cvref_t<Expressions>) > 0 &&
 template <class... Matrices>
 constexpr bool known_matrices = (... && known<Matrices, decltype(Matrices::Zero()), const Matrices>);
 template <class... Matrices>
-constexpr bool known_squares = known_matrices<Matrices...> && known<decltype(Matrices::Identity())...>;
+constexpr bool known_squares = known_matrices<Matrices...>&& known<decltype(Matrices::Identity())...>;
 
 template <int rows, int columns = 1>
 using Real = Eigen::Matrix<double, rows, columns>;
@@ -42,15 +42,16 @@ static_assert(known_squares<Real<2, 2>, Real<3, 3>, Real<4, 4>, Real<6, 6>, Real
 // as many as the model of the rates has states, and states with what one node shares with its next
 static_assert(known_matrices<Real<20>, Real<29>, Real<3, 20>, Real<29, 29>> && known_squares<Real<20, 20>>);
 // sums, differences, multiples, lengths and products of three numbers
-static_assert(known<decltype(a + b), decltype(a - b), decltype(s * a), decltype(a / s), decltype(a + s * b), decltype(s * (a - b)),
-                    decltype(a.cwiseAbs()), decltype(a.cwiseAbs2()), decltype(a.conjugate().cwiseProduct(b)), decltype(R * a),
-                    decltype(R.lazyProduct(a)), decltype(a.transpose()), decltype(s * part)>);
+static_assert(known<decltype(a + b), decltype(a - b), decltype(s * a), decltype(a / s), decltype(a + s * b),
+                    decltype(s * (a - b)), decltype(a.cwiseAbs()), decltype(a.cwiseAbs2()),
+                    decltype(a.conjugate().cwiseProduct(b)), decltype(R * a), decltype(R.lazyProduct(a)),
+                    decltype(a.transpose()), decltype(s * part)>);
 // whether all are finite, whether two are the same
-static_assert(known<decltype((a - a).array()), decltype((a - a).array() == (a - a).array()),
-                    decltype(a.cwiseEqual(b)), decltype(R.cwiseNotEqual(Q.Identity()))>);
+static_assert(known<decltype((a - a).array()), decltype((a - a).array() == (a - a).array()), decltype(a.cwiseEqual(b)),
+                    decltype(R.cwiseNotEqual(Q.Identity()))>);
 // rows and columns of a rotation, and what its product with three numbers makes of them
-static_assert(known<decltype(R.row(0)), decltype(R.col(0)), decltype(Q.row(0)), decltype(R.row(0).transpose()),
-                    decltype(Q.row(0).transpose()), decltype(a.col(0)),
-                    decltype(R.row(0).transpose().cwiseProduct(a.col(0)))>);
+static_assert(
+    known<decltype(R.row(0)), decltype(R.col(0)), decltype(Q.row(0)), decltype(R.row(0).transpose()),
+          decltype(Q.row(0).transpose()), decltype(a.col(0)), decltype(R.row(0).transpose().cwiseProduct(a.col(0)))>);
 
 }  // namespace tumble::precompiled
