@@ -82,10 +82,9 @@ std::string read_text_file(const std::filesystem::path& path) {
     throw BadInput(path.string() + ": larger than 4 MiB");
   }
   std::ifstream stream(path, std::ios::binary);
-  std::ostringstream text;
-  text << stream.rdbuf();
-  if (!stream || !text) throw BadInput(path.string() + ": cannot be read");
-  return text.str();
+  std::string text((std::istreambuf_iterator<char>(stream)), std::istreambuf_iterator<char>());
+  if (stream.bad() || !stream.is_open()) throw BadInput(path.string() + ": cannot be read");
+  return text;
 }
 
 std::string suggestion(const std::string& name, std::span<const std::string> known) {

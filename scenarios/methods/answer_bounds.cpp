@@ -85,7 +85,9 @@ std::uintmax_t AnswerBounds::map_bytes() const {
 
 void AnswerBounds::require_size(const std::filesystem::path& file, std::uintmax_t bytes) const {
   const std::string name = file.filename().string();
-  if (!std::filesystem::is_regular_file(file)) throw BadInput(name + ": is no regular file");
+  // neither through a link, which leads to what the method did not make
+  if (!std::filesystem::is_regular_file(std::filesystem::symlink_status(file)))
+    throw BadInput(name + ": is no regular file");
   std::error_code error;
   const std::uintmax_t size = std::filesystem::file_size(file, error);
   if (error) throw BadInput(name + ": " + error.message());

@@ -35,6 +35,7 @@ std::string version_said(Command command, const std::string& place) {
   const CommandEnd end = run_command(command);
   if (end.how != CommandEnd::How::done) throw BadInput(place + with_last_words(end.reason, end));
   const std::string said = read_text_file(command.transcript);
+  if (said.empty()) throw BadInput(place + "it printed nothing, must print what tells this version from others");
   return fmt::format("{}; said {:016x}", said.substr(0, std::min(said.find('\n'), kFirstLineMax)),
                      XXH3_64bits(said.data(), said.size()));
 }

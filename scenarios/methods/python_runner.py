@@ -75,7 +75,7 @@ def numbers(name, given, *shape):
     if out.ndim != len(shape) or any(wanted not in (None, size) for size, wanted in zip(out.shape, shape)):
         bound = ", ".join("N" if size is None else str(size) for size in shape)
         raise Refused(f"{name} has the shape {out.shape}, must be ({bound})")
-    bad = np.flatnonzero(~np.isfinite(out.reshape(len(out), -1)).all(axis=1))
+    bad = np.flatnonzero(~np.isfinite(out).all(axis=tuple(range(1, out.ndim))))
     if len(bad):
         raise Refused(f"{name}[{bad[0]}] is {out[bad[0]].tolist()}, must be finite ({len(bad)} of {len(out)} rows are not)")
     return out

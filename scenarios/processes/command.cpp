@@ -11,7 +11,6 @@
 #include <algorithm>
 #include <cerrno>
 #include <fstream>
-#include <iterator>
 
 #include "scenarios/processes/process.hpp"
 
@@ -19,7 +18,7 @@ namespace tumble::scenarios {
 
 namespace {
 
-constexpr std::size_t kLastWords = 300;
+constexpr std::size_t kWords = 300;
 
 void limit(int resource, double value) {
   const auto most = static_cast<rlim_t>(value);
@@ -52,12 +51,19 @@ void become(const Command& command, std::string& problem) {
   problem = command.words.front() + ": " + strerror(errno);
 }
 
-std::string end_of(const std::filesystem::path& transcript) {
+/// Of a long one its beginning, where the cause stands, and its end, whatever was traced between them.
+std::string words_of(const std::filesystem::path& transcript) {
   std::ifstream file(transcript, std::ios::binary | std::ios::ate);
   if (!file) return {};
-  const auto size = static_cast<std::streamoff>(file.tellg());
-  file.seekg(std::max<std::streamoff>(0, size - static_cast<std::streamoff>(kLastWords)));
-  std::string text((std::istreambuf_iterator<char>(file)), std::istreambuf_iterator<char>());
+  const auto size = static_cast<std::size_t>(file.tellg());
+  std::string text(std::min(size, kWords), '\0');
+  file.seekg(0).read(text.data(), static_cast<std::streamsize>(text.size()));
+  if (size > kWords) {
+    std::string last(std::min(size - kWords, kWords), '\0');
+    file.seekg(-static_cast<std::streamoff>(last.size()), std::ios::end);
+    file.read(last.data(), static_cast<std::streamsize>(last.size()));
+    text += (size > 2 * kWords ? " ... " : "") + last;
+  }
   while (!text.empty() && (text.back() == '\n' || text.back() == '\r')) text.pop_back();
   std::replace_if(
       text.begin(), text.end(), [](unsigned char c) { return c < 0x20 || c == 0x7f; }, ' ');
@@ -82,7 +88,7 @@ CommandEnd run_command(const Command& command) {
   process.read_available(problem);
 
   CommandEnd end;
-  end.last_words = end_of(command.transcript);
+  end.last_words = words_of(command.transcript);
   end.cpu_s = last.cpu_s;
   if (!problem.empty()) {
     end.how = CommandEnd::How::not_started;

@@ -24,7 +24,7 @@ struct CommandEnd {
   enum class How { done, failed, out_of_time, not_started };
   How how = How::done;
   std::string reason;      ///< one line; empty when done
-  std::string last_words;  ///< end of the transcript, one line of at most 300 characters
+  std::string last_words;  ///< the transcript on one line: its first and last 300 characters
   double cpu_s = 0.0;      ///< of the command, its own children not counted
 };
 

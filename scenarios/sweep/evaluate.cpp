@@ -69,6 +69,13 @@ OutcomeStatus status_of(NoAnswer::Why why) {
   return OutcomeStatus::killed;
 }
 
+/// Of a method that gave no answer: what its files say of it, too.
+Estimate no_estimate() {
+  Estimate none;
+  none.status = {Trouble::empty, "estimate", 0.0, 1.0};
+  return none;
+}
+
 }  // namespace
 
 Estimate run_method(const Method& method, const SimulatedDraw& draw, Outcome& outcome) {
@@ -90,15 +97,15 @@ Estimate run_method(const Method& method, const SimulatedDraw& draw, Outcome& ou
       outcome.message = one_line(estimate.status.message());
     }
   } catch (const NoAnswer& error) {
-    estimate = {};
+    estimate = no_estimate();
     outcome.status = status_of(error.why());
     outcome.message = one_line(error.what());
   } catch (const std::bad_alloc&) {
-    estimate = {};
+    estimate = no_estimate();
     outcome.status = OutcomeStatus::killed;
     outcome.message = "no memory was left for it";
   } catch (const std::exception& error) {
-    estimate = {};
+    estimate = no_estimate();
     outcome.status = OutcomeStatus::failed;
     outcome.message = one_line(error.what());
   }

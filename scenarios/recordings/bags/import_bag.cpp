@@ -108,6 +108,7 @@ StaticFrames read_frames(const Bag& bag) {
       for (const ros::TransformStamped& each : message.transforms) frames.add(each, origin.where);
     });
   }
+  frames.require_no_ring(bag.place + ": topic " + kStaticTopic);
   return frames;
 }
 
@@ -171,8 +172,8 @@ sim::ImuRecord read_imu(const Bag& bag, const StaticFrames& frames, const std::s
   finish_readings(where, accel_unit, imu);
   // messages are in rad/s by their definition, and not every driver keeps to it
   const std::string evened = even_out_stamps(imu);
-  const std::string units = require_plausible_rates(where, imu, reading.gyro_unit);
-  for (const std::string& remark : {evened, units, stamps.remark()}) {
+  const std::string units = rates_text(where, imu, reading.gyro_unit);
+  for (const std::string& remark : {evened, gaps_text(imu), units, stamps.remark()}) {
     if (!remark.empty()) notes.push_back(topic + ": " + remark);
   }
   place_sensor(bag, frames, topic, frame, "--lever-arm", imu.T_BI, notes);
@@ -352,6 +353,7 @@ Imported import_bag(BagReader& reader, const std::filesystem::path& path, const 
   const Bag bag{reader, path.string(), reader.topics()};
   const StaticFrames frames = read_frames(bag);
   Imported out;
+  for (const std::string& remark : frames.remarks()) out.notes.push_back(std::string(kStaticTopic) + ": " + remark);
   add_imus(bag, frames, reading, out);
   add_lidars(bag, frames, reading, out);
   if (out.sensors.imus.empty() && out.sensors.lidars.empty()) {

@@ -33,7 +33,15 @@ void StaticFrames::add(const ros::TransformStamped& transform, const std::string
   Eigen::Isometry3d T = Eigen::Isometry3d::Identity();
   T.linear() = q.normalized().toRotationMatrix();
   T.translation() = p;
+  if (const auto before = frames_.find(child); before != frames_.end() && before->second.parent != parent) {
+    remarks_.push_back("caution: '" + child + "' hangs on '" + before->second.parent + "' and, later, on '" + parent +
+                       "', must hang on one: the later holds (" + where + ")");
+  }
   frames_.insert_or_assign(child, Hung{parent, T});
+}
+
+void StaticFrames::require_no_ring(const std::string& where) const {
+  for (const auto& [frame, on] : frames_) root_of(frame, where);
 }
 
 std::string StaticFrames::body() const {

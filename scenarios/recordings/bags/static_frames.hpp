@@ -5,6 +5,7 @@
 #include <map>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "scenarios/recordings/bags/ros_messages.hpp"
 
@@ -14,9 +15,15 @@ namespace tumble::scenarios {
 /// scenarios/recordings/bags.
 class StaticFrames {
  public:
-  /// Takes a transform; of a frame that is stated again the last one holds. Throws BadInput beginning with `where`: not
-  /// finite, beyond 1 km, a quaternion whose norm is not 1 within a percent, a frame that hangs on itself.
+  /// Takes a transform; of a frame that is stated again the last one holds, and where it hung on another before, that
+  /// is told (`remarks`). Throws BadInput beginning with `where`: not finite, beyond 1 km, a quaternion whose norm is
+  /// not 1 within a percent, a frame that hangs on itself.
   void add(const ros::TransformStamped& transform, const std::string& where);
+
+  /// Throws BadInput beginning with `where` when frames hang on each other in a ring.
+  void require_no_ring(const std::string& where) const;
+
+  const std::vector<std::string>& remarks() const { return remarks_; }
 
   /// The frame that is taken for the body's: "body", else "base_link", else none.
   std::string body() const;
@@ -34,6 +41,7 @@ class StaticFrames {
   /// The frame on which all hang, and the frame's pose there.
   Hung root_of(const std::string& frame, const std::string& where) const;
   std::map<std::string, Hung> frames_;
+  std::vector<std::string> remarks_;
 };
 
 }  // namespace tumble::scenarios

@@ -71,7 +71,8 @@ Imported import_imu_csv(const std::filesystem::path& path, const sim::ImuRecord&
   if (!columns.has_header) add();
   while (text.next(line)) add();
   finish_readings(path.string(), unit, imu);
-  for (const std::string& remark : {even_out_stamps(imu), require_plausible_rates(path.string(), imu, gyro_unit)}) {
+  const std::string evened = even_out_stamps(imu);
+  for (const std::string& remark : {evened, gaps_text(imu), rates_text(path.string(), imu, gyro_unit)}) {
     if (!remark.empty()) out.notes.push_back(remark);
   }
   const std::int64_t first_ns = imu.time_ns.front();

@@ -103,6 +103,21 @@ constexpr double kBriskRotation = 0.25;
 
 }  // namespace
 
+std::string gaps_text(const sim::ImuRecord& imu) {
+  constexpr std::int64_t kGap_ns = 1'000'000'000;
+  std::size_t gaps = 0, longest = 0;
+  const auto step_ns = [&](std::size_t k) { return k == 0 ? 0 : imu.time_ns[k] - imu.time_ns[k - 1]; };
+  for (std::size_t k = 1; k < imu.time_ns.size(); ++k) {
+    if (step_ns(k) <= std::max(kGap_ns, 2 * imu.period_ns)) continue;
+    ++gaps;
+    if (step_ns(k) > step_ns(longest)) longest = k;
+  }
+  if (gaps == 0) return "";
+  return "caution: " + std::to_string(gaps) + (gaps == 1 ? " gap" : " gaps") + " beyond a second, the longest " +
+         rounded(1e-9 * static_cast<double>(step_ns(longest))) + " s before reading " + std::to_string(longest) +
+         ", of which nothing is known";
+}
+
 GravityRotation gravity_rotation(const sim::ImuRecord& imu, RotationWindows windows) {
   GravityRotation turn;
   double said2 = 0.0, seen2 = 0.0, both = 0.0;
@@ -175,6 +190,13 @@ std::string require_plausible_rates(const std::string& where, const sim::ImuReco
                    kTakenInRadians);
   if (near_factor(turn.ratio, 1.0)) return seen + ": units and axes agree";
   return "caution: " + seen + ", and should once: another unit, sign or order of the axes?";
+}
+
+std::string rates_text(const std::string& where, const sim::ImuRecord& imu, GyroUnit unit) {
+  const std::string told = require_plausible_rates(where, imu, unit);
+  if (!told.empty()) return told;
+  return std::string("rates taken in ") + (unit == GyroUnit::deg_s ? "deg/s" : "rad/s") +
+         ", senses and axes as they are: the motion does not show them, gravity turns too little in the accelerometer";
 }
 
 sim::ImuRecord without_readings(sim::ImuRecord device) {

@@ -28,6 +28,9 @@ bool is_in_g(const sim::ImuRecord& imu);
 /// period, and says so; else nothing.
 std::string even_out_stamps(sim::ImuRecord& imu);
 
+/// Where and for how long an IMU was silent, of gaps beyond a second, which no estimator bridges; else nothing.
+std::string gaps_text(const sim::ImuRecord& imu);
+
 /// How gravity turns in the accelerometer against what the gyro says: over windows of 0.2 s in which the specific force
 /// keeps the size of gravity within a tenth and turns by one to some twenty degrees, the change of the force is held
 /// against
@@ -46,6 +49,9 @@ GravityRotation gravity_rotation(const sim::ImuRecord& imu, RotationWindows wind
 /// unit by it (a factor of 57.3), or when more than 1 % of them lie beyond twice the stated range (100 rad/s where none
 /// is stated).
 std::string require_plausible_rates(const std::string& where, const sim::ImuRecord& imu, GyroUnit unit);
+
+/// The same of readings whose format does not state what they are: where the motion does not tell, that is the remark.
+std::string rates_text(const std::string& where, const sim::ImuRecord& imu, GyroUnit unit);
 
 /// What magnetometers are read in.
 inline constexpr double kTeslaPerMicrotesla = 1e-6;

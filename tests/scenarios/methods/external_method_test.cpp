@@ -80,6 +80,11 @@ TEST_F(ExternalMethod, ACrashIsNoAnswerWithItsLastWords) {
   EXPECT_THAT(what, HasSubstr("signal 11"));
   EXPECT_THAT(what, HasSubstr("out of luck"));
   EXPECT_THAT(no_answer(describe("rate", "exit 3 # {output}")).second, HasSubstr("exit status 3"));
+  // the cause, however much was traced behind it
+  const std::string long_one =
+      no_answer(describe("rate", "echo the cause; seq 5000; echo the end; exit 3 # {output}")).second;
+  EXPECT_THAT(long_one, ::testing::AllOf(HasSubstr("the cause 1 2 3"), HasSubstr(" ... "), HasSubstr("5000 the end")));
+  EXPECT_LT(long_one.size(), 1000u);
 }
 
 TEST_F(ExternalMethod, AHangIsEndedWithAllItHasStarted) {
@@ -118,6 +123,8 @@ TEST_F(ExternalMethod, WhatItLeavesIsRefusedWithItsPlace) {
   EXPECT_THAT(refused(describe("rate", "true # {output}")), HasSubstr("did not leave it"));
   EXPECT_THAT(refused(describe("slam", "true # {output}")), HasSubstr("did not leave it"));
   EXPECT_THAT(refused(describe("rate", "echo nonsense > {output}")), HasSubstr("rates.csv:1"));
+  EXPECT_THAT(refused(describe("rate", kRawByAwk + "; mv {output} a; ln -s a {output}")),
+              HasSubstr("is no regular file"));
   EXPECT_THAT(refused(describe("rate", kRawByAwk + "; sed -i '$d' {output}")), HasSubstr("one per sample"));
   EXPECT_THAT(refused(describe("rate", kRawByAwk + "; sed -i '7s/^/1/' {output}")), HasSubstr("rates.csv:7"));
   EXPECT_THAT(refused(describe("slam", "printf '0.1 1 2 3 0 0 0 1\\n0.1 1' > {output}")), HasSubstr("poses.tum:2"));
@@ -185,6 +192,8 @@ TEST_F(ExternalMethod, AVersionTellsProgramAndDescription) {
   const std::string second = external_method(describe("rate", "{output} ", "version: [echo, v7, b]\n")).info.version;
   EXPECT_THAT(first, HasSubstr("v7"));
   EXPECT_NE(first, second);
+  EXPECT_THAT(refused(describe("rate", "{output}", "version: [\"true\"]\n")),
+              ::testing::AllOf(HasSubstr("theirs.yaml: its version command: "), HasSubstr("printed nothing")));
 }
 
 // else a sweep or a bench goes on with rows of the program as it was

@@ -87,6 +87,9 @@ TEST_F(PythonMethod, PosesAttitudesAndMaps) {
   const sim::LidarRecord& lidar = recording().sensors.lidars[0];
   ASSERT_EQ(map.map.size(), lidar.sweep_first[4] - lidar.sweep_first[3]);
   EXPECT_EQ(map.map[5].position_W_m, lidar.position_L_m[lidar.sweep_first[3] + 5]);
+  const Estimate bare = run(function("slam", two + "return t, np.zeros((2, 3)), q, np.zeros((0, 3))"));
+  EXPECT_EQ(bare.poses.size(), 2u);
+  EXPECT_TRUE(bare.map.empty());
 }
 
 TEST_F(PythonMethod, SeesTheSensorsAloneAndCannotChangeThem) {

@@ -188,11 +188,20 @@ TEST_P(Frames, ThatNobodyTiesToTheBodyPlaceNothing) {
   EXPECT_TRUE(found.sensors.imus.at(0).T_BI.isApprox(Eigen::Isometry3d::Identity()));
 }
 
+TEST_P(Frames, AFrameOnTwoOthersIsTold) {
+  write_frames(*GetParam().writer(path_), {hung("imu", "body", {0.5, 0, 0}), hung("imu", "other", {0.1, 0, 0})});
+  EXPECT_THAT(GetParam().read(path_, {}).notes, Contains(HasSubstr("'imu' hangs on 'body' and, later, on 'other'")));
+  std::filesystem::remove_all(path_);
+  write_frames(*GetParam().writer(path_), {hung("imu", "body", {0.5, 0, 0}), hung("imu", "body", {0.1, 0, 0})});
+  EXPECT_THAT(GetParam().read(path_, {}).notes, testing::Not(Contains(HasSubstr("hangs on")))) << "said anew";
+}
+
 TEST_P(Frames, ThatMakeNoSenseAreRefused) {
   constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
   const std::pair<std::vector<ros::TransformStamped>, const char*> cases[] = {
       {{hung("imu", "mast", {0, 0, 0}), hung("mast", "imu", {0, 0, 0}), hung("x", "body", {0, 0, 0})},
        "hang on each other in a ring"},
+      {{hung("imu", "mast", {0, 0, 0}), hung("mast", "imu", {0, 0, 0})}, "hang on each other in a ring"},  // no body
       {{hung("imu", "imu", {0, 0, 0})}, "the frame hangs on itself"},
       {{hung("imu", "body", {kNan, 0, 0})}, "the transform of 'imu' in 'body': its place must be within 1 km"},
       {{hung("imu", "body", {0, 2000, 0})}, "its place must be within 1 km"},

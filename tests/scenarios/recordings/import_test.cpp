@@ -245,12 +245,18 @@ TEST_F(ImportCsv, UnitsOfTheGyroAreHeldAgainstGravity) {
               HasSubstr("are the rates in rad/s?"));
   fixture::put(folder_ / "sign.csv", turning(1.0, -1.0));
   EXPECT_THAT(import_imu_csv(folder_ / "sign.csv", {}).notes.at(0), HasSubstr("caution: gravity turns"));
+  EXPECT_THAT(import(kHeader + line("1,0") + line("1,10000000")).notes,
+              testing::Contains(HasSubstr("rates taken in rad/s, senses and axes as they are")));
 }
 
 TEST_F(ImportCsv, AGapDoesNotChangeThePeriod) {
   std::string text = kHeader;
   for (const char* stamp : {"1,0", "1,10000000", "1,20000000", "1,920000000", "1,930000000"}) text += line(stamp);
   EXPECT_EQ(import(text).sensors.imus[0].period_ns, 10000000);
+  EXPECT_THAT(import(text).notes, testing::Not(testing::Contains(HasSubstr("gap"))));
+  const Imported silent = import(text + line("5,0") + line("86405,0"));
+  EXPECT_THAT(silent.notes,
+              testing::Contains(HasSubstr("2 gaps beyond a second, the longest 8.64e+04 s before reading 6")));
 }
 
 TEST_F(ImportCsv, WindowsLineEndsAreRead) {
