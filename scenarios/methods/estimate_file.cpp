@@ -352,6 +352,7 @@ void write_estimate(const std::filesystem::path& folder, const std::string& meth
   }
   if (!estimate.sweeps.empty()) write_sweeps(folder, estimate);
   if (!estimate.map.empty()) write_map(folder / "map.ply", estimate.map);
+  if (!estimate.transcript.empty()) replace_file(folder / "transcript.txt", estimate.transcript);
 
   // last: a folder with this file is complete
   replace_file(folder / "estimate.json", header_of(method, kind, estimate, sensors_digest).dump(2) + '\n');

@@ -9,17 +9,19 @@
 namespace tumble::scenarios {
 
 /// What the folder of an estimate may hold.
-inline constexpr const char* kEstimateFiles[] = {
-    "estimate.json", "rates.csv",       "attitude.tum", "trajectory.tum",          "contacts.csv",
-    "sweeps.csv",    "sweep_poses.csv", "map.ply",      "position_covariance.csv", "attitude_covariance.csv"};
+inline constexpr const char* kEstimateFiles[] = {"estimate.json",           "rates.csv",     "attitude.tum",
+                                                 "trajectory.tum",          "contacts.csv",  "sweeps.csv",
+                                                 "sweep_poses.csv",         "map.ply",       "position_covariance.csv",
+                                                 "attitude_covariance.csv", "transcript.txt"};
 
 /// Leaves an estimate in a folder: estimate.json (method, kind, frame, status, health, digest of the sensors that it
 /// was made from), rates.csv, attitude.tum, attitude_covariance.csv, trajectory.tum (t x y z qx qy qz qw),
-/// position_covariance.csv, contacts.csv, sweeps.csv, sweep_poses.csv, map.ply; only the files that apply,
-/// estimate.json last. Everything that is scored comes back the same to the bit, but for the last bit of a quaternion
-/// in a TUM file (it is normalised on reading). Covariances of `poses` but for the position, and the velocities of
-/// `poses` are not written. Throws BadInput when it cannot write, std::invalid_argument when `contacts` is not as long
-/// as `poses`, or `uncertain` neither empty nor as long. Columns: ESTIMATE.md.
+/// position_covariance.csv, contacts.csv, sweeps.csv, sweep_poses.csv, map.ply, transcript.txt (what somebody else's
+/// program said); only the files that apply, estimate.json last. Everything that is scored comes back the same to the
+/// bit, but for the last bit of a quaternion in a TUM file (it is normalised on reading). Covariances of `poses` but
+/// for the position, and the velocities of `poses` are not written. Throws BadInput when it cannot write,
+/// std::invalid_argument when `contacts` is not as long as `poses`, or `uncertain` neither empty nor as long. Columns:
+/// ESTIMATE.md.
 void write_estimate(const std::filesystem::path& folder, const std::string& method, Kind kind, const Estimate& estimate,
                     const std::string& sensors_digest = "");
 

@@ -99,10 +99,11 @@ CommandEnd provide_and_run(const ExternalDescription& description, const sim::Se
   return run_command(command_of(description, description.command, values, scratch));
 }
 
-Estimate run_its_command(const ExternalDescription& description, const sim::Sensors& sensors) {
+Estimate run_its_command(const ExternalDescription& description, const sim::Sensors& sensors, std::string& transcript) {
   const ScratchFolder scratch("method");
   const std::map<std::string, std::string> values = places(description, scratch.path());
   const CommandEnd end = provide_and_run(description, sensors, values, scratch.path());
+  transcript = end.transcript;
   require_done(end);
   try {
     return read_external_result(description, values.at("output"), values.at("map"), sensors);
@@ -112,7 +113,17 @@ Estimate run_its_command(const ExternalDescription& description, const sim::Sens
 }
 
 Estimate run(const ExternalDescription& description, const sim::Sensors& sensors) {
-  return description.python.empty() ? run_its_command(description, sensors) : call_python(description, sensors);
+  std::string transcript;
+  try {
+    Estimate estimate = description.python.empty() ? run_its_command(description, sensors, transcript)
+                                                   : call_python(description, sensors, transcript);
+    estimate.transcript = std::move(transcript);
+    return estimate;
+  } catch (const NoAnswer& error) {
+    throw NoAnswer(error.why(), error.what(), std::move(transcript));
+  } catch (const BadInput& error) {
+    throw RefusedAnswer(error.what(), std::move(transcript));
+  }
 }
 
 /// What tells this method from another of its name: what its version command prints, the file of its function, and the

@@ -48,6 +48,7 @@ struct Estimate {
   std::vector<MapPoint> map;                               ///< kind slam
   std::map<std::string, double> health;                    ///< named counters: "rejected_samples", "sweeps_rejected"
   std::map<std::string, double> parameters;                ///< those of the method that somebody gave by name
+  std::string transcript;                                  ///< what somebody else's program said; of no score
 };
 
 /// What an oracle is given beyond the sensors: the unclipped readings and the true state. Built from the truth by the

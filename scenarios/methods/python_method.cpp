@@ -46,7 +46,7 @@ Command interpreter(const ExternalDescription& description, const ScratchFolder&
 
 }  // namespace
 
-Estimate call_python(const ExternalDescription& description, const sim::Sensors& sensors) {
+Estimate call_python(const ExternalDescription& description, const sim::Sensors& sensors, std::string& transcript) {
   SharedMemory given("tumble-sensors"), answer("tumble-answer");
   write_sensors(sensors, given);
   const ScratchFolder scratch("method");
@@ -56,6 +56,7 @@ Estimate call_python(const ExternalDescription& description, const sim::Sensors&
                    std::to_string(given.descriptor()), std::to_string(answer.descriptor())});
   command.descriptors = {given.descriptor(), answer.descriptor()};
   const CommandEnd end = run_command(command);
+  transcript = end.transcript;
   require_done(end);
   return read_answer(answer, description.kind, description.frame, sensors);
 }

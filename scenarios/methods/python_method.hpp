@@ -9,8 +9,8 @@
 /// interpreter of its own that needs numpy and nothing of ours.
 namespace tumble::scenarios {
 
-/// Calls the function. Throws as external_method.hpp states.
-Estimate call_python(const ExternalDescription& description, const sim::Sensors& sensors);
+/// Calls the function; `transcript` becomes what was printed, also where it throws, as external_method.hpp states.
+Estimate call_python(const ExternalDescription& description, const sim::Sensors& sensors, std::string& transcript);
 
 /// Versions of interpreter and numpy, and a digest of the file; modules that it imports are not looked at. Throws
 /// BadInput when there is no interpreter, or none with numpy.

@@ -18,7 +18,7 @@ namespace tumble::scenarios {
 
 namespace {
 
-constexpr std::size_t kWords = 300;
+constexpr std::size_t kWords = 300, kTranscript = 524'288;
 
 void limit(int resource, double value) {
   const auto most = static_cast<rlim_t>(value);
@@ -51,19 +51,25 @@ void become(const Command& command, std::string& problem) {
   problem = command.words.front() + ": " + strerror(errno);
 }
 
-/// Of a long one its beginning, where the cause stands, and its end, whatever was traced between them.
-std::string words_of(const std::filesystem::path& transcript) {
-  std::ifstream file(transcript, std::ios::binary | std::ios::ate);
+/// The first and the last `most` bytes of a file, all of one that has no more.
+std::string ends_of(const std::filesystem::path& path, std::size_t most) {
+  std::ifstream file(path, std::ios::binary | std::ios::ate);
   if (!file) return {};
   const auto size = static_cast<std::size_t>(file.tellg());
-  std::string text(std::min(size, kWords), '\0');
+  std::string text(std::min(size, most), '\0');
   file.seekg(0).read(text.data(), static_cast<std::streamsize>(text.size()));
-  if (size > kWords) {
-    std::string last(std::min(size - kWords, kWords), '\0');
+  if (size > most) {
+    std::string last(std::min(size - most, most), '\0');
     file.seekg(-static_cast<std::streamoff>(last.size()), std::ios::end);
     file.read(last.data(), static_cast<std::streamsize>(last.size()));
-    text += (size > 2 * kWords ? " ... " : "") + last;
+    text += (size > 2 * most ? " ... " : "") + last;
   }
+  return text;
+}
+
+/// Of a long one its beginning, where the cause stands, and its end, whatever was traced between them.
+std::string words_of(const std::filesystem::path& transcript) {
+  std::string text = ends_of(transcript, kWords);
   while (!text.empty() && (text.back() == '\n' || text.back() == '\r')) text.pop_back();
   std::replace_if(
       text.begin(), text.end(), [](unsigned char c) { return c < 0x20 || c == 0x7f; }, ' ');
@@ -89,6 +95,7 @@ CommandEnd run_command(const Command& command) {
 
   CommandEnd end;
   end.last_words = words_of(command.transcript);
+  end.transcript = ends_of(command.transcript, kTranscript);
   end.cpu_s = last.cpu_s;
   if (!problem.empty()) {
     end.how = CommandEnd::How::not_started;

@@ -25,6 +25,7 @@ struct CommandEnd {
   How how = How::done;
   std::string reason;      ///< one line; empty when done
   std::string last_words;  ///< the transcript on one line: its first and last 300 characters
+  std::string transcript;  ///< of a long one the first and the last half MiB
   double cpu_s = 0.0;      ///< of the command, its own children not counted
 };
 

@@ -70,8 +70,9 @@ OutcomeStatus status_of(NoAnswer::Why why) {
 }
 
 /// Of a method that gave no answer: what its files say of it, too.
-Estimate no_estimate() {
+Estimate no_estimate(const std::string& transcript = "") {
   Estimate none;
+  none.transcript = transcript;
   none.status = {Trouble::empty, "estimate", 0.0, 1.0};
   return none;
 }
@@ -97,13 +98,17 @@ Estimate run_method(const Method& method, const SimulatedDraw& draw, Outcome& ou
       outcome.message = one_line(estimate.status.message());
     }
   } catch (const NoAnswer& error) {
-    estimate = no_estimate();
+    estimate = no_estimate(error.transcript());
     outcome.status = status_of(error.why());
     outcome.message = one_line(error.what());
   } catch (const std::bad_alloc&) {
     estimate = no_estimate();
     outcome.status = OutcomeStatus::killed;
     outcome.message = "no memory was left for it";
+  } catch (const RefusedAnswer& error) {
+    estimate = no_estimate(error.transcript());
+    outcome.status = OutcomeStatus::failed;
+    outcome.message = one_line(error.what());
   } catch (const std::exception& error) {
     estimate = no_estimate();
     outcome.status = OutcomeStatus::failed;

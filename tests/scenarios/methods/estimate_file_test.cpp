@@ -88,6 +88,17 @@ TEST_F(EstimateFile, AStatusThatIsNotOkComesBack) {
   EXPECT_EQ(read_estimate(folder_, kind, method, Frame::imu).status.trouble, Trouble::gap);
 }
 
+TEST_F(EstimateFile, WhatAProgramSaidStandsBesideItAndGoesWithIt) {
+  Estimate failed;
+  failed.transcript = "out of luck\n";
+  write_estimate(folder_, "theirs", Kind::rate, failed);
+  std::string said;
+  std::getline(std::ifstream(folder_ / "transcript.txt"), said);
+  EXPECT_EQ(said, "out of luck");
+  write_estimate(folder_, "raw", Kind::rate, {});
+  EXPECT_FALSE(std::filesystem::exists(folder_ / "transcript.txt"));
+}
+
 TEST_F(EstimateFile, ReadsATumFileOfSomebodyElse) {
   // comments, several blanks, fewer digits, an epoch stamp that no double holds to the nanosecond
   const auto path = write("theirs.tum",

@@ -87,6 +87,27 @@ TEST_F(ExternalMethod, ACrashIsNoAnswerWithItsLastWords) {
   EXPECT_LT(long_one.size(), 1000u);
 }
 
+// whatever became of the run
+TEST_F(ExternalMethod, WhatItSaysIsKept) {
+  EXPECT_EQ(run(describe("rate", kRawByAwk + "; echo well; echo done >&2")).transcript, "well\ndone\n");
+  const auto said = [&](const std::string& script) -> std::string {
+    const Method method = external_method(describe("rate", script));
+    try {
+      method.run(recording().sensors, {}, {});
+    } catch (const NoAnswer& error) {
+      return "no answer: " + error.transcript();
+    } catch (const RefusedAnswer& error) {
+      return "refused: " + error.transcript();
+    }
+    return "";
+  };
+  EXPECT_EQ(said("echo oh; exit 3 # {output}"), "no answer: oh\n");
+  EXPECT_EQ(said("echo here; echo nonsense > {output}"), "refused: here\n");
+  const std::string much = said("yes 0123456789012345 | head -n 100000; exit 3 # {output}");
+  EXPECT_GT(much.size(), 1'048'576u);
+  EXPECT_LT(much.size(), 1'050'000u) << "1.7 MB, of which both ends are kept";
+}
+
 TEST_F(ExternalMethod, AHangIsEndedWithAllItHasStarted) {
   const auto pid = folder_ / "pid";
   const auto [why, what] =
