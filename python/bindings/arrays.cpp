@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "arrays.hpp"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <limits>
@@ -110,6 +111,21 @@ TimeNs time_of(nb::handle value, const char* field) {
   return out;
 }
 
+/// Whole numbers that are counts of something else: no IMU gives twenty samples a millisecond on the median.
+static void require_nanoseconds(const std::vector<ImuSample>& samples) {
+  constexpr std::size_t kFewest = 20;
+  constexpr std::int64_t kLeastStep_ns = 50'000;
+  if (samples.size() < kFewest) return;
+  std::vector<std::int64_t> steps;
+  for (std::size_t k = 1; k < samples.size(); ++k) steps.push_back(samples[k].time_ns - samples[k - 1].time_ns);
+  const auto middle = steps.begin() + static_cast<std::ptrdiff_t>(steps.size() / 2);
+  std::nth_element(steps.begin(), middle, steps.end());
+  // what does not rise is the estimator's to refuse, with the index
+  if (*middle > 0 && *middle < kLeastStep_ns) {
+    raise_input("out_of_range", "time_ns (median step, ns)", nb::int_(*middle), nb::int_(kLeastStep_ns));
+  }
+}
+
 std::vector<ImuSample> samples_of(nb::handle time_ns, nb::handle gyro_rad_s, nb::handle accel_m_s2,
                                   nb::handle clip_flags) {
   if (PyLong_Check(time_ns.ptr())) return {one_sample(time_ns, gyro_rad_s, accel_m_s2, clip_flags)};
@@ -127,6 +143,7 @@ std::vector<ImuSample> samples_of(nb::handle time_ns, nb::handle gyro_rad_s, nb:
     out[k].specific_force_m_s2 = row(accel, k);
     out[k].device_clip_flags = flags[k];
   }
+  require_nanoseconds(out);
   return out;
 }
 

@@ -20,7 +20,8 @@ namespace tumble::python {
 namespace nb = nanobind;
 
 /// Samples of an IMU: one (an int, two vectors of 3) or N (int64 of N, two N x 3). `clip_flags`: None, or ClipFlag
-/// bits. TumbleError with `type` for times that are not int64 (seconds would lose their fractions), `shape`.
+/// bits. TumbleError with `type` for times that are not int64 (seconds would lose their fractions), `shape`,
+/// `out_of_range` for steps of less than 50 us on the median of twenty samples and more: they count something else.
 std::vector<ImuSample> samples_of(nb::handle time_ns, nb::handle gyro_rad_s, nb::handle accel_m_s2,
                                   nb::handle clip_flags);
 

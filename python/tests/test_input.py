@@ -61,6 +61,8 @@ def test_refuses_time_that_goes_back(take, spin):
 @pytest.mark.parametrize("take", TAKERS.values(), ids=TAKERS.keys())
 @pytest.mark.parametrize(("change", "trouble", "field"), [
     (lambda t, g, a: (t * 1e-9, g, a), "type", "time_ns"),  # seconds
+    (lambda t, g, a: (t // 1000, g, a), "out_of_range", "time_ns (median step, ns)"),  # microseconds
+    (lambda t, g, a: (np.arange(len(t)) + 1_700_000_000, g, a), "out_of_range", "time_ns (median step, ns)"),  # whole seconds
     (lambda t, g, a: (t.astype(float), g, a), "type", "time_ns"),
     (lambda t, g, a: (t.astype(np.uint64), g, a), "type", "time_ns"),
     (lambda t, g, a: (t, g[:-1], a), "shape", "gyro_rad_s"),

@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "scenarios/methods/external_result.hpp"
 
+#include <algorithm>
 #include <array>
 #include <fstream>
+#include <functional>
 #include <sstream>
 #include <string_view>
 #include <utility>
@@ -10,7 +12,7 @@
 #include "scenarios/errors.hpp"
 #include "scenarios/methods/answer_bounds.hpp"
 #include "scenarios/methods/estimate_file.hpp"
-#include "scenarios/methods/map_file.hpp"
+#include "scenarios/recordings/clouds/cloud_file.hpp"
 #include "scenarios/recordings/table_file.hpp"
 
 namespace tumble::scenarios {
@@ -124,6 +126,26 @@ void require_sense(const AnswerBounds& bounds, const Estimate& estimate, Externa
   bounds.require_slam(estimate);
 }
 
+/// Any PLY with x, y and z; normals and deviations where it has them.
+std::vector<MapPoint> read_points(const std::filesystem::path& file) {
+  const Cloud cloud = read_cloud(file);
+  const auto column = [&](const char* name) { return cloud.find(name); };
+  const std::array place{column("x"), column("y"), column("z")}, normal{column("nx"), column("ny"), column("nz")};
+  const std::vector<double>* const sigma = column("sigma");
+  const auto given = [](const auto& columns) { return std::ranges::none_of(columns, std::logical_not<>()); };
+  if (!given(place)) throw BadInput(file.filename().string() + ": must have x, y and z");
+  std::vector<MapPoint> points(cloud.points);
+  for (std::size_t k = 0; k < points.size(); ++k) {
+    const auto vector = [k](const auto& columns) -> Eigen::Vector3f {
+      return Eigen::Vector3d((*columns[0])[k], (*columns[1])[k], (*columns[2])[k]).cast<float>();
+    };
+    points[k].position_W_m = vector(place);
+    if (given(normal)) points[k].normal_W = vector(normal);
+    if (sigma != nullptr) points[k].sigma_m = static_cast<float>((*sigma)[k]);
+  }
+  return points;
+}
+
 }  // namespace
 
 Estimate read_external_result(const ExternalDescription& description, const std::filesystem::path& output,
@@ -144,7 +166,7 @@ Estimate read_external_result(const ExternalDescription& description, const std:
   }
   if (description.kind == Kind::slam && std::filesystem::exists(map)) {
     bounds.require_size(map, bounds.map_bytes());
-    estimate.map = read_map(map);
+    estimate.map = read_points(map);
   }
   require_sense(bounds, estimate, description.output, output);
   return estimate;

@@ -166,6 +166,24 @@ TEST_F(ExternalMethod, WhatItLeavesIsBoundedBeforeItIsRead) {
   EXPECT_THAT(refused(describe("slam", "ln -s /dev/zero {output}")), HasSubstr("no regular file"));
 }
 
+TEST_F(ExternalMethod, AMapIsAnyPlyWithPlaces) {
+  const std::string pose = "printf '0.1 1 2 3 0 0 0 1\\n' > {output}; ";
+  const std::string head = "printf 'ply\\nformat ascii 1.0\\nelement vertex 2\\nproperty float x\\nproperty float y\\n";
+  const Estimate bare =
+      run(describe("slam", pose + head + "property float z\\nend_header\\n1 2 3\\n4 5 6\\n' > {map}"));
+  ASSERT_EQ(bare.map.size(), 2u);
+  EXPECT_EQ(bare.map[1].position_W_m, Eigen::Vector3f(4, 5, 6));
+  EXPECT_EQ(bare.map[1].sigma_m, 0.0f);
+  const Estimate more = run(describe(
+      "slam",
+      pose + head + "property float z\\nproperty float sigma\\nend_header\\n1 2 3 0.5\\n4 5 6 0.25\\n' > {map}"));
+  EXPECT_EQ(more.map.at(1).sigma_m, 0.25f);
+  EXPECT_THAT(refused(describe("slam", pose + head + "end_header\\n1 2\\n4 5\\n' > {map}")),
+              HasSubstr("must have x, y and z"));
+  EXPECT_THAT(refused(describe("slam", pose + head + "property float z\\nend_header\\n1 2 3\\n4 nan 6\\n' > {map}")),
+              HasSubstr("map"));
+}
+
 TEST_F(ExternalMethod, NonsenseIsRefusedWithLineValueAndBound) {
   const auto left = [&](const std::string& row, const std::string& kind = "slam") {
     return refused(describe(kind, "printf '# a word\\n0.1 0 0 0 0 0 0 1\\n" + row + "\\n' > {output}"));
