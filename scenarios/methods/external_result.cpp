@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <array>
 #include <fstream>
-#include <functional>
 #include <sstream>
 #include <string_view>
 #include <utility>
@@ -132,7 +131,9 @@ std::vector<MapPoint> read_points(const std::filesystem::path& file) {
   const auto column = [&](const char* name) { return cloud.find(name); };
   const std::array place{column("x"), column("y"), column("z")}, normal{column("nx"), column("ny"), column("nz")};
   const std::vector<double>* const sigma = column("sigma");
-  const auto given = [](const auto& columns) { return std::ranges::none_of(columns, std::logical_not<>()); };
+  const auto given = [](const auto& columns) {
+    return std::ranges::all_of(columns, [](const auto* each) { return each != nullptr; });
+  };
   if (!given(place)) throw BadInput(file.filename().string() + ": must have x, y and z");
   std::vector<MapPoint> points(cloud.points);
   for (std::size_t k = 0; k < points.size(); ++k) {
