@@ -6,6 +6,7 @@ import subprocess
 import sys
 import textwrap
 
+import h5py
 import numpy as np
 import pytest
 
@@ -195,6 +196,22 @@ def test_more_rings_than_evalio_holds():
 def test_settings_that_are_wrong(name, value, word):
     status, said = in_evalio("import evalio", **{name: value})
     assert status != 0 and word in said and name in said, said
+
+
+def test_a_file_without_an_imu_does_not_spoil_the_list(recordings, tmp_path):
+    """Nor one that is no recording: they are named, and the others are there."""
+    (tmp_path / "none.h5").write_bytes(b"nothing")
+    blind = tmp_path / "blind.h5"
+    with h5py.File(recordings["hill"]) as whole, h5py.File(blind, "w") as file:
+        whole.copy("sensors", file)
+        del file["sensors/lidars"]
+    given = os.pathsep.join(map(str, (blind, tmp_path / "none.h5", recordings["hill"])))
+    status, said = in_evalio("""
+        from tumble.evalio import Recordings
+        names = [each.value for each in Recordings]
+        assert "hill" in names and "blind" not in names and "none" not in names, names
+    """, TUMBLE_EVALIO_FILES=given)
+    assert status == 0 and "blind.h5 is left out: it has no lidars" in said and "none.h5 is left out" in said, said
 
 
 def test_a_parameter_beyond_its_bounds():

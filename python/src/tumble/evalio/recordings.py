@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import os
 import pathlib
+import warnings
 from collections.abc import Iterator
 from typing import Any
 
@@ -11,6 +12,7 @@ import numpy as np
 
 from .. import _tumble, sheets
 from ..errors import TumbleError
+from ..files import optional
 from ..program import record
 from ..recordings import Recording, read
 from ..replay import RIG_BODY_L, sheet_of
@@ -146,12 +148,32 @@ class _Sequences(Dataset):
         return _lidar_params(grid.rows, grid.columns, 1e9 / lidar.sweep_period_ns, lidar.device)
 
 
+def _lacks(path: pathlib.Path) -> str:
+    """Why evalio can do nothing with a file, "" where it can."""
+    try:
+        with optional("h5py", "files").File(path, "r") as file:
+            return " and ".join(f"no {kind}" for kind in ("imus", "lidars") if not file.get(f"sensors/{kind}"))
+    except OSError as error:
+        return str(error)
+
+
+def _fit(named: dict[str, pathlib.Path]) -> dict[str, pathlib.Path]:
+    """Those that are recordings with an IMU and a lidar: one that is none, and is named in a warning, does not spoil the list."""
+    out = {}
+    for name, path in named.items():
+        if lacks := _lacks(path):
+            warnings.warn(f"TUMBLE_EVALIO_FILES: {path} is left out: it has {lacks}", stacklevel=2)
+        else:
+            out[name] = path
+    return out
+
+
 def _sequences() -> dict[str, str]:
     draws, named = _draws(), files()
     if both := sorted(draws.keys() & named.keys()):
         raise TumbleError(f"TUMBLE_EVALIO_FILES has a file named {both[0]}, must be named as no draw of a scenario", "file",
                           "TUMBLE_EVALIO_FILES", both[0], "another name")
-    return {name: name for name in [*draws, *named]}
+    return {name: name for name in [*draws, *_fit(named)]}
 
 
 Recordings = _Sequences("Recordings", _sequences(), module=__name__)  # type: ignore[call-arg]  # an enumeration that is made
