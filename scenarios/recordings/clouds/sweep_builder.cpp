@@ -22,6 +22,7 @@ constexpr std::ptrdiff_t kProbe = 10;
 constexpr double kByteIntensity = 255.0;
 constexpr double kPointFar_m = 1e6;
 constexpr double kBeyond = 2.0;        // ranges of the data sheet
+constexpr double kFarthest_m = 500.0;  // where no sheet is stated: that of no lidar which a robot bears is more
 constexpr double kOverlapMost = 1.05;  // of the time from one sweep to the next, that one lasts
 /// The longest offset that a sweep may hold where its period is not known yet.
 constexpr std::int64_t kOffsetMax_ns = 1000000000;
@@ -179,7 +180,7 @@ void SweepBuilder::take_points(const Waiting& sweep, const std::vector<std::size
     const Eigen::Vector3d position(x[i], y[i], z[i]);
     record_.position_L_m.push_back(position.cast<float>());
     record_.range_m.push_back(record_.position_L_m.back().norm());
-    if (record_.range_m.back() > kBeyond * reading_.range_max_m) ++beyond_;
+    if (record_.range_m.back() > kBeyond * range_max_m()) ++beyond_;
     const bool lit = intensity != nullptr && std::isfinite((*intensity)[i]) && (*intensity)[i] >= 0.0;
     record_.intensity.push_back(lit ? static_cast<float>((*intensity)[i]) : 0.0f);
     brightest_ = std::max(brightest_, record_.intensity.back());
@@ -216,13 +217,17 @@ void SweepBuilder::scale_intensity(std::vector<std::string>& notes) {
   notes.push_back("intensities go beyond 1: divided by " + std::to_string(full));
 }
 
+double SweepBuilder::range_max_m() const {
+  return reading_.range_max_m > 0.0 ? reading_.range_max_m : kFarthest_m;
+}
+
 /// Points in mm look so; a real one beyond the range that its sheet states is a lucky one.
 void SweepBuilder::require_range(const std::string& where) const {
-  if (reading_.range_max_m <= 0.0 || 2 * beyond_ <= points()) return;
-  throw BadInput(
-      fmt::format("{}: {} of {} points lie farther than {:g} m, twice the range of the data sheet, must be "
-                  "half of them at most: are x y z in metres?",
-                  where, beyond_, points(), kBeyond * reading_.range_max_m));
+  if (2 * beyond_ <= points()) return;
+  throw BadInput(fmt::format(
+      "{}: {} of {} points lie farther than {:g} m, twice {}, must be half of them at most: are x y z in metres?",
+      where, beyond_, points(), kBeyond * range_max_m(),
+      reading_.range_max_m > 0.0 ? "the range of the data sheet" : "what any lidar of a robot sees"));
 }
 
 void SweepBuilder::note_what_was_left(std::vector<std::string>& notes) const {

@@ -86,6 +86,7 @@ class SweepBuilder {
   void take_points(const Waiting& sweep, const std::vector<std::size_t>& kept);
   void take_rings(const Waiting& sweep, const std::vector<std::size_t>& kept);
   void scale_intensity(std::vector<std::string>& notes);
+  double range_max_m() const;
   void require_range(const std::string& where) const;
   void note_what_was_left(std::vector<std::string>& notes) const;
   std::size_t points() const { return store_ ? store_->size() : record_.position_L_m.size(); }

@@ -94,6 +94,23 @@ TEST_F(ImportSweeps, PointsFarBeyondTheSheetAreRefused) {
   EXPECT_EQ(import().position_L_m.size(), 6u);
 }
 
+TEST_F(ImportSweeps, PointsInMillimetresAreRefusedWithoutASheetToo) {
+  source_.steady_ns = 100000000;
+  std::string text = sweep();
+  const auto replaced = [&](const std::string& was, const std::string& is) {
+    for (std::size_t at = 0; (at = text.find(was, at)) != std::string::npos; at += is.size())
+      text.replace(at, was.size(), is);
+  };
+  replaced("1 2 3\n", "1000 2000 3000\n");
+  put("1.ply", text);
+  put("2.ply", text);
+  EXPECT_THAT(complaint_of(), HasSubstr("6 of 6 points lie farther than 1000 m, twice what any lidar of a robot sees"));
+  replaced("1000 2000 3000\n", "100 200 300\n");  // far, and no more
+  put("1.ply", text);
+  put("2.ply", text);
+  EXPECT_EQ(complaint_of(), "");
+}
+
 TEST_F(ImportSweeps, AViewpointIsTold) {
   const std::string pcd = "FIELDS x y z\nSIZE 4 4 4\nTYPE F F F\nWIDTH 1\nHEIGHT 1\n";
   put("1.pcd", pcd + "VIEWPOINT 0 0 0 1 0 0 0\nPOINTS 1\nDATA ascii\n1 2 3\n");
