@@ -68,8 +68,9 @@ std::string ends_of(const std::filesystem::path& path, std::size_t most) {
 }
 
 /// Of a long one its beginning, where the cause stands, and its end, whatever was traced between them.
-std::string words_of(const std::filesystem::path& transcript) {
-  std::string text = ends_of(transcript, kWords);
+std::string words_of(const std::string& transcript) {
+  std::string text = transcript;
+  if (text.size() > 2 * kWords) text = text.substr(0, kWords) + " ... " + text.substr(text.size() - kWords);
   while (!text.empty() && (text.back() == '\n' || text.back() == '\r')) text.pop_back();
   std::replace_if(
       text.begin(), text.end(), [](unsigned char c) { return c < 0x20 || c == 0x7f; }, ' ');
@@ -94,8 +95,8 @@ CommandEnd run_command(const Command& command) {
   process.read_available(problem);
 
   CommandEnd end;
-  end.last_words = words_of(command.transcript);
   end.transcript = ends_of(command.transcript, kTranscript);
+  end.last_words = words_of(end.transcript);
   end.cpu_s = last.cpu_s;
   if (!problem.empty()) {
     end.how = CommandEnd::How::not_started;
