@@ -290,10 +290,12 @@ void bind_streams(nb::module_& m) {
 
 void bind_rates(nb::module_& m) {
   nb::enum_<RateSource>(m, "RateSource", nb::is_arithmetic(), "Where an angular velocity comes from.")
-      .value("measured", RateSource::measured)
-      .value("recovered_flight", RateSource::recovered_flight)
-      .value("recovered_contact", RateSource::recovered_contact)
-      .value("bounded_only", RateSource::bounded_only);
+      .value("measured", RateSource::measured, "no axis of the gyro is clipped, nor doubted to be")
+      .value("recovered_flight", RateSource::recovered_flight,
+             "clipped, recovered from the centripetal specific force of free flight")
+      .value("recovered_contact", RateSource::recovered_contact, "clipped, recovered while in contact")
+      .value("bounded_only", RateSource::bounded_only,
+             "clipped or doubted to be, nothing known but the rail and the smoothness of the motion");
   bind_rig(m);
   bind_batch(m);
   bind_streams(m);

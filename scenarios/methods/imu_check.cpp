@@ -9,6 +9,7 @@
 #include "scenarios/methods/frozen_axes.hpp"
 #include "scenarios/recordings/rounded_stamps.hpp"
 #include "tumble/angular_velocity/detail/flight_sense.hpp"
+#include "tumble/angular_velocity/rate_model_params.hpp"
 #include "tumble/attitude/detail/pivot_check.hpp"
 #include "tumble/attitude/detail/rest_gravity.hpp"
 #include "tumble/attitude/imu_plausibility.hpp"
@@ -26,6 +27,13 @@ constexpr double kArmShareOff = 0.06;
 Status told(Status status, Estimate& estimate) {
   if (!status.ok()) estimate.health["imu_implausible"] = 1.0;
   return status;
+}
+
+/// Degrees per second, perhaps: as RateReport::rate_unit_suspect.
+bool unit_suspect(std::span<const ImuSample> samples) {
+  return std::any_of(samples.begin(), samples.end(), [](const ImuSample& sample) {
+    return sample.angular_velocity_rad_s.cwiseAbs().maxCoeff() > RateModelParams{}.rate_max_rad_s;
+  });
 }
 
 double fastest_rad_s(std::span<const ImuSample> samples) {
@@ -75,6 +83,7 @@ Status check_rest_force(const sim::Sensors& sensors, std::span<const ImuSample> 
 
 Status check_imu(const sim::Sensors& sensors, std::span<const ImuSample> samples, Estimate& estimate) {
   const Status of_rest = check_rest_force(sensors, samples, estimate);
+  if (unit_suspect(samples)) estimate.health["rate_unit_suspect"] = 1.0;
   if (are_rounded(sensors.imus.front().time_ns)) estimate.health["imu_stamps_rounded_s"] = 1e-3;
   ImuPlausibility::Params params;
   params.gravity_m_s2 = sensors.gravity_m_s2;

@@ -13,8 +13,8 @@ namespace tumble::scenarios {
 
 /// Puts what was found into the estimate's health (`imu_force_share`, `imu_rest_force_share`,
 /// `imu_rotation_unexplained`, `imu_rotation_slope`, `imu_rotation_agreement`, `imu_frozen_s`, `imu_stamps_rounded_s`,
-/// `imu_implausible`) and returns the verdict: `out_of_range` with what was seen, where the readings contradict each
-/// other or gravity. O(N).
+/// `imu_implausible`, `rate_unit_suspect`) and returns the verdict: `out_of_range` with what was seen, where the
+/// readings contradict each other or gravity. O(N).
 Status check_imu(const sim::Sensors& sensors, std::span<const ImuSample> samples, Estimate& estimate);
 
 /// The same of several IMUs as one, whose differences tell a flipped sign besides (`imu_arm_share`).

@@ -6,6 +6,7 @@
 #include <stdexcept>
 
 #include "scenarios/errors.hpp"
+#include "scenarios/exchange/lidar_rotation.hpp"
 #include "tools/tumble/arguments.hpp"
 #include "tools/tumble/import_options.hpp"
 #include "tools/tumble/verbs.hpp"
@@ -110,6 +111,8 @@ int import_from(const Session& session, const ImportOptions& options) {
     if (options.reference.empty())
       imported.notes.push_back("the reference is " + file.filename().string() + ", which lies beside the sweeps");
   }
+  for (std::string& note : scenarios::lidar_rotation_notes(options.path.string(), imported, gyro_unit(options)))
+    imported.notes.push_back(std::move(note));
   say_what_is_assumed(options, format, imported.notes);
   imported.sensors.robot = options.robot;
   imported.sensors.sphere_radius_m = options.radius_m;

@@ -24,6 +24,7 @@ class Group:
         self.group, self.place = group, f"{path}: {group.name}"
 
     def attribute(self, name: str, kind: type, default: Any = None) -> Any:
+        """An attribute as `kind`; TumbleError `file` where it is missing and has no default."""
         value = self.group.attrs.get(name, default)
         if value is None:
             raise missing(f"{self.place} attribute {name}")
@@ -32,6 +33,7 @@ class Group:
         return kind(value)
 
     def rows(self, name: str, dtype: str, columns: tuple[int, ...] = (), optional: bool = False) -> Any:
+        """A dataset as an array of that type and those columns; None where an optional one is missing, else TumbleError `file`."""
         if name not in self.group:
             if optional:
                 return None
@@ -63,6 +65,7 @@ class Group:
         return Group(self.group[name], self.place.split(": ")[0])
 
     def members(self, name: str) -> list[Group]:
+        """The groups 0, 1, ... within `name`, in order; none where there is no such group."""
         if name not in self.group:
             return []
         within = self.group[name]
@@ -74,10 +77,12 @@ class Group:
 
 
 def missing(place: str) -> TumbleError:
+    """The error of what a file has to hold and does not."""
     return TumbleError(f"{place} is missing", "file", place, None, "there")
 
 
 def same_length(place: str, first: Array, **others: Array | None) -> None:
+    """TumbleError `file` for the first of `others` that has another number of rows than `first`; None is left out."""
     for name, rows in others.items():
         if rows is not None and len(rows) != len(first):
             raise TumbleError(f"{place}/{name} has {len(rows)} rows, must have {len(first)}", "file", f"{place}/{name}",

@@ -196,7 +196,7 @@ std::string rates_text(const std::string& where, const sim::ImuRecord& imu, Gyro
   const std::string told = require_plausible_rates(where, imu, unit);
   if (!told.empty()) return told;
   return std::string("rates taken in ") + (unit == GyroUnit::deg_s ? "deg/s" : "rad/s") +
-         ", senses and axes as they are: the motion does not show them, gravity turns too little in the accelerometer";
+         ", senses and axes as they are: gravity turns too little in the accelerometer to show them";
 }
 
 sim::ImuRecord without_readings(sim::ImuRecord device) {

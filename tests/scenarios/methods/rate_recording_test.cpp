@@ -127,6 +127,11 @@ TEST(RateRecording, UnitsThatLookWrongAreTold) {
   EXPECT_FALSE(refused.ok()) << "beyond twice the range that is stated";
   degrees.sensors.imus.front().stated_gyro_range_rad_s = 0.0;
   EXPECT_EQ(estimated_rates("tumble", degrees).health.at("rate_unit_suspect"), 1.0);
+  const auto attitudes = [](const sim::Recording& of) {
+    return find_methods("attitude/tumble").front()->run(of.sensors, {}, {&of.truth});
+  };
+  EXPECT_EQ(attitudes(degrees).health.at("rate_unit_suspect"), 1.0);
+  EXPECT_FALSE(attitudes(recording).health.contains("rate_unit_suspect"));
   EXPECT_EQ(estimated_rates("tumble", in_g).health.at("force_unit_suspect"), 1.0);
 }
 

@@ -1,0 +1,198 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// What a lidar that turns in a room says of a gyro in wrong units, axes, mountings and clocks.
+#include "scenarios/exchange/lidar_rotation.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <functional>
+
+#include "scenarios/errors.hpp"
+#include "tumble/common/so3.hpp"
+
+namespace tumble::scenarios {
+namespace {
+
+using testing::AllOf;
+using testing::ElementsAre;
+using testing::HasSubstr;
+using testing::IsEmpty;
+
+constexpr std::int64_t kSweep_ns = 100'000'000, kSample_ns = 2'500'000;
+constexpr double kDegrees = 57.29577951308232;
+
+/// Rate of the body, whose axes are those of IMU and lidar: about all three, of sizes that rise and fall.
+Eigen::Vector3d rate_at(double time_s) {
+  return {0.5 * std::sin(1.3 * time_s), 0.4 * std::sin(1.9 * time_s + 1.0), 0.6 * std::cos(0.8 * time_s)};
+}
+
+sim::ImuRecord gyro(double length_s) {
+  sim::ImuRecord imu;
+  imu.name = "imu";
+  imu.period_ns = kSample_ns;
+  for (std::int64_t t = kSample_ns; t < static_cast<std::int64_t>(1e9 * length_s); t += kSample_ns) {
+    imu.time_ns.push_back(t);
+    imu.gyro_rad_s.push_back(rate_at(1e-9 * static_cast<double>(t - kSample_ns / 2)));
+  }
+  return imu;
+}
+
+/// Attitudes of the body in the world every millisecond.
+std::vector<Eigen::Quaterniond> attitudes(double length_s) {
+  std::vector<Eigen::Quaterniond> out{Eigen::Quaterniond::Identity()};
+  for (int k = 0; k < static_cast<int>(1000.0 * length_s); ++k)
+    out.push_back((out.back() * so3::exp(Eigen::Vector3d(1e-3 * rate_at(1e-3 * k + 5e-4)))).normalized());
+  return out;
+}
+
+/// From inside of a room of 8 x 6 x 3 m with an upright beam, along a unit ray.
+double range_in_room(const Eigen::Vector3d& ray) {
+  const Eigen::Vector3d half(4.0, 3.0, 1.5), at(0.7, -0.4, 0.2);
+  double range = 1e9;
+  for (int i = 0; i < 3; ++i) {
+    if (ray[i] != 0.0) range = std::min(range, (std::copysign(half[i], ray[i]) - at[i]) / ray[i]);
+  }
+  const double to_beam = (2.5 - at.x()) / ray.x(), y = at.y() + to_beam * ray.y();
+  return ray.x() > 0.0 && y > 0.5 && y < 1.3 ? std::min(range, to_beam) : range;
+}
+
+sim::LidarRecord lidar_in_room(std::size_t sweeps) {
+  sim::LidarRecord lidar;
+  lidar.name = "lidar";
+  lidar.sweep_period_ns = kSweep_ns;
+  lidar.sweep_first = {0};
+  const auto q_WL = attitudes(0.1 * static_cast<double>(sweeps + 1));
+  for (std::size_t k = 0; k < sweeps; ++k) {
+    lidar.sweep_start_ns.push_back(static_cast<std::int64_t>(k) * kSweep_ns);
+    for (int column = 0; column < 180; ++column) {
+      for (int ring = 0; ring < 16; ++ring) {
+        const double azimuth = 2.0 * M_PI * column / 180.0, elevation = (4.0 * ring - 30.0) / kDegrees;
+        const Eigen::Vector3d ray_L(std::cos(elevation) * std::cos(azimuth), std::cos(elevation) * std::sin(azimuth),
+                                    std::sin(elevation));
+        const auto at_ms = k * 100 + static_cast<std::size_t>(column) * 100 / 180;
+        const double range = range_in_room(q_WL[at_ms] * ray_L);
+        lidar.position_L_m.push_back((range * ray_L).cast<float>());
+        lidar.range_m.push_back(static_cast<float>(range));
+        lidar.intensity.push_back(0.5F);
+        lidar.offset_ns.push_back(static_cast<std::uint32_t>(column * (kSweep_ns / 180)));
+        lidar.ring.push_back(static_cast<std::uint16_t>(ring));
+      }
+    }
+    lidar.sweep_first.push_back(lidar.position_L_m.size());
+  }
+  return lidar;
+}
+
+/// What a lidar without error would have seen from sweep to sweep.
+std::vector<SeenRotation> exact_rotations(int pairs) {
+  const auto q_WL = attitudes(0.1 * (pairs + 1));
+  std::vector<SeenRotation> out;
+  for (std::size_t k = 0; k < static_cast<std::size_t>(pairs); ++k) {
+    const auto at_ns = static_cast<std::int64_t>(k) * kSweep_ns;
+    out.push_back(
+        {at_ns, at_ns + kSweep_ns, so3::log(Eigen::Quaterniond(q_WL[100 * k].conjugate() * q_WL[100 * (k + 1)]))});
+  }
+  return out;
+}
+
+std::string text_of(const std::function<void(sim::ImuRecord&, sim::LidarRecord&)>& change,
+                    GyroUnit unit = GyroUnit::rad_s) {
+  sim::ImuRecord imu = gyro(8.0);
+  sim::LidarRecord lidar;
+  change(imu, lidar);
+  const auto found = rotation_agreement(imu, lidar, exact_rotations(60));
+  return found ? agreement_text("bag: 'imu'", *found, unit) : "nothing told";
+}
+
+std::string with_gyro(const Eigen::Matrix3d& matrix, GyroUnit unit = GyroUnit::rad_s) {
+  return text_of(
+      [&](sim::ImuRecord& imu, sim::LidarRecord&) {
+        for (Eigen::Vector3d& rate : imu.gyro_rad_s) rate = matrix * rate;
+      },
+      unit);
+}
+
+TEST(LidarRotation, WhatAgreesSaysSo) {
+  EXPECT_THAT(with_gyro(Eigen::Matrix3d::Identity()),
+              AllOf(HasSubstr("over 60 pairs of sweeps"), HasSubstr("units, senses and axes agree")));
+}
+
+TEST(LidarRotation, DegreesAreRefusedWithTheOptionThatTakesThem) {
+  const Eigen::Matrix3d degrees = kDegrees * Eigen::Matrix3d::Identity();
+  try {
+    with_gyro(-degrees);
+    FAIL() << "degrees per second were taken for radians";
+  } catch (const BadInput& error) {
+    EXPECT_THAT(error.what(), AllOf(HasSubstr("bag: 'imu'"), HasSubstr("0.0175 times as the gyro says"),
+                                    HasSubstr("'--gyro-unit deg/s' takes them so")));
+  }
+  EXPECT_THROW(with_gyro(Eigen::Matrix3d::Identity() / kDegrees, GyroUnit::deg_s), BadInput);
+  EXPECT_THAT(with_gyro(degrees, GyroUnit::deg_s), HasSubstr("caution: read in deg/s"));
+}
+
+TEST(LidarRotation, FlippedAndPermutedAxesAreNamed) {
+  const Eigen::Matrix3d flipped = Eigen::Vector3d(-1.0, 1.0, 1.0).asDiagonal();
+  EXPECT_THAT(with_gyro(flipped), AllOf(HasSubstr("caution"), HasSubstr("(-x, y, z)")));
+  EXPECT_THAT(with_gyro(-Eigen::Matrix3d::Identity()), HasSubstr("(-x, -y, -z)"));
+  Eigen::Matrix3d swapped;
+  swapped << 0, 1, 0, 1, 0, 0, 0, 0, 1;
+  EXPECT_THAT(with_gyro(swapped), HasSubstr("(y, x, z)"));
+}
+
+TEST(LidarRotation, AMountingThatIsTurnedIsGivenAsARotation) {
+  const std::string text = text_of([](sim::ImuRecord&, sim::LidarRecord& lidar) {
+    lidar.T_BL.linear() = Eigen::AngleAxisd(0.7, Eigen::Vector3d::UnitY()).toRotationMatrix();
+  });
+  EXPECT_THAT(text, AllOf(HasSubstr("caution"), HasSubstr("0.343"), HasSubstr("0.939"), HasSubstr("the mounting?")));
+  // told by both: nothing to say
+  EXPECT_THAT(text_of([](sim::ImuRecord& imu, sim::LidarRecord& lidar) {
+                imu.T_BI.linear() = lidar.T_BL.linear() =
+                    Eigen::AngleAxisd(0.7, Eigen::Vector3d::UnitY()).toRotationMatrix();
+              }),
+              HasSubstr("units, senses and axes agree"));
+}
+
+TEST(LidarRotation, AnotherClockIsTold) {
+  const auto shifted = [](std::int64_t by_ns) {
+    return text_of([&](sim::ImuRecord& imu, sim::LidarRecord&) {
+      for (std::int64_t& time : imu.time_ns) time -= by_ns;
+    });
+  };
+  EXPECT_THAT(shifted(200'000'000), AllOf(HasSubstr("caution"), HasSubstr("0.2 s later"), HasSubstr("axes agree")));
+  EXPECT_THAT(shifted(-200'000'000), HasSubstr("0.2 s before"));
+  EXPECT_THAT(shifted(10'000'000), testing::Not(HasSubstr("caution")));
+}
+
+TEST(LidarRotation, WhatTellsNothingIsNotSpokenOf) {
+  const auto dead = [](sim::ImuRecord& imu, sim::LidarRecord&) {
+    for (Eigen::Vector3d& rate : imu.gyro_rad_s) rate.setZero();
+  };
+  EXPECT_EQ(text_of(dead), "nothing told");
+  const auto other = [](sim::ImuRecord& imu, sim::LidarRecord&) {  // of the same sizes, of another motion
+    for (std::size_t k = 0; k < imu.gyro_rad_s.size(); ++k)
+      imu.gyro_rad_s[k] = so3::exp(Eigen::Vector3d(0.0, 0.011 * static_cast<double>(k), 0.7)) * imu.gyro_rad_s[k];
+  };
+  EXPECT_EQ(text_of(other), "nothing told");
+  EXPECT_FALSE(rotation_agreement(gyro(8.0), {}, exact_rotations(11)));
+  const auto late = [](sim::ImuRecord& imu, sim::LidarRecord&) {
+    for (std::int64_t& time : imu.time_ns) time += 60'000'000'000;
+  };
+  EXPECT_EQ(text_of(late), "nothing told");
+}
+
+TEST(LidarRotation, SweepsOfARoomTellTheGyro) {
+  Imported recording;
+  recording.sensors.imus.push_back(gyro(4.0));
+  recording.sensors.lidars.push_back(lidar_in_room(36));
+  EXPECT_GE(seen_rotations(recording.sensors.lidars.front(), nullptr).size(), 20U);
+  EXPECT_THAT(lidar_rotation_notes("bag", recording, GyroUnit::rad_s),
+              ElementsAre(AllOf(HasSubstr("imu: the lidar turns as the gyro says"), HasSubstr("axes agree"))));
+  for (Eigen::Vector3d& rate : recording.sensors.imus.front().gyro_rad_s) rate.z() = -rate.z();
+  EXPECT_THAT(lidar_rotation_notes("bag", recording, GyroUnit::rad_s), ElementsAre(HasSubstr("(x, y, -z)")));
+  recording.sensors.imus.clear();
+  EXPECT_THAT(lidar_rotation_notes("bag", recording, GyroUnit::rad_s), IsEmpty());
+}
+
+}  // namespace
+}  // namespace tumble::scenarios
