@@ -32,8 +32,8 @@ struct SlamParams {
 
 /// With what calibrations of a rig that was put together by hand may be off by.
 SlamParams with_calibration(SlamParams params);
-/// Few matches are believed where they agree with the prior: where it rests on rates that are known throughout. With
-/// the clipped gyro it leads astray (`hill` 8, `slam/tumble_gyro_only`: 272 m off), and baselines stay what they were.
+/// Few matches are believed where they agree with the prior: baselines do not, and stay what they were. Read as it
+/// stands a clipped gyro is led astray by them (`hill` 8, 272 m off).
 SlamParams with_few_matches(SlamParams params);
 /// With the saturation deficit of clipped axes estimated in the registration.
 SlamParams with_saturation_deficit(SlamParams params);
