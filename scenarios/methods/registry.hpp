@@ -92,8 +92,8 @@ struct SlamChain {
 struct SlamStage;
 
 /// The lidar-inertial chain behind every registration method: given rates, deskew, register, map. Of its parameters:
-/// slam_settings.hpp.
-void run_slam_chain(const sim::Sensors& sensors, std::span<const ImuSample> samples, const SlamStage& stage,
+/// slam_settings.hpp. Returns whether the run knows where on its map it is.
+bool run_slam_chain(const sim::Sensors& sensors, std::span<const ImuSample> samples, const SlamStage& stage,
                     const SlamChain& chain, Estimate& estimate);
 
 }  // namespace tumble::scenarios

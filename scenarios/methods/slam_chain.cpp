@@ -137,9 +137,9 @@ struct CalibrationVerdict {
   bool converged = true;
 };
 
-/// How sure the chain is of where it ended; a world that does not hold it shows here.
-void report_end(const CalibrationVerdict& calibration, const Localisation& localisation, Estimate& estimate) {
-  if (estimate.sweeps.empty()) return;
+/// How sure the chain is of where it ended; a world that does not hold it shows here. Returns whether it is localised.
+bool report_end(const CalibrationVerdict& calibration, const Localisation& localisation, Estimate& estimate) {
+  if (estimate.sweeps.empty()) return false;
   const Eigen::Matrix<double, 6, 6>& P = estimate.sweeps.back().pose.covariance;
   estimate.health["end_sigma_m"] = std::sqrt(P.topLeftCorner<3, 3>().trace());
   estimate.health["end_sigma_rad"] = std::sqrt(P.bottomRightCorner<3, 3>().trace());
@@ -154,7 +154,9 @@ void report_end(const CalibrationVerdict& calibration, const Localisation& local
   estimate.health["sigma_largest_m"] = localisation.largest_sigma_m();
   estimate.health["innovation_second"] = localisation.second_innovation();
   const bool elsewhere = !calibration.converged && calibration.moved > kBelieved;
-  estimate.health["localised"] = localisation.verdict().ok() && !elsewhere ? 1.0 : 0.0;
+  const bool localised = localisation.verdict().ok() && !elsewhere;
+  estimate.health["localised"] = localised ? 1.0 : 0.0;
+  return localised;
 }
 
 /// Ranges that the motion contradicts make a map of another size, however well its sweeps agree.
@@ -322,18 +324,18 @@ Settings<SlamParams> slam_settings(const SlamParams& defaults, std::vector<std::
   return Settings<SlamParams>(defaults, {.stated = {"gravity_m_s2", "accel_rail_m_s2"}, .fixed = std::move(fixed)});
 }
 
-void run_slam_chain(const sim::Sensors& sensors, std::span<const ImuSample> samples, const SlamStage& stage,
+bool run_slam_chain(const sim::Sensors& sensors, std::span<const ImuSample> samples, const SlamStage& stage,
                     const SlamChain& chain, Estimate& estimate) {
   estimate.frame = Frame::imu;
   count_sources(estimate.rates, estimate.health);
   if (sensors.lidars.empty()) {
     estimate.status = {Trouble::empty, "lidars", 0.0, 1.0};
-    return;
+    return false;
   }
   const sim::LidarRecord& lidar = sensors.lidars.front();
   if (bridge::sweep_count(lidar) == 0) {
     estimate.status = {Trouble::empty, "lidar.sweep_start_ns", 0.0, 1.0};
-    return;
+    return false;
   }
 
   const LidarInertialOdometry::Params params = odometry_params(sensors, stage, chain);
@@ -341,14 +343,19 @@ void run_slam_chain(const sim::Sensors& sensors, std::span<const ImuSample> samp
   CalibrationVerdict calibration;
   Estimate run = run_passes(lidar, samples, params, chain, estimate, odometry, calibration);
   estimate = std::move(run);
-  if (!estimate.status.ok()) return;
+  if (!estimate.status.ok()) return false;
   if (chain.calibration) report_calibration(odometry, sensors, estimate.health);
   Localisation localisation(params.expert.matching.distance_m);
   for (const SweepReport& sweep : estimate.sweeps) localisation.add(sweep);
   report_innovations(estimate);
-  report_end(calibration, localisation, estimate);
-  if (chain.calibration) report_scale(find_sweep_scale(samples, estimate.sweeps, sensors.gravity_m_s2), estimate);
+  bool localised = report_end(calibration, localisation, estimate);
+  if (chain.calibration) {
+    const SweepScale scale = find_sweep_scale(samples, estimate.sweeps, sensors.gravity_m_s2);
+    report_scale(scale, estimate);
+    localised = localised && !scale.is_off();
+  }
   draw_map(odometry, estimate);
+  return localised && estimate.status.ok();
 }
 
 void settle(std::vector<PoseState> last_word, SweepReport& sweep) {

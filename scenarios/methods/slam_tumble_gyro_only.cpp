@@ -66,8 +66,8 @@ Estimate run_slam_tumble_gyro_only(const sim::Sensors& sensors, const sim::Value
   for (std::size_t k = 0; k < kGuesses.size(); ++k) {
     Estimate estimate = begun;
     estimate.rates = guessed_rates(kGuesses[k], samples, begun.rates);
-    run_slam_chain(sensors, samples, {slam_tumble_gyro_only_settings(), parameters}, {.calibration = true}, estimate);
-    const bool localised = estimate.health["localised"] != 0.0;
+    const bool localised = run_slam_chain(sensors, samples, {slam_tumble_gyro_only_settings(), parameters},
+                                          {.calibration = true}, estimate);
     estimate.health["guesses_of_gaps"] = static_cast<double>(k + 1);
     if (localised || !estimate.status.ok()) return estimate;
     if (k == 0) first = std::move(estimate);
