@@ -243,10 +243,6 @@ std::string SignedAxes::text() const {
   return out + ")";
 }
 
-bool SignedAxes::as_read() const {
-  return matrix().isIdentity();
-}
-
 std::vector<SeenRotation> seen_rotations(const sim::LidarRecord& lidar, const PointStore* aside) {
   std::vector<SeenRotation> out;
   const std::size_t sweeps = lidar.sweep_start_ns.size();

@@ -36,7 +36,6 @@ struct SignedAxes {
 
   Eigen::Matrix3d matrix() const;
   std::string text() const;  ///< "(-x, y, z)"
-  bool as_read() const;
 };
 
 /// A gyro against a lidar. Errors are medians over the pairs, as shares of the median rotation.
