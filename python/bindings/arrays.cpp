@@ -202,9 +202,9 @@ Eigen::AlignedBox3d box_of(nb::handle value, const std::string& field) {
   return {row(array, 0), row(array, 1)};
 }
 
-nb::object matrix(const Eigen::Isometry3d& pose) {
+Doubles matrix(const Eigen::Isometry3d& pose) {
   const nb::object array = nb::cast(owned(std::vector<double>(pose.data(), pose.data() + 16)));
-  return array.attr("reshape")(4, 4).attr("T").attr("copy")();
+  return nb::cast<Doubles>(array.attr("reshape")(4, 4).attr("T").attr("copy")());
 }
 
 }  // namespace tumble::python

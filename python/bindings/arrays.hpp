@@ -19,6 +19,29 @@ namespace tumble::python {
 
 namespace nb = nanobind;
 
+inline bool is_any_object(PyObject*) {
+  return true;
+}
+
+/// Whatever numpy makes an array of, as stubs say: any object comes in, and is refused by the field's name below.
+class ArrayLike : public nb::object {
+  NB_OBJECT_DEFAULT(ArrayLike, nb::object, "numpy.typing.ArrayLike", is_any_object)
+};
+
+/// A whole number, of Python or numpy; the same.
+class WholeNumber : public nb::object {
+  NB_OBJECT_DEFAULT(WholeNumber, nb::object, "typing.SupportsIndex", is_any_object)
+};
+
+inline bool is_array(PyObject* object) {
+  return nb::ndarray_check(nb::handle(object));
+}
+
+/// What goes out as an array of doubles.
+class Doubles : public nb::object {
+  NB_OBJECT_DEFAULT(Doubles, nb::object, "numpy.typing.NDArray[numpy.float64]", is_array)
+};
+
 /// Samples of an IMU: one (an int, two vectors of 3) or N (int64 of N, two N x 3). `clip_flags`: None, or ClipFlag
 /// bits. TumbleError with `type` for times that are not int64 (seconds would lose their fractions), `shape`,
 /// `out_of_range` for steps of less than 50 us on the median of twenty samples and more: they count something else.
@@ -84,6 +107,6 @@ nb::ndarray<nb::numpy, Scalar, nb::ndim<1>> owned(std::vector<Scalar> values) {
 }
 
 /// 4 x 4 of a rigid transform, a copy.
-nb::object matrix(const Eigen::Isometry3d& pose);
+Doubles matrix(const Eigen::Isometry3d& pose);
 
 }  // namespace tumble::python

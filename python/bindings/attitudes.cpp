@@ -36,7 +36,8 @@ auto bind_filter(nb::module_& m, const char* name, const char* doc) {
           nb::arg("options"), takes_options())
       .def(
           "add_imu",
-          [](Object& self, nb::handle time_ns, nb::handle gyro, nb::handle accel, nb::handle clip_flags) {
+          [](Object& self, const ArrayLike& time_ns, const ArrayLike& gyro, const ArrayLike& accel,
+             const ArrayLike& clip_flags) {
             const auto step = [](Running<Filter>& at, const ImuSample& sample, Attitudes& out) {
               const Status status = at.filter.step(sample, at.state);
               if (status.ok()) out.rows.push_back({sample.time_ns, at.state.q_WI, Eigen::Matrix3d::Zero()});

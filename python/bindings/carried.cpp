@@ -31,8 +31,9 @@ struct Carried {
   RailDetector::Params upright_rails;
 };
 
-std::tuple<Rates, Attitudes, CarriedSmoother::Report> carried(const Carried& self, nb::handle time_ns, nb::handle gyro,
-                                                              nb::handle accel, nb::handle clip_flags) {
+std::tuple<Rates, Attitudes, CarriedSmoother::Report> carried(const Carried& self, const ArrayLike& time_ns,
+                                                              const ArrayLike& gyro, const ArrayLike& accel,
+                                                              const ArrayLike& clip_flags) {
   const std::vector<ImuSample> samples = samples_of(time_ns, gyro, accel, clip_flags);
   std::tuple<Rates, Attitudes, CarriedSmoother::Report> out;
   std::vector<RateState>& rates = std::get<0>(out).rows;
@@ -111,7 +112,8 @@ void bind_stream(nb::module_& m) {
           nb::arg("options"), takes_options())
       .def(
           "add_imu",
-          [](Object& self, nb::handle time_ns, nb::handle gyro, nb::handle accel, nb::handle clip_flags) {
+          [](Object& self, const ArrayLike& time_ns, const ArrayLike& gyro, const ArrayLike& accel,
+             const ArrayLike& clip_flags) {
             std::optional<RateState> settled;
             const auto step = [&settled](Live& at, const ImuSample& sample, Rates& out) {
               const Status status = at.filter.push(sample, *at.state, settled);

@@ -93,8 +93,8 @@ std::vector<RateState> rates_for(const std::vector<ImuSample>& samples, nb::hand
 
 using Object = Guarded<LidarInertialOdometry>;
 
-void add_imu(Object& self, nb::handle time_ns, nb::handle gyro, nb::handle accel, nb::handle rates,
-             nb::handle clip_flags) {
+void add_imu(Object& self, const ArrayLike& time_ns, const ArrayLike& gyro, const ArrayLike& accel, nb::handle rates,
+             const ArrayLike& clip_flags) {
   const std::vector<ImuSample> samples = samples_of(time_ns, gyro, accel, clip_flags);
   const std::vector<RateState> each = rates_for(samples, rates);
   Status status;
@@ -105,8 +105,8 @@ void add_imu(Object& self, nb::handle time_ns, nb::handle gyro, nb::handle accel
   if (!status.ok()) require(status, k);
 }
 
-Report add_sweep(Object& self, nb::handle start_ns, nb::handle end_ns, nb::handle position, nb::handle offset_ns,
-                 nb::handle ring, nb::handle intensity) {
+Report add_sweep(Object& self, const WholeNumber& start_ns, const WholeNumber& end_ns, const ArrayLike& position,
+                 const ArrayLike& offset_ns, const ArrayLike& ring, const ArrayLike& intensity) {
   const TimeNs start = time_of(start_ns, "start_ns"), end = time_of(end_ns, "end_ns");
   const std::vector<LidarPoint> points = points_of(position, offset_ns, ring, intensity);
   Report report;
@@ -149,7 +149,7 @@ void bind_mapping(nb::module_& m) {
           "T_IL, the clocks' offset and gravity as estimated so far.")
       .def(
           "pose_at",
-          [](Object& self, nb::handle time_ns) {
+          [](Object& self, const ArrayLike& time_ns) {
             const TimeNs at = time_of(time_ns, "time_ns");
             PoseState pose;
             require(self.run([&](auto& mapper) { return mapper.pose_at(at, pose); }));

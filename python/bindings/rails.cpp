@@ -31,7 +31,7 @@ std::optional<double> range_of(Keywords& keywords, const Field& field) {
   return value;
 }
 
-Found find_rails(nb::handle time_ns, nb::handle gyro, nb::handle accel, nb::handle clip_flags,
+Found find_rails(const ArrayLike& time_ns, const ArrayLike& gyro, const ArrayLike& accel, const ArrayLike& clip_flags,
                  const nb::kwargs& given) {
   Keywords keywords("find_rails", given);
   ClippingFinder::Params params;

@@ -74,8 +74,8 @@ RegimeStream::Params regime_params(const nb::kwargs& given) {
 }
 
 template <class Smoother, class Report>
-std::pair<Rates, Report> smooth(const Smoother& self, nb::handle time_ns, nb::handle gyro, nb::handle accel,
-                                nb::handle clip_flags) {
+std::pair<Rates, Report> smooth(const Smoother& self, const ArrayLike& time_ns, const ArrayLike& gyro,
+                                const ArrayLike& accel, const ArrayLike& clip_flags) {
   const std::vector<ImuSample> samples = samples_of(time_ns, gyro, accel, clip_flags);
   std::pair<Rates, Report> out;
   Status status;
@@ -87,7 +87,8 @@ std::pair<Rates, Report> smooth(const Smoother& self, nb::handle time_ns, nb::ha
   return out;
 }
 
-Rates saave(const Saave& self, nb::handle time_ns, nb::handle gyro, nb::handle accel, nb::handle clip_flags) {
+Rates saave(const Saave& self, const ArrayLike& time_ns, const ArrayLike& gyro, const ArrayLike& accel,
+            const ArrayLike& clip_flags) {
   const std::vector<ImuSample> samples = samples_of(time_ns, gyro, accel, clip_flags);
   Rates out;
   Status status;
@@ -209,7 +210,8 @@ auto bind_stream(nb::module_& m, const char* name, const char* doc,
           nb::arg("options"), takes_options())
       .def(
           "add_imu",
-          [](Object& self, nb::handle time_ns, nb::handle gyro, nb::handle accel, nb::handle clip_flags) {
+          [](Object& self, const ArrayLike& time_ns, const ArrayLike& gyro, const ArrayLike& accel,
+             const ArrayLike& clip_flags) {
             std::optional<RateState> settled;
             const auto step = [&settled](Streaming<Stream>& at, const ImuSample& sample, Rates& out) {
               const Status status = at.filter.push(sample, *at.state, settled);

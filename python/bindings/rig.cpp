@@ -47,7 +47,9 @@ void bind_rig(nb::module_& m) {
   nb::class_<R>(m, "RigCalibration", "What one run has learnt of the rig and another may start from.")
       .def(
           "__init__",
-          [](R* self, nb::handle constants, nb::handle covariance) { new (self) R(rig_from(constants, covariance)); },
+          [](R* self, const ArrayLike& constants, const ArrayLike& covariance) {
+            new (self) R(rig_from(constants, covariance));
+          },
           nb::arg("constants"), nb::arg("covariance"), "(20,) and (20, 20), as `constants` and `covariance` show them")
       .def_prop_ro(
           "constants",

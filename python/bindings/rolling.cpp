@@ -43,7 +43,8 @@ void bind_rolling_smoother(nb::module_& m) {
           nb::arg("options"), takes_options())
       .def(
           "add_imu",
-          [](Object& self, nb::handle time_ns, nb::handle gyro, nb::handle accel, nb::handle clip_flags) {
+          [](Object& self, const ArrayLike& time_ns, const ArrayLike& gyro, const ArrayLike& accel,
+             const ArrayLike& clip_flags) {
             const auto step = [](Streaming<RollingSmoother>& at, const ImuSample& sample, RollingPoses& out) {
               return at.filter.step(sample, *at.state, out.rows);
             };
@@ -85,7 +86,8 @@ void bind_filter(nb::module_& m) {
           nb::arg("options"), takes_options())
       .def(
           "add_imu",
-          [](Object& self, nb::handle time_ns, nb::handle gyro, nb::handle accel, nb::handle clip_flags) {
+          [](Object& self, const ArrayLike& time_ns, const ArrayLike& gyro, const ArrayLike& accel,
+             const ArrayLike& clip_flags) {
             const auto step = [](Live& at, const ImuSample& sample, RollingPoses& out) {
               const Status status = at.filter.step(sample, *at.state);
               if (status.ok()) out.rows.push_back(RollingFilter::estimate(*at.state));
@@ -161,8 +163,8 @@ RollingEstimate as_estimate(const RollingOdometry::Pose& p) {
 }
 
 /// Samples of all units: one triple of arrays, or a list with one for each unit. The first's times count.
-std::vector<std::vector<ImuSample>> samples_of_units(nb::handle time_ns, nb::handle gyro, nb::handle accel,
-                                                     std::size_t units) {
+std::vector<std::vector<ImuSample>> samples_of_units(const ArrayLike& time_ns, const ArrayLike& gyro,
+                                                     const ArrayLike& accel, std::size_t units) {
   if (units == 1 && !nb::isinstance<nb::list>(gyro)) return {samples_of(time_ns, gyro, accel, nb::none())};
   std::vector<std::vector<ImuSample>> out;
   for (std::size_t k = 0; k < units; ++k) {
@@ -221,7 +223,7 @@ void bind_door(nb::module_& m) {
           nb::arg("options"), takes_options())
       .def(
           "add_imu",
-          [](Object& self, nb::handle time_ns, nb::handle gyro, nb::handle accel) {
+          [](Object& self, const ArrayLike& time_ns, const ArrayLike& gyro, const ArrayLike& accel) {
             const std::size_t units = self.run([](Door& door) { return door.units; });
             const std::vector<std::vector<ImuSample>> all = samples_of_units(time_ns, gyro, accel, units);
             Status status;

@@ -78,8 +78,8 @@ TumblingOdometry::Params tumbling_params(const nb::kwargs& given) {
   return params;
 }
 
-void add_tumbling_imu(TumblingDoor& self, nb::handle time_ns, nb::handle gyro, nb::handle accel,
-                      nb::handle clip_flags) {
+void add_tumbling_imu(TumblingDoor& self, const ArrayLike& time_ns, const ArrayLike& gyro, const ArrayLike& accel,
+                      const ArrayLike& clip_flags) {
   const std::vector<ImuSample> samples = samples_of(time_ns, gyro, accel, clip_flags);
   Status status;
   std::size_t k = 0;
@@ -89,8 +89,9 @@ void add_tumbling_imu(TumblingDoor& self, nb::handle time_ns, nb::handle gyro, n
   if (!status.ok()) require(status, k);
 }
 
-void add_tumbling_sweep(TumblingDoor& self, nb::handle start_ns, nb::handle end_ns, nb::handle position,
-                        nb::handle offset_ns, nb::handle ring, nb::handle intensity) {
+void add_tumbling_sweep(TumblingDoor& self, const WholeNumber& start_ns, const WholeNumber& end_ns,
+                        const ArrayLike& position, const ArrayLike& offset_ns, const ArrayLike& ring,
+                        const ArrayLike& intensity) {
   const TimeNs start = time_of(start_ns, "start_ns"), end = time_of(end_ns, "end_ns");
   const std::vector<LidarPoint> points = points_of(position, offset_ns, ring, intensity);
   require(self.run([&](TumblingOdometry& odometry) { return odometry.add_sweep(start, end, points); }));

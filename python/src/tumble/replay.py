@@ -86,14 +86,18 @@ def tumbling(recording: Recording, on_sample: Callable[[_tumble.TumblingOdometry
     done: list[_tumble.Sweep] = []
     given = 0
 
+    def add(samples: slice) -> None:
+        flags = None if imu.clip_flags is None else imu.clip_flags[samples]
+        odometry.add_imu(imu.time_ns[samples], imu.gyro[samples], imu.accel[samples], flags)
+
     def add_until(end: int) -> None:
         nonlocal given
         if on_sample is None:
-            odometry.add_imu(*(None if rows is None else rows[given:end] for rows in imu.samples))
+            add(slice(given, end))
             given = end
             return
         while given < end:
-            odometry.add_imu(*(None if rows is None else rows[given : given + 1] for rows in imu.samples))
+            add(slice(given, given + 1))
             given += 1
             on_sample(odometry)
 
