@@ -99,9 +99,9 @@ void bind_rails(nb::module_& m) {
   m.def(
       "find_rails", &find_rails, nb::arg("time_ns"), nb::arg("gyro"), nb::arg("accel"),
       nb::arg("clip_flags") = nb::none(), nb::arg("options"),
-      nb::sig(
-          "def find_rails(time_ns: object, gyro: object, accel: object, clip_flags: object | None = None, **options: "
-          "object) -> Rails"),
+      nb::sig("def find_rails(time_ns: numpy.typing.ArrayLike, gyro: numpy.typing.ArrayLike, accel: "
+              "numpy.typing.ArrayLike, "
+              "clip_flags: numpy.typing.ArrayLike | None = None, **options: object) -> Rails"),
       "Finds which readings of a recording are clipped, without flags and without a stated range: level plateaus and\n"
       "tilted planes. gyro_range_rad_s, accel_range_m_s2: what the data sheet states, if anything. Further keywords:\n"
       "rails_parameters().");

@@ -35,7 +35,7 @@ def test_stubs_have_what_the_module_has():
     assert (TYPES.parent / "py.typed").exists()
     untyped = {argument.arg for node in ast.walk(tree) if isinstance(node, ast.FunctionDef) for argument in node.args.args
                if argument.annotation is not None and ast.unparse(argument.annotation) == "object"}
-    assert untyped == {"memo", "rates"}, "arguments that may be anything; `rates` is held to Rates by an error of its own"
+    assert untyped == {"memo"}, "arguments that may be anything"
     assert "NoSuchClass" not in known, "the negative control"
 
 
