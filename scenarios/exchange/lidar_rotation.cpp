@@ -4,11 +4,11 @@
 #include <Eigen/SVD>
 #include <algorithm>
 #include <cmath>
-#include <sstream>
 
 #include "scenarios/errors.hpp"
 #include "scenarios/methods/bridge.hpp"
 #include "scenarios/methods/method.hpp"
+#include "scenarios/recordings/number_text.hpp"
 #include "scenarios/recordings/upper_median.hpp"
 #include "tumble/common/so3.hpp"
 
@@ -26,13 +26,6 @@ constexpr double kTells = 0.5, kDelayTells = 0.6;
 constexpr double kDegreesPerRadian = 57.29577951308232;
 constexpr double kDelayMost_s = 0.5, kDelayStep_s = 0.01, kDelaySaid_s = 0.03;
 constexpr std::int64_t kGap_ns = 100'000'000;
-
-std::string rounded(double value) {
-  std::ostringstream out;
-  out.precision(3);
-  out << value;
-  return out.str();
-}
 
 /// The sweeps [first, last) as a recording of a lidar alone.
 sim::Sensors span_alone(const sim::LidarRecord& lidar, const PointStore* aside, std::size_t first, std::size_t last) {

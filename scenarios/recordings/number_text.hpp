@@ -4,6 +4,7 @@
 #include <array>
 #include <charconv>
 #include <cstdint>
+#include <cstdio>
 #include <string>
 
 namespace tumble::scenarios {
@@ -14,6 +15,13 @@ void append_number(std::string& text, Number value) {
   std::array<char, 32> digits;
   const auto [end, error] = std::to_chars(digits.data(), digits.data() + digits.size(), value);
   text.append(digits.data(), end);
+}
+
+/// Three digits, for messages.
+inline std::string rounded(double value) {
+  std::array<char, 32> text{};
+  std::snprintf(text.data(), text.size(), "%.3g", value);
+  return text.data();
 }
 
 /// Appends seconds with nine decimals, from whole nanoseconds: exact.

@@ -2,12 +2,11 @@
 #include "scenarios/recordings/tables/imu_readings.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
-#include <cstdio>
 
 #include "scenarios/errors.hpp"
 #include "scenarios/recordings/clouds/sweep_stamps.hpp"
+#include "scenarios/recordings/number_text.hpp"
 #include "scenarios/recordings/rounded_stamps.hpp"
 #include "scenarios/recordings/upper_median.hpp"
 #include "scenarios/standard_gravity.hpp"
@@ -18,12 +17,6 @@ namespace {
 
 /// At rest and while rolling or carried the median is near g; in g, mg or raw counts it is not.
 constexpr double kLeastMedian_m_s2 = 3.0, kLargestMedian_m_s2 = 30.0;
-
-std::string rounded(double value) {
-  std::array<char, 32> text{};
-  std::snprintf(text.data(), text.size(), "%.3g", value);
-  return text.data();
-}
 
 bool near_factor(double ratio, double factor) {
   return ratio > factor / 2.0 && ratio < factor * 2.0;
