@@ -11,6 +11,7 @@
 #include "scenarios/errors.hpp"
 #include "scenarios/methods/answer_bounds.hpp"
 #include "scenarios/methods/estimate_file.hpp"
+#include "scenarios/methods/turning_sense.hpp"
 #include "scenarios/recordings/clouds/cloud_file.hpp"
 #include "scenarios/recordings/table_file.hpp"
 
@@ -170,6 +171,8 @@ Estimate read_external_result(const ExternalDescription& description, const std:
     estimate.map = read_points(map);
   }
   require_sense(bounds, estimate, description.output, output);
+  if (const std::string complaint = turning_complaint(estimate, sensors); !complaint.empty())
+    throw BadInput(output.filename().string() + ": " + complaint);
   return estimate;
 }
 

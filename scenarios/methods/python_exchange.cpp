@@ -12,6 +12,7 @@
 #include "scenarios/errors.hpp"
 #include "scenarios/methods/answer_bounds.hpp"
 #include "scenarios/methods/external_method.hpp"
+#include "scenarios/methods/turning_sense.hpp"
 
 namespace tumble::scenarios {
 
@@ -258,6 +259,8 @@ Estimate read_answer(const SharedMemory& memory, Kind kind, Frame frame, const s
   }
   if (kind == Kind::slam && answer.has("map")) read_map(answer, estimate);
   bounds.require_slam(estimate);
+  if (const std::string complaint = turning_complaint(estimate, sensors); !complaint.empty())
+    throw BadInput("the answer: " + complaint);
   return estimate;
 }
 

@@ -3,6 +3,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <array>
 #include <cmath>
 #include <fstream>
 #include <sstream>
@@ -94,6 +96,33 @@ TEST_F(GivenTrajectory, HowMuchWasComparedStandsInTheTable) {
       run_program({"score", (shared_run("roll") / "estimates" / "position-rolling").string(), recording_});
   EXPECT_EQ(own.status, 0) << own.err;
   EXPECT_THAT(own.out, Not(HasSubstr("covered_share")));
+}
+
+// of a tumble: a sphere that rolls straight on turns about one axis, which may be the same in another order
+TEST_F(GivenTrajectory, QuaternionsInAnotherOrderAreSaid) {
+  const std::string recording = (shared_run("hill") / "recording.h5").string();
+  const fs::path truth = folder_ / "hill.tum", tum = folder_ / "theirs.tum";
+  ASSERT_EQ(run_program({"export", recording, "--format", "tum", "-o", truth.string(), "--quiet"}).status, 0);
+  const auto said = [&](bool w_first) {
+    {
+      std::ifstream as_it_is(truth);
+      std::ofstream file(tum);
+      for (std::string line; std::getline(as_it_is, line);) {
+        if (line.starts_with('#')) continue;
+        std::istringstream words(line);
+        std::array<std::string, 8> word;
+        for (std::string& each : word) words >> each;
+        if (w_first) std::rotate(word.begin() + 4, word.begin() + 7, word.end());
+        for (const std::string& each : word) file << each << ' ';
+        file << '\n';
+      }
+    }
+    const Ended ended = run_program({"score", tum.string(), recording, "--frame", "body"});
+    EXPECT_EQ(ended.status, 0) << ended.err;
+    return ended.err;
+  };
+  EXPECT_THAT(said(true), HasSubstr("if the quaternions had w first (x y z w is asked)"));
+  EXPECT_THAT(said(false), Not(HasSubstr("caution")));
 }
 
 TEST_F(GivenTrajectory, AFileOfAnEstimateIsNotWrittenOver) {

@@ -11,6 +11,7 @@
 
 #include "scenarios/errors.hpp"
 #include "scenarios/methods/estimate_file.hpp"
+#include "scenarios/methods/turning_sense.hpp"
 #include "scenarios/recordings/recording_check.hpp"
 #include "scenarios/recordings/recording_file.hpp"
 #include "scenarios/scoring/score.hpp"
@@ -181,6 +182,8 @@ int score_estimate(const Session& session, const ScoreOptions& options) {
   if (foreign) {
     outcome.kind = kind_of(options.kind, sensors);
     move_to_clock(info.origin_ns, estimate);
+    const std::string complaint = scenarios::turning_complaint(estimate, sensors);
+    if (!complaint.empty()) session.note("caution: " + complaint);
   }
 
   if (outcome.kind == scenarios::Kind::position || outcome.kind == scenarios::Kind::slam) {

@@ -1,0 +1,107 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "scenarios/methods/turning_sense.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <functional>
+
+#include "tests/scenarios/methods/synthetic_recording.hpp"
+#include "tumble/common/so3.hpp"
+
+namespace tumble::scenarios {
+namespace {
+
+using ::testing::HasSubstr;
+using Changed = std::function<Eigen::Quaterniond(const Eigen::Quaterniond&)>;
+
+/// Slow enough for the gyro; no axis of a sensor.
+const testing::SyntheticMotion kMotion{.angle_rad = 6.0};
+
+/// The rig's recording, its lidar turned against the IMU by 40 deg.
+sim::Sensors sensors() {
+  sim::Sensors out = testing::synthetic_rig(kMotion).sensors;
+  out.lidars.front().T_BL.linear() =
+      out.imus.front().T_BI.linear() * so3::exp(0.7 * Eigen::Vector3d(0.6, -0.8, 0.0)).toRotationMatrix();
+  return out;
+}
+
+/// The true attitudes of a sensor at 20 Hz, each as `changed` writes it.
+Estimate attitudes(const Eigen::Matrix3d& R_BA, Frame stated, const Changed& changed) {
+  Estimate out;
+  out.frame = stated;
+  for (int k = 0; k < 110; ++k) {
+    const double time_s = 0.05 * k + 0.2;
+    out.attitudes.push_back(
+        {std::llround(1e9 * time_s), changed(kMotion.attitude(time_s) * Eigen::Quaterniond(R_BA)), {}});
+  }
+  return out;
+}
+
+Eigen::Quaterniond as_is(const Eigen::Quaterniond& q) {
+  return q;
+}
+Eigen::Quaterniond with_w_first(const Eigen::Quaterniond& q) {
+  return {q.z(), q.w(), q.x(), q.y()};  // w x y z, taken for x y z w
+}
+Eigen::Quaterniond inverse(const Eigen::Quaterniond& q) {
+  return q.conjugate();
+}
+
+class TurningSense : public ::testing::TestWithParam<Frame> {
+ protected:
+  const sim::Sensors sensors_ = sensors();
+  Eigen::Matrix3d R_BA(Frame frame) const {
+    if (frame == Frame::body) return Eigen::Matrix3d::Identity();
+    return frame == Frame::imu ? sensors_.imus.front().T_BI.linear() : sensors_.lidars.front().T_BL.linear();
+  }
+  std::string complaint(const Changed& changed) const {
+    return turning_complaint(attitudes(R_BA(GetParam()), GetParam(), changed), sensors_);
+  }
+};
+
+TEST_P(TurningSense, WhatIsAsStatedIsNotComplainedOf) {
+  EXPECT_EQ(complaint(as_is), "");
+}
+
+TEST_P(TurningSense, WFirstAndInverseAreNamed) {
+  EXPECT_THAT(complaint(with_w_first), HasSubstr("if the quaternions had w first (x y z w is asked)"));
+  EXPECT_THAT(complaint(inverse), HasSubstr("if the quaternions were of the world in the sensor"));
+}
+
+TEST_P(TurningSense, WhatIsOnlyWrongIsNotComplainedOf) {
+  EXPECT_EQ(complaint([](const Eigen::Quaterniond&) { return Eigen::Quaterniond::Identity(); }), "");
+  Eigen::Quaterniond walked = Eigen::Quaterniond::Identity();
+  EXPECT_EQ(complaint([&](const Eigen::Quaterniond&) {
+              walked = walked * so3::exp({0.2, -0.1, 0.15});
+              return walked;
+            }),
+            "");
+}
+
+INSTANTIATE_TEST_SUITE_P(Frames, TurningSense, ::testing::Values(Frame::imu, Frame::lidar, Frame::body),
+                         [](const auto& tested) { return std::string(to_string(tested.param)); });
+
+TEST(TurningSense, AnotherFrameIsNamed) {
+  const sim::Sensors rig = sensors();
+  const Estimate lidar = attitudes(rig.lidars.front().T_BL.linear(), Frame::imu, as_is);
+  EXPECT_THAT(turning_complaint(lidar, rig), HasSubstr("in the frame imu do not turn as the gyro says"));
+  EXPECT_THAT(turning_complaint(lidar, rig), HasSubstr("if the poses were of the frame lidar"));
+}
+
+TEST(TurningSense, PosesAreHeldToItToo) {
+  const sim::Sensors rig = sensors();
+  Estimate estimate;
+  for (const AttitudeState& each : attitudes(rig.imus.front().T_BI.linear(), Frame::imu, with_w_first).attitudes) {
+    PoseState pose;
+    pose.time_ns = each.time_ns;
+    pose.q_WA = each.q_WA;
+    estimate.poses.push_back(pose);
+  }
+  EXPECT_THAT(turning_complaint(estimate, rig), HasSubstr("w first"));
+  estimate.poses.resize(6);
+  EXPECT_EQ(turning_complaint(estimate, rig), "") << "six poses, five pairs, show nothing";
+}
+
+}  // namespace
+}  // namespace tumble::scenarios
