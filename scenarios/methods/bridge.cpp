@@ -143,14 +143,23 @@ Sweep sweep(const sim::LidarRecord& record, std::size_t index) {
   out.start_ns = record.sweep_start_ns.at(index);
   const bool spread = record.point_times == sim::PointTimes::measured;
   out.end_ns = out.start_ns + (spread ? record.sweep_period_ns : 0);
+  const bool follows = index + 1 < record.sweep_start_ns.size();
+  const bool cut = follows && record.sweep_start_ns[index + 1] < out.end_ns;
+  if (cut) out.end_ns = record.sweep_start_ns[index + 1];
+  const std::int64_t length_ns = out.end_ns - out.start_ns;
   const std::size_t first = record.sweep_first.at(index);
   const std::size_t last = record.sweep_first.at(index + 1);
-  out.points.resize(last - first);
+  out.points.reserve(last - first);
   for (std::size_t k = first; k < last; ++k) {
-    LidarPoint& point = out.points[k - first];
+    std::int64_t offset_ns = record.offset_ns[k];
+    if (cut && offset_ns > length_ns) {
+      if (offset_ns > length_ns + kRounding_ns) continue;
+      offset_ns = length_ns;
+    }
+    LidarPoint& point = out.points.emplace_back();
     point.position_L_m = record.position_L_m[k];
     point.intensity = record.intensity[k];
-    point.offset_ns = record.offset_ns[k];
+    point.offset_ns = static_cast<std::uint32_t>(offset_ns);
     point.ring = record.ring[k];
   }
   return out;

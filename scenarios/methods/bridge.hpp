@@ -68,8 +68,13 @@ struct Sweep {
 /// Number of sweeps. Throws BadInput when the record's arrays do not fit together.
 std::size_t sweep_count(const sim::LidarRecord& record);
 
-/// Sweep `index` < sweep_count(record). Where the points have no times of their own the sweep has no length: all belong
-/// to its start, and there is nothing to deskew. O(points of the sweep).
+/// Stamps of seconds in double since 1970 are rounded to a quarter of this [ns].
+inline constexpr std::int64_t kRounding_ns = 1000;
+
+/// Sweep `index` < sweep_count(record): it lasts for the period, or until the next begins where that is sooner, since
+/// sweeps of a real lidar do not follow each other to the nanosecond. Points later than that by more than kRounding_ns
+/// are left out, others belong to the end. Where the points have no times of their own the sweep has no length: all
+/// belong to its start, and there is nothing to deskew. O(points of the sweep).
 Sweep sweep(const sim::LidarRecord& record, std::size_t index);
 
 }  // namespace tumble::scenarios::bridge

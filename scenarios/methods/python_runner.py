@@ -19,6 +19,7 @@ import numpy as np
 ALIGNMENT = 64
 TOLD_MAX = 1500  # characters of a traceback, the last ones
 UNIT_TOLERANCE = 1e-2  # as of a TUM file
+ROUNDING_NS = 1000  # a point so much after its sweep's end belongs to the end
 
 
 class Refused(Exception):
@@ -36,9 +37,14 @@ class Lidar(types.SimpleNamespace):
             raise IndexError(f"sweep {index} of {len(self)}")
         index %= len(self)
         start_ns, rows = int(self.sweep_start_ns[index]), slice(int(self.sweep_first[index]), int(self.sweep_first[index + 1]))
-        return types.SimpleNamespace(start_ns=start_ns, end_ns=start_ns + self.sweep_period_ns * (self.point_times == "measured"),
-                                     position=self.position[rows], offset_ns=self.offset_ns[rows], ring=self.ring[rows],
-                                     intensity=self.intensity[rows])
+        length_ns, offset_ns = self.sweep_period_ns * (self.point_times == "measured"), self.offset_ns[rows]
+        if index + 1 < len(self) and int(self.sweep_start_ns[index + 1]) - start_ns < length_ns:
+            length_ns = int(self.sweep_start_ns[index + 1]) - start_ns
+            if len(offset_ns) > 0 and offset_ns.max() > length_ns:
+                rows = rows.start + np.flatnonzero(offset_ns <= length_ns + ROUNDING_NS)
+                offset_ns = np.minimum(self.offset_ns[rows], length_ns).astype(offset_ns.dtype)
+        return types.SimpleNamespace(start_ns=start_ns, end_ns=start_ns + length_ns, position=self.position[rows],
+                                     offset_ns=offset_ns, ring=self.ring[rows], intensity=self.intensity[rows])
 
 
 def read_sensors(descriptor):

@@ -94,16 +94,24 @@ class Lidar:
         return len(self.sweep_start_ns)
 
     def __getitem__(self, index: int) -> Sweep:
-        """Sweep `index`. Where points have no times of their own a sweep has no length: all belong to its start."""
+        """Sweep `index`: it lasts for the period, or until the next begins where that is sooner; points later than that by more than a
+        microsecond are left out. Where points have no times of their own a sweep has no length: all belong to its start."""
         count = len(self)
         if not -count <= index < count:
             raise IndexError(f"sweep {index} of {count}")
         index %= count
         start = int(self.sweep_start_ns[index])
         length = self.sweep_period_ns if self.point_times == "measured" else 0
-        rows = slice(int(self.sweep_first[index]), int(self.sweep_first[index + 1]))
+        first = int(self.sweep_first[index])
+        rows: slice | Array = slice(first, int(self.sweep_first[index + 1]))
+        offsets = self.offset_ns[rows]
+        if index + 1 < count and (until_next := int(self.sweep_start_ns[index + 1]) - start) < length:
+            length = until_next
+            if len(offsets) > 0 and offsets.max() > length:
+                rows = first + np.flatnonzero(offsets <= length + ROUNDING_NS)
+                offsets = np.minimum(self.offset_ns[rows], length).astype(offsets.dtype)
         assert self.ring is not None and self.intensity is not None
-        return Sweep(start, start + length, self.position[rows], self.offset_ns[rows], self.ring[rows], self.intensity[rows])
+        return Sweep(start, start + length, self.position[rows], offsets, self.ring[rows], self.intensity[rows])
 
     def __iter__(self) -> Iterator[Sweep]:
         return (self[k] for k in range(len(self)))
@@ -144,6 +152,8 @@ class Recording:
         out[:3, 3] = R @ T_BL[:3, 3] - R @ T_BI[:3, 3]
         return out
 
+
+ROUNDING_NS = 1000  # a point so much after its sweep's end belongs to the end
 
 _IMU_NUMBERS = {"stated_gyro_range_rad_s": "gyro_range_rad_s", "stated_accel_range_m_s2": "accel_range_m_s2",
                 "gyro_noise_rad_s_sqrt_hz": "gyro_noise_rad_s_sqrt_hz", "accel_noise_m_s2_sqrt_hz": "accel_noise_m_s2_sqrt_hz"}

@@ -111,6 +111,30 @@ TEST(Bridge, LidarPointsFallOnTheTrueSurfaceThroughT_IL) {
   }
 }
 
+TEST(Bridge, ASweepEndsWhereTheNextBegins) {
+  sim::LidarRecord lidar = testing::synthetic_rig().sensors.lidars.front();
+  const bridge::Sweep whole = bridge::sweep(lidar, 7);
+  lidar.sweep_start_ns[8] -= 20;
+  const bridge::Sweep sweep = bridge::sweep(lidar, 7);
+  EXPECT_EQ(sweep.end_ns, whole.end_ns - 20);
+  EXPECT_EQ(sweep.points.size(), whole.points.size());
+  // of a millisecond the points that were measured in it are gone, a hundredth
+  lidar.sweep_start_ns[8] -= 1'000'000;
+  const bridge::Sweep shorter = bridge::sweep(lidar, 7);
+  EXPECT_LT(shorter.points.size(), whole.points.size());
+  EXPECT_GT(shorter.points.size(), 98 * whole.points.size() / 100);
+  for (const LidarPoint& point : shorter.points) EXPECT_LE(point.offset_ns, shorter.end_ns - shorter.start_ns);
+  // one that lies within what rounding does stays, at the end
+  const std::size_t last = lidar.sweep_first[8] - 1;
+  lidar.offset_ns[last] = static_cast<std::uint32_t>(shorter.end_ns - shorter.start_ns + 200);
+  const bridge::Sweep rounded = bridge::sweep(lidar, 7);
+  EXPECT_EQ(rounded.points.back().position_L_m, lidar.position_L_m[last]);
+  EXPECT_EQ(rounded.points.back().offset_ns, rounded.end_ns - rounded.start_ns);
+  // a gap between two sweeps lengthens none
+  lidar.sweep_start_ns[8] += 20'000'000;
+  EXPECT_EQ(bridge::sweep(lidar, 7).end_ns, whole.end_ns);
+}
+
 TEST(Bridge, NoiseVarianceIsDensitySquaredOverPeriod) {
   sim::ImuRecord record;
   record.gyro_noise_rad_s_sqrt_hz = 5.236e-4;  // 0.03 deg/s/sqrt(Hz)
