@@ -24,8 +24,12 @@ void start_clock(Imported& recording);
 /// Puts a lidar beside the others, its points with theirs.
 void add_lidar(Imported& recording, BuiltSweeps built);
 
-/// Makes poses of the body, or of the first lidar, the truth of a recording; stamps are of its source's clock. Messages
+/// Makes poses of what stands at T_BA on the body the truth of a recording; stamps are of its source's clock. Messages
 /// begin with `where`. Throws BadInput.
-void attach_poses(Imported& recording, std::vector<ReferencePose> poses, bool of_body, const std::string& where);
+void attach_poses(Imported& recording, std::vector<ReferencePose> poses, const Eigen::Isometry3d& T_BA,
+                  const std::string& where);
+
+/// T_BL of the first lidar. Throws BadInput beginning with `where` when there is none.
+const Eigen::Isometry3d& lidar_of_poses(const sim::Sensors& sensors, const std::string& where);
 
 }  // namespace tumble::scenarios

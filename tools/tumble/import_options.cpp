@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <set>
 
 #include "scenarios/draw/data_sheet.hpp"
 #include "scenarios/errors.hpp"
@@ -20,6 +21,17 @@ using scenarios::BadInput;
 
 const std::vector<std::string> kFormats = {"airbrakes", "broad",   "csv",     "kitti",   "mcap", "pcd", "odometry",
                                            "ply",       "repoimu", "rosbag1", "rosbag2", "tum",  "vtk"};
+
+/// A file of a bag may be read by itself.
+std::string bag_hint(const std::filesystem::path& folder) {
+  std::set<std::string> bags;
+  for (const auto& entry : std::filesystem::directory_iterator(folder)) {
+    const std::string ending = entry.path().extension().string();
+    if (ending == ".bag" || ending == ".mcap" || ending == ".db3") bags.insert(entry.path().filename().string());
+  }
+  if (bags.empty()) return "";
+  return "; of the " + std::to_string(bags.size()) + " bags in it one at a time is read, as " + *bags.begin();
+}
 
 /// What the files in a folder are.
 std::string format_of_folder(const std::filesystem::path& folder) {
@@ -37,7 +49,8 @@ std::string format_of_folder(const std::filesystem::path& folder) {
     found = format->second;
   }
   if (found.empty())
-    throw BadInput(folder.string() + ": holds no .ply, .pcd, .vtk or .bin file and no metadata.yaml of a bag");
+    throw BadInput(folder.string() + ": holds no .ply, .pcd, .vtk or .bin file and no metadata.yaml of a bag" +
+                   bag_hint(folder));
   return found;
 }
 
@@ -325,7 +338,10 @@ scenarios::BagReading bag_reading(const Session& session, const ImportOptions& o
   reading.imu_topics = options.imu_topics;
   reading.lidar_topics = options.lidar_topics;
   reading.reference_topic = options.reference_topic;
-  reading.reference_of_body = options.reference_frame != "lidar";
+  if (!options.reference_frame.empty()) {
+    const bool of_lidar = options.reference_frame == "lidar";
+    reading.reference_of = of_lidar ? scenarios::ReferenceOf::lidar : scenarios::ReferenceOf::body;
+  }
   reading.imu = imu_sheet(session, options);
   if (!options.accel_unit.empty()) reading.accel_unit = accel_unit(options);
   reading.gyro_unit = gyro_unit(options);

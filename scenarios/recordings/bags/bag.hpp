@@ -81,14 +81,18 @@ void export_ros2_mcap(const sim::Sensors& sensors, const BagWriting& writing, co
 /// headers without usable stamps. A sweep is recorded when it is over: then it starts a period before.
 enum class StampSource { header, record };
 
+/// Whose poses a reference holds: that of the frame that its messages name, where the bag places it; the body's; the
+/// first lidar's.
+enum class ReferenceOf { named, body, lidar };
+
 /// What is taken from a bag.
 struct BagReading {
   std::vector<std::string> imu_topics;    ///< the first is the primary one; empty: all of type Imu, as they stand
   std::vector<std::string> lidar_topics;  ///< empty: all of type PointCloud2 or CustomMsg
   std::string reference_topic;            ///< Odometry or PoseStamped; "": none
-  bool reference_of_body = true;          ///< else of the first lidar
-  sim::ImuRecord imu;                     ///< what the messages do not state: device, ranges, noise, T_BI
-  std::optional<AccelUnit> accel_unit;    ///< none: sensor_msgs/Imu's m/s^2, or g where the readings are
+  ReferenceOf reference_of = ReferenceOf::named;
+  sim::ImuRecord imu;                   ///< what the messages do not state: device, ranges, noise, T_BI
+  std::optional<AccelUnit> accel_unit;  ///< none: sensor_msgs/Imu's m/s^2, or g where the readings are
   GyroUnit gyro_unit = GyroUnit::rad_s;
   StampSource stamps = StampSource::header;
   SweepReading sweeps;
@@ -102,7 +106,8 @@ struct BagReading {
 /// `sweeps.scratch` in memory are a sweep at a time, what the IMUs said (57 bytes a sample) and some bytes a message;
 /// without it all. Sensors bear the name of their topic. Points as import_sweeps takes them; without a choice of topics
 /// a cloud in "world", "map" or "odom" is left out, since no sensor's points lie there. Where /tf_static places a
-/// sensor in "body" or "base_link" and nothing else was given, that is its pose. Throws BadInput with file and place:
+/// sensor in "body" or "base_link", or, without such a frame, beside another sensor, and nothing else was given, that
+/// is its pose. A message that is there twice, stamp and content, is taken once. Throws BadInput with file and place:
 /// damaged, truncated, a topic that is not there or of another type, a message whose stamp does not rise, frames that
 /// hang on each other in a ring.
 Imported import_ros1_bag(const std::filesystem::path& file, const BagReading& reading);

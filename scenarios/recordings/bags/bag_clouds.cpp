@@ -1,7 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "scenarios/recordings/bags/bag_clouds.hpp"
 
+#include <xxhash.h>
+
 #include <algorithm>
+#include <array>
 #include <cstring>
 
 #include "scenarios/errors.hpp"
@@ -58,7 +61,7 @@ Cloud cloud_of(const ros::PointCloud2& message, const std::string& where) {
   out.points = std::size_t{message.width} * message.height;
   for (const ros::PointField& field : message.fields) {
     const ReadType* type = type_of(field.datatype);
-    if (type == nullptr || field.count != 1) continue;
+    if (type == nullptr || field.count > 1) continue;  // 0: some drivers leave it so, and mean one
     if (std::uint64_t{field.offset} + type->bytes > message.point_step) {
       throw BadInput(where + ": field '" + field.name + "' at byte " + std::to_string(field.offset) +
                      " lies outside of its point of " + std::to_string(message.point_step) + " bytes");
@@ -90,6 +93,19 @@ Cloud cloud_of(const ros::LivoxCustomMsg& message, const std::string& where) {
     for (std::size_t c = 0; c < out.columns.size(); ++c) out.columns[c][i] = numbers[c];
   }
   return out;
+}
+
+std::uint64_t content_of(const ros::PointCloud2& message) {
+  return XXH3_64bits(message.data.data(), message.data.size());
+}
+
+std::uint64_t content_of(const ros::LivoxCustomMsg& message) {
+  std::uint64_t digest = message.timebase;
+  for (const ros::LivoxPoint& point : message.points) {
+    const std::array numbers = {point.x, point.y, point.z, static_cast<float>(point.reflectivity)};
+    digest = XXH3_64bits_withSeed(numbers.data(), sizeof numbers, digest + point.offset_time);
+  }
+  return digest;
 }
 
 }  // namespace tumble::scenarios

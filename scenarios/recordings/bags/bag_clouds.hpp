@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <cstdint>
 #include <string>
 
 #include "scenarios/recordings/bags/ros_messages.hpp"
@@ -20,5 +21,9 @@ Cloud cloud_of(const ros::PointCloud2& message, const std::string& where);
 /// Columns x y z reflectivity tag line, and offset_time_ns since the header's stamp. Throws BadInput beginning with
 /// `where`: another number of points than the message states.
 Cloud cloud_of(const ros::LivoxCustomMsg& message, const std::string& where);
+
+/// A digest of all points: equal contents, equal digests. O(bytes).
+std::uint64_t content_of(const ros::PointCloud2& message);
+std::uint64_t content_of(const ros::LivoxCustomMsg& message);
 
 }  // namespace tumble::scenarios

@@ -24,6 +24,10 @@ class BagStamps {
   /// is said.
   std::int64_t take(std::int64_t header_ns, std::int64_t record_ns, const std::string& where);
 
+  /// The headers say the same time as in the message before, and they are what counts: with the same content it is that
+  /// message once more.
+  bool repeats(std::int64_t header_ns) const { return source_ == StampSource::header && header_ns_ == header_ns; }
+
   /// How far the records lag behind the headers, or nothing where that is less than a millisecond throughout. A caution
   /// where a second or more lies between them, where headers are ahead of their records, and where the lag changes.
   std::string remark() const;

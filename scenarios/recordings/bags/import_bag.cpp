@@ -7,9 +7,10 @@
 #include "scenarios/errors.hpp"
 #include "scenarios/recordings/bags/bag.hpp"
 #include "scenarios/recordings/bags/bag_clouds.hpp"
+#include "scenarios/recordings/bags/bag_reference.hpp"
 #include "scenarios/recordings/bags/bag_stamps.hpp"
 #include "scenarios/recordings/bags/bag_storage.hpp"
-#include "scenarios/recordings/bags/static_frames.hpp"
+#include "scenarios/recordings/bags/sensor_places.hpp"
 #include "scenarios/recordings/clouds/sweep_stamps.hpp"
 #include "scenarios/recordings/recording_clock.hpp"
 #include "scenarios/recordings/tables/imu_readings.hpp"
@@ -22,8 +23,6 @@ namespace {
 
 constexpr const char* kImu = "sensor_msgs/Imu";
 constexpr const char* kCloud = "sensor_msgs/PointCloud2";
-constexpr const char* kOdometry = "nav_msgs/Odometry";
-constexpr const char* kPoseStamped = "geometry_msgs/PoseStamped";
 constexpr const char *kTransforms = "tf2_msgs/TFMessage", *kOldTransforms = "tf/tfMessage";
 constexpr const char* kStaticTopic = "/tf_static";
 constexpr const char* kNoMessage = ": is declared and has no message: left out";
@@ -39,59 +38,6 @@ bool is_cloud_type(const std::string& type) {
   return type == kCloud || is_livox_type(type);
 }
 
-/// Where a message stands in a bag: its name for messages, and when it was recorded.
-struct Origin {
-  std::string where;
-  std::int64_t record_ns;
-};
-
-/// A bag, its place for messages, and its topics.
-struct Bag {
-  BagReader& reader;
-  std::string place;
-  std::vector<BagTopic> topics;
-
-  const BagTopic& topic(const std::string& name) const {
-    std::vector<std::string> names;
-    for (const BagTopic& each : topics) {
-      if (each.name == name) return each;
-      names.push_back(each.name);
-    }
-    const std::string near = sim::nearest_name(name, names);
-    throw BadInput(place + ": no topic '" + name + "'" + (near.empty() ? "" : "; did you mean '" + near + "'?"));
-  }
-
-  /// The topics named, which must be of a type that fits; all of such when none is named.
-  std::vector<std::string> chosen(const std::vector<std::string>& names, bool (*fits)(const std::string& type),
-                                  const std::string& wanted) const {
-    std::vector<std::string> out = names;
-    for (const std::string& name : names) {
-      if (!fits(topic(name).type))
-        throw BadInput(place + ": topic '" + name + "' is of type " + topic(name).type + ", must be " + wanted);
-    }
-    for (const BagTopic& each : topics) {
-      if (names.empty() && fits(each.type)) out.push_back(each.name);
-    }
-    return out;
-  }
-
-  /// Calls `take(message, origin)` for each message of the topic.
-  template <class Message, class Take>
-  void read(const std::string& name, Take&& take) const {
-    std::size_t number = 0;
-    reader.read(name, [&](ros::Bytes& bytes, std::int64_t record_ns) {
-      const std::string where = place + ": message " + std::to_string(number++) + " of " + name;
-      Message message;
-      try {
-        message = reader.cdr(name) ? ros::from_cdr<Message>(bytes) : ros::from_ros1<Message>(bytes);
-      } catch (const ros::BadMessage& error) {
-        throw BadInput(where + ": " + error.what());
-      }
-      take(message, Origin{where, record_ns});
-    });
-  }
-};
-
 /// A topic as the name of a sensor: "/imu/data" is imu_data, "/lidar/points" lidar.
 std::string sensor_name(std::string topic) {
   while (topic.starts_with('/')) topic.erase(0, 1);
@@ -100,47 +46,16 @@ std::string sensor_name(std::string topic) {
   return topic;
 }
 
-StaticFrames read_frames(const Bag& bag) {
+StaticFrames read_frames(const OpenedBag& bag) {
   StaticFrames frames;
   for (const BagTopic& topic : bag.topics) {
-    if (topic.name != kStaticTopic || (topic.type != kTransforms && topic.type != kOldTransforms)) continue;
-    bag.read<ros::TFMessage>(topic.name, [&](const ros::TFMessage& message, const Origin& origin) {
+    if (!topic.name.ends_with(kStaticTopic) || (topic.type != kTransforms && topic.type != kOldTransforms)) continue;
+    bag.read<ros::TFMessage>(topic.name, [&](const ros::TFMessage& message, const MessageOrigin& origin) {
       for (const ros::TransformStamped& each : message.transforms) frames.add(each, origin.where);
     });
   }
   frames.require_no_ring(bag.place + ": topic " + kStaticTopic);
   return frames;
-}
-
-/// Where the bag says that a sensor is, unless somebody else has said it: then both are shown where they differ. Where
-/// nobody has, that is said, with the option that says it.
-void place_sensor(const Bag& bag, const StaticFrames& frames, const std::string& topic, const std::string& frame,
-                  const char* option, Eigen::Isometry3d& T_BA, std::vector<std::string>& notes) {
-  const std::string body = frames.body();
-  const auto stated = body.empty() ? std::nullopt : frames.pose(body, frame, bag.place + ": topic " + kStaticTopic);
-  if (!stated) {
-    if (T_BA.isApprox(Eigen::Isometry3d::Identity())) {
-      notes.push_back(topic + ": neither " + kStaticTopic + " nor " + option +
-                      " says where it is on the body: taken to lie in its centre of mass, along its axes");
-    }
-    return;
-  }
-  const auto text = [](const Eigen::Isometry3d& T) {
-    std::ostringstream out;
-    const Eigen::Quaterniond q(T.linear());
-    const Eigen::IOFormat row(Eigen::StreamPrecision, Eigen::DontAlignCols, " ", " ");
-    out << "(" << T.translation().transpose().format(row) << ") m, quaternion x y z w ("
-        << q.coeffs().transpose().format(row) << ")";
-    return out.str();
-  };
-  constexpr double kSame = 1e-3;  // m and, nearly, rad
-  if (T_BA.isApprox(Eigen::Isometry3d::Identity())) {
-    T_BA = *stated;
-    notes.push_back(topic + ": placed in '" + body + "' by " + kStaticTopic + ", " + text(*stated));
-  } else if (!(T_BA.matrix() - stated->matrix()).isZero(kSame)) {
-    notes.push_back(topic + ": caution: " + kStaticTopic + " places it in '" + body + "' at " + text(*stated) +
-                    ", but given was " + text(T_BA) + ", which holds");
-  }
 }
 
 /// The unit of the specific force, which is put in m/s^2 where nobody stated one and the readings are in g.
@@ -153,18 +68,31 @@ AccelUnit take_in_g(const std::string& topic, const BagReading& reading, sim::Im
   return AccelUnit::g;
 }
 
-sim::ImuRecord read_imu(const Bag& bag, const StaticFrames& frames, const std::string& topic, const BagReading& reading,
+std::string repeats_text(std::size_t repeated) {
+  if (repeated == 0) return "";
+  return "messages that are there twice, stamp and content, and were taken once: " + std::to_string(repeated);
+}
+
+sim::ImuRecord read_imu(const OpenedBag& bag, SensorPlaces& places, const std::string& topic, const BagReading& reading,
                         std::vector<std::string>& notes) {
   sim::ImuRecord imu = without_readings(reading.imu);
   imu.name = sensor_name(topic);
   std::string frame;
   BagStamps stamps(reading.stamps);
   const double force_scale = scale_of(reading.accel_unit.value_or(AccelUnit::m_s2));
-  bag.read<ros::Imu>(topic, [&](const ros::Imu& message, const Origin& origin) {
+  ros::Imu before;
+  std::size_t repeated = 0;
+  bag.read<ros::Imu>(topic, [&](const ros::Imu& message, const MessageOrigin& origin) {
+    if (stamps.repeats(stamp_of(message.header)) && message.angular_velocity == before.angular_velocity &&
+        message.linear_acceleration == before.linear_acceleration) {
+      ++repeated;
+      return;
+    }
     add_reading(origin.where, stamps.take(stamp_of(message.header), origin.record_ns, origin.where),
                 scale_of(reading.gyro_unit) * Eigen::Vector3d::Map(message.angular_velocity.data()),
                 force_scale * Eigen::Vector3d::Map(message.linear_acceleration.data()), imu);
-    frame = message.header.frame_id;
+    frame = without_slash(message.header.frame_id);
+    before = message;
   });
   const std::string where = bag.place + ": topic " + topic;
   if (imu.time_ns.empty() && reading.imu_topics.empty()) return imu;  // declared, and never recorded
@@ -173,10 +101,10 @@ sim::ImuRecord read_imu(const Bag& bag, const StaticFrames& frames, const std::s
   // messages are in rad/s by their definition, and not every driver keeps to it
   const std::string evened = even_out_stamps(imu);
   const std::string units = rates_text(where, imu, reading.gyro_unit);
-  for (const std::string& remark : {evened, gaps_text(imu), units, stamps.remark()}) {
+  for (const std::string& remark : {evened, gaps_text(imu), units, stamps.remark(), repeats_text(repeated)}) {
     if (!remark.empty()) notes.push_back(topic + ": " + remark);
   }
-  place_sensor(bag, frames, topic, frame, "--lever-arm", imu.T_BI, notes);
+  places.place(topic, frame, "--lever-arm", imu.T_BI, notes);
   return imu;
 }
 
@@ -184,6 +112,7 @@ sim::ImuRecord read_imu(const Bag& bag, const StaticFrames& frames, const std::s
 struct CloudHeaders {
   std::vector<std::int64_t> stamps;  ///< of the starts of the sweeps
   std::int64_t period_ns = 0;        ///< given, or the median step of the stamps
+  std::vector<bool> repeats;         ///< of each message: it is the one before once more
   std::string remark;
   bool follow_records = true;  ///< the records lie after the stamps, of one clock by all that is seen
   std::string frame;
@@ -195,23 +124,29 @@ struct CloudHeaders {
 
 /// Calls `take(message, origin)` for each cloud of the topic, of whichever type they are.
 template <class Take>
-void read_clouds(const Bag& bag, const std::string& topic, Take&& take) {
+void read_clouds(const OpenedBag& bag, const std::string& topic, Take&& take) {
   if (is_livox_type(bag.topic(topic).type)) return bag.read<ros::LivoxCustomMsg>(topic, take);
   bag.read<ros::PointCloud2>(topic, take);
 }
 
-CloudHeaders read_headers(const Bag& bag, const std::string& topic, const BagReading& reading) {
+CloudHeaders read_headers(const OpenedBag& bag, const std::string& topic, const BagReading& reading) {
   CloudHeaders out;
   BagStamps stamps(reading.stamps);
-  read_clouds(bag, topic, [&](const auto& message, const Origin& origin) {
-    out.frame = message.header.frame_id;
-    if (out.frame.starts_with('/')) out.frame.erase(0, 1);
+  std::uint64_t before = 0;
+  read_clouds(bag, topic, [&](const auto& message, const MessageOrigin& origin) {
+    out.frame = without_slash(message.header.frame_id);
     if (out.left_out(reading)) return;  // a map may well stand still
-    out.stamps.push_back(stamps.take(stamp_of(message.header), origin.record_ns, origin.where));
+    const std::uint64_t now = content_of(message);
+    out.repeats.push_back(stamps.repeats(stamp_of(message.header)) && now == before);
+    before = now;
+    if (!out.repeats.back())
+      out.stamps.push_back(stamps.take(stamp_of(message.header), origin.record_ns, origin.where));
   });
   const std::int64_t given_ns = reading.sweeps.device.sweep_period_ns;
   out.period_ns = given_ns > 0 ? given_ns : median_step_ns(out.stamps);
   out.remark = stamps.remark();
+  const auto repeated = static_cast<std::size_t>(std::count(out.repeats.begin(), out.repeats.end(), true));
+  if (repeated > 0) out.remark += (out.remark.empty() ? "" : "; ") + repeats_text(repeated);
   out.follow_records = !stamps.other_clock();
   if (reading.stamps == StampSource::record) {
     for (std::int64_t& stamp : out.stamps) stamp -= out.period_ns;
@@ -236,20 +171,21 @@ void note_points_to_come(const std::string& topic, const BuiltSweeps& built, con
                   "read as the start ('--stamps record' lets a sweep start a period before it was recorded)");
 }
 
-BuiltSweeps read_lidar(const Bag& bag, const StaticFrames& frames, const std::string& topic,
+BuiltSweeps read_lidar(const OpenedBag& bag, SensorPlaces& places, const std::string& topic,
                        const CloudHeaders& headers, const BagReading& reading, std::vector<std::string>& notes) {
   SweepReading sweeps = reading.sweeps;
   sweeps.device.name = sensor_name(topic);
   SweepBuilder builder(std::move(sweeps), headers.period_ns);
   double clocks_apart_s = 0.0;
-  std::size_t number = 0;
+  std::size_t number = 0, read = 0;
   std::vector<std::int64_t> records;
-  read_clouds(bag, topic, [&]<class Message>(const Message& message, const Origin& origin) {
+  read_clouds(bag, topic, [&]<class Message>(const Message& message, const MessageOrigin& origin) {
+    if (read == headers.repeats.size()) throw BadInput(origin.where + ": lies in another frame than the last one");
+    if (headers.repeats[read++]) return;
     if constexpr (std::is_same_v<Message, ros::LivoxCustomMsg>) {
       const double apart_ns = static_cast<double>(message.timebase) - static_cast<double>(stamp_of(message.header));
       clocks_apart_s = std::max(clocks_apart_s, 1e-9 * std::abs(apart_ns));
     }
-    if (number == headers.stamps.size()) throw BadInput(origin.where + ": lies in another frame than the last one");
     records.push_back(origin.record_ns);
     builder.add(headers.stamps[number++], cloud_of(message, origin.where), origin.where);
   });
@@ -261,32 +197,18 @@ BuiltSweeps read_lidar(const Bag& bag, const StaticFrames& frames, const std::st
     notes.push_back(topic + ": caution: the messages' timebase and the stamps of their headers are up to " +
                     std::to_string(clocks_apart_s) + " s apart; the times of points count from the headers'");
   }
-  place_sensor(bag, frames, topic, headers.frame, "--T-body-lidar", built.lidar.T_BL, notes);
+  places.place(topic, headers.frame, "--T-body-lidar", built.lidar.T_BL, notes);
   return built;
 }
 
-template <class Message>
-std::vector<ReferencePose> read_poses(const Bag& bag, const std::string& topic, StampSource source) {
-  std::vector<ReferencePose> poses;
-  BagStamps stamps(source);
-  bag.read<Message>(topic, [&](const Message& message, const Origin& origin) {
-    ReferencePose pose{stamps.take(stamp_of(message.header), origin.record_ns, origin.where),
-                       Eigen::Vector3d::Map(message.position.data()),
-                       {}};
-    pose.q_WA.coeffs() = Eigen::Vector4d::Map(message.orientation_xyzw.data());
-    if (std::string problem = problem_of(pose, poses.empty() ? nullptr : &poses.back()); !problem.empty())
-      throw BadInput(origin.where + ": " + problem);
-    poses.push_back(pose);
-  });
-  return poses;
-}
-
-std::vector<ReferencePose> reference_poses(const Bag& bag, const std::string& topic, StampSource source) {
-  const std::string type = bag.topic(topic).type;
-  if (type == kOdometry) return read_poses<ros::Odometry>(bag, topic, source);
-  if (type == kPoseStamped) return read_poses<ros::PoseStamped>(bag, topic, source);
-  throw BadInput(bag.place + ": topic '" + topic + "' is of type " + type + ", must be " + kOdometry + " or " +
-                 kPoseStamped);
+/// What a lidar sent, before its driver made points of it.
+void note_packets(const OpenedBag& bag, std::vector<std::string>& notes) {
+  for (const BagTopic& topic : bag.topics) {
+    const auto has = [&](const char* word) { return topic.type.find(word) != std::string::npos; };
+    if (!has("Packet") && !has("packet") && !has("VelodyneScan") && !has("PandarScan")) continue;
+    notes.push_back(topic.name + ": caution: raw packets (" + topic.type + "), not read: points are made of them by " +
+                    "the lidar's driver");
+  }
 }
 
 /// Sensors that never saw the same moment have no common clock, or nothing in common.
@@ -301,7 +223,7 @@ void require_one_clock(const sim::Sensors& sensors, bool by_headers, const std::
   }
   for (const sim::LidarRecord& lidar : sensors.lidars) {
     if (lidar.sweep_start_ns.empty()) continue;
-    spans.push_back({lidar.name, lidar.sweep_start_ns.front(), lidar.sweep_start_ns.back()});
+    spans.push_back({lidar.name, lidar.sweep_start_ns.front(), lidar.sweep_start_ns.back() + lidar.sweep_period_ns});
   }
   for (const Span& early : spans) {
     for (const Span& late : spans) {
@@ -319,11 +241,11 @@ void require_one_clock(const sim::Sensors& sensors, bool by_headers, const std::
   throw BadInput(std::string(error.what()) + " (" + option + " takes those alone that it names)");
 }
 
-void add_imus(const Bag& bag, const StaticFrames& frames, const BagReading& reading, Imported& out) {
+void add_imus(const OpenedBag& bag, SensorPlaces& places, const BagReading& reading, Imported& out) {
   const std::vector<std::string> topics = bag.chosen(reading.imu_topics, is_imu_type, kImu);
   for (const std::string& topic : topics) {
     try {
-      sim::ImuRecord imu = read_imu(bag, frames, topic, reading, out.notes);
+      sim::ImuRecord imu = read_imu(bag, places, topic, reading, out.notes);
       if (imu.time_ns.empty()) {
         out.notes.push_back(topic + kNoMessage);
         continue;
@@ -334,9 +256,12 @@ void add_imus(const Bag& bag, const StaticFrames& frames, const BagReading& read
       fail_of_several(error, "--imu-topic");
     }
   }
+  if (out.sensors.imus.size() > 1 && reading.imu_topics.empty())
+    out.notes.push_back("'" + out.sensors.imus.front().name +
+                        "' is the primary IMU, as its topic stands first (--imu-topic says another)");
 }
 
-void add_lidars(const Bag& bag, const StaticFrames& frames, const BagReading& reading, Imported& out) {
+void add_lidars(const OpenedBag& bag, SensorPlaces& places, const BagReading& reading, Imported& out) {
   for (const std::string& topic : bag.chosen(reading.lidar_topics, is_cloud_type, kCloud)) {
     const CloudHeaders headers = read_headers(bag, topic, reading);
     if (headers.left_out(reading)) {
@@ -344,18 +269,20 @@ void add_lidars(const Bag& bag, const StaticFrames& frames, const BagReading& re
     } else if (headers.stamps.empty() && reading.lidar_topics.empty()) {
       out.notes.push_back(topic + kNoMessage);
     } else {
-      add_lidar(out, read_lidar(bag, frames, topic, headers, reading, out.notes));
+      add_lidar(out, read_lidar(bag, places, topic, headers, reading, out.notes));
     }
   }
 }
 
 Imported import_bag(BagReader& reader, const std::filesystem::path& path, const BagReading& reading) {
-  const Bag bag{reader, path.string(), reader.topics()};
+  const OpenedBag bag{reader, path.string(), reader.topics()};
   const StaticFrames frames = read_frames(bag);
   Imported out;
   for (const std::string& remark : frames.remarks()) out.notes.push_back(std::string(kStaticTopic) + ": " + remark);
-  add_imus(bag, frames, reading, out);
-  add_lidars(bag, frames, reading, out);
+  SensorPlaces places(frames, bag.place + ": topic " + kStaticTopic);
+  add_imus(bag, places, reading, out);
+  add_lidars(bag, places, reading, out);
+  note_packets(bag, out.notes);
   if (out.sensors.imus.empty() && out.sensors.lidars.empty()) {
     throw BadInput(path.string() + ": holds no topic of type " + kImu + ", " + kCloud +
                    " or CustomMsg with messages among " + std::to_string(bag.topics.size()));
@@ -364,8 +291,7 @@ Imported import_bag(BagReader& reader, const std::filesystem::path& path, const 
   require_one_clock(out.sensors, reading.stamps == StampSource::header, path);
   start_clock(out);
   if (!reading.reference_topic.empty()) {
-    attach_poses(out, reference_poses(bag, reading.reference_topic, reading.stamps), reading.reference_of_body,
-                 path.string() + ": topic " + reading.reference_topic);
+    attach_reference(bag, places, reading, out);
   }
   return out;
 }

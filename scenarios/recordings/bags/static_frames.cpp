@@ -12,12 +12,11 @@ namespace {
 
 constexpr double kFrameFar_m = 1000.0, kFrameNormTolerance = 0.01;
 
-/// ROS 1 wrote "/imu" for what is called "imu" now.
+}  // namespace
+
 std::string without_slash(const std::string& frame) {
   return frame.starts_with('/') ? frame.substr(1) : frame;
 }
-
-}  // namespace
 
 void StaticFrames::add(const ros::TransformStamped& transform, const std::string& where) {
   const std::string parent = without_slash(transform.header.frame_id), child = without_slash(transform.child_frame_id);
@@ -25,23 +24,27 @@ void StaticFrames::add(const ros::TransformStamped& transform, const std::string
   const auto p = Eigen::Vector3d::Map(transform.translation.data());
   Eigen::Quaterniond q;
   q.coeffs() = Eigen::Vector4d::Map(transform.rotation_xyzw.data());
-  if (!(p.cwiseAbs().maxCoeff() <= kFrameFar_m) || !p.allFinite())
-    throw BadInput(what + ": its place must be within 1 km");
-  if (!(std::abs(q.norm() - 1.0) <= kFrameNormTolerance))
-    throw BadInput(what + ": its quaternion has norm " + std::to_string(q.norm()) + ", must be 1");
-  if (parent == child) throw BadInput(what + ": the frame hangs on itself");
-  Eigen::Isometry3d T = Eigen::Isometry3d::Identity();
-  T.linear() = q.normalized().toRotationMatrix();
-  T.translation() = p;
+  Hung hung{parent, Eigen::Isometry3d::Identity(), ""};
+  if (!(p.cwiseAbs().maxCoeff() <= kFrameFar_m) || !p.allFinite()) {
+    hung.problem = what + ": its place must be within 1 km";
+  } else if (!(std::abs(q.norm() - 1.0) <= kFrameNormTolerance)) {
+    hung.problem = what + ": its quaternion has norm " + std::to_string(q.norm()) + ", must be 1";
+  } else if (parent == child) {
+    hung.problem = what + ": the frame hangs on itself";
+  } else {
+    hung.T_parent.linear() = q.normalized().toRotationMatrix();
+    hung.T_parent.translation() = p;
+  }
+  if (!hung.problem.empty()) remarks_.push_back("caution: " + hung.problem + ": not used");
   if (const auto before = frames_.find(child); before != frames_.end() && before->second.parent != parent) {
     remarks_.push_back("caution: '" + child + "' hangs on '" + before->second.parent + "' and, later, on '" + parent +
                        "', must hang on one: the later holds (" + where + ")");
   }
-  frames_.insert_or_assign(child, Hung{parent, T});
+  frames_.insert_or_assign(child, std::move(hung));
 }
 
 void StaticFrames::require_no_ring(const std::string& where) const {
-  for (const auto& [frame, on] : frames_) root_of(frame, where);
+  for (const auto& [frame, on] : frames_) way_up(frame, where);
 }
 
 std::string StaticFrames::body() const {
@@ -52,21 +55,30 @@ std::string StaticFrames::body() const {
   return "";
 }
 
-StaticFrames::Hung StaticFrames::root_of(const std::string& frame, const std::string& where) const {
-  Hung out{frame, Eigen::Isometry3d::Identity()};
+std::vector<StaticFrames::Hung> StaticFrames::way_up(const std::string& frame, const std::string& where) const {
+  std::vector<Hung> out = {{frame, Eigen::Isometry3d::Identity(), ""}};
   for (std::size_t steps = 0; steps <= frames_.size(); ++steps) {
-    const auto found = frames_.find(out.parent);
-    if (found == frames_.end()) return out;
-    out = {found->second.parent, found->second.T_parent * out.T_parent};
+    const auto found = frames_.find(out.back().parent);
+    if (found == frames_.end() || found->second.parent == found->first) return out;
+    const auto& [parent, T_parent, problem] = found->second;
+    const Hung& below = out.back();
+    out.push_back({parent, T_parent * below.T_parent, below.problem.empty() ? problem : below.problem});
   }
   throw BadInput(where + ": '" + frame + "' and the frames that it hangs on hang on each other in a ring");
 }
 
 std::optional<Eigen::Isometry3d> StaticFrames::pose(const std::string& frame_A, const std::string& frame_B,
                                                     const std::string& where) const {
-  const Hung A = root_of(without_slash(frame_A), where), B = root_of(without_slash(frame_B), where);
-  if (A.parent != B.parent) return std::nullopt;
-  return A.T_parent.inverse() * B.T_parent;
+  const std::vector<Hung> A = way_up(without_slash(frame_A), where), B = way_up(without_slash(frame_B), where);
+  for (const Hung& a : A) {
+    const auto b = std::find_if(B.begin(), B.end(), [&](const Hung& each) { return each.parent == a.parent; });
+    if (b == B.end()) continue;
+    for (const std::string& problem : {a.problem, b->problem}) {
+      if (!problem.empty()) throw BadInput(problem);
+    }
+    return a.T_parent.inverse() * b->T_parent;
+  }
+  return std::nullopt;
 }
 
 }  // namespace tumble::scenarios

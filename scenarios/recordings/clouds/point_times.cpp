@@ -115,7 +115,11 @@ double unit_by_size(double span, double largest, double period_ns, const std::st
   std::string line = where + ": the field '" + field + "' spans ";
   append_number(line, span);
   line += " in a sweep";
-  if (!(period_ns > 0.0)) throw BadInput(line + ", which no stamps since the epoch do: give the times of the sweeps");
+  if (!(period_ns > 0.0)) {
+    throw BadInput(line +
+                   ", which no stamps since the epoch do: give the times of the sweeps, or the length of a single " +
+                   "one (--sweep-period)");
+  }
   line += ": in none of s, ms, us, ns is that 2 to 150 % of the sweep period of ";
   append_number(line, period_ns * 1e-6);
   throw BadInput(line + " ms; say its unit");

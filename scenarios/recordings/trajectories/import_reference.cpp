@@ -60,11 +60,16 @@ Imported import_trajectory(const ReferenceSource& source) {
   return out;
 }
 
-void attach_poses(Imported& recording, std::vector<ReferencePose> poses, bool of_body, const std::string& where) {
+const Eigen::Isometry3d& lidar_of_poses(const sim::Sensors& sensors, const std::string& where) {
+  if (sensors.lidars.empty()) throw BadInput(where + ": poses of a lidar, and the recording has none");
+  return sensors.lidars.front().T_BL;
+}
+
+void attach_poses(Imported& recording, std::vector<ReferencePose> poses, const Eigen::Isometry3d& T_BA,
+                  const std::string& where) {
   const sim::Sensors& sensors = recording.sensors;
-  if (sensors.lidars.empty() && !of_body) throw BadInput(where + ": poses of a lidar, and the recording has none");
   for (ReferencePose& pose : poses) pose.time_ns -= recording.info.origin_ns;
-  if (!of_body) move_to(poses, sensors.lidars.front().T_BL.inverse(Eigen::Isometry));
+  move_to(poses, T_BA.inverse(Eigen::Isometry));
   sim::Truth truth = named(where, poses, span_of(sensors).second);
   for (const sim::ImuRecord& imu : sensors.imus) {
     sim::ImuTruth& own = truth.imus.emplace_back();
@@ -82,7 +87,9 @@ void attach_reference(Imported& recording, const ReferenceSource& source) {
   std::vector<std::int64_t> sweeps_ns;
   if (!sensors.lidars.empty()) sweeps_ns = sensors.lidars.front().sweep_start_ns;
   for (std::int64_t& time : sweeps_ns) time += recording.info.origin_ns;
-  attach_poses(recording, poses_of(source, sweeps_ns), source.of_body, source.file.string());
+  const std::string where = source.file.string();
+  const Eigen::Isometry3d T_BA = source.of_body ? Eigen::Isometry3d::Identity() : lidar_of_poses(sensors, where);
+  attach_poses(recording, poses_of(source, sweeps_ns), T_BA, where);
   recording.info.attribution += "; reference from " + source.file.filename().string();
 }
 

@@ -1,0 +1,75 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "scenarios/recordings/bags/bag_reference.hpp"
+
+#include <type_traits>
+#include <utility>
+
+#include "scenarios/recordings/bags/bag_stamps.hpp"
+#include "scenarios/recordings/recording_clock.hpp"
+
+namespace tumble::scenarios {
+
+namespace {
+
+constexpr const char* kOdometry = "nav_msgs/Odometry";
+constexpr const char* kPoseStamped = "geometry_msgs/PoseStamped";
+
+/// Poses, and the frame whose they are by their messages; "" where those do not say.
+struct NamedPoses {
+  std::vector<ReferencePose> poses;
+  std::string frame;
+};
+
+template <class Message>
+NamedPoses read_poses(const OpenedBag& bag, const std::string& topic, StampSource source) {
+  NamedPoses out;
+  std::vector<ReferencePose>& poses = out.poses;
+  BagStamps stamps(source);
+  bag.read<Message>(topic, [&](const Message& message, const MessageOrigin& origin) {
+    ReferencePose pose{stamps.take(stamp_of(message.header), origin.record_ns, origin.where),
+                       Eigen::Vector3d::Map(message.position.data()),
+                       {}};
+    pose.q_WA.coeffs() = Eigen::Vector4d::Map(message.orientation_xyzw.data());
+    if (std::string problem = problem_of(pose, poses.empty() ? nullptr : &poses.back()); !problem.empty())
+      throw BadInput(origin.where + ": " + problem);
+    poses.push_back(pose);
+    if constexpr (std::is_same_v<Message, ros::Odometry>) out.frame = without_slash(message.child_frame_id);
+  });
+  return out;
+}
+
+NamedPoses reference_poses(const OpenedBag& bag, const std::string& topic, StampSource source) {
+  const std::string type = bag.topic(topic).type;
+  if (type == kOdometry) return read_poses<ros::Odometry>(bag, topic, source);
+  if (type == kPoseStamped) return read_poses<ros::PoseStamped>(bag, topic, source);
+  throw BadInput(bag.place + ": topic '" + topic + "' is of type " + type + ", must be " + kOdometry + " or " +
+                 kPoseStamped);
+}
+
+/// Whose poses they are: by the one who imports them, else by the messages, where the bag places the frame that they
+/// name.
+Eigen::Isometry3d pose_of_reference(const std::string& topic, const std::string& frame, const SensorPlaces& places,
+                                    const BagReading& reading, Imported& out) {
+  const Eigen::Isometry3d body = Eigen::Isometry3d::Identity();
+  if (reading.reference_of == ReferenceOf::lidar) return lidar_of_poses(out.sensors, topic);
+  if (reading.reference_of == ReferenceOf::body || frame.empty() || frame == places.body()) return body;
+  const auto T_BA = places.of(frame);
+  const std::string whose = topic + ": poses of '" + frame + "' by their messages";
+  if (T_BA) {
+    out.notes.push_back(whose + ": moved from there to the body ('--reference-frame body' takes them as its own)");
+  } else if (frame != "body" && frame != "base_link") {
+    out.notes.push_back(whose + ", which nothing places on the body: taken to be the body's");
+  }
+  return T_BA.value_or(body);
+}
+
+}  // namespace
+
+void attach_reference(const OpenedBag& bag, const SensorPlaces& places, const BagReading& reading, Imported& out) {
+  const std::string& topic = reading.reference_topic;
+  NamedPoses found = reference_poses(bag, topic, reading.stamps);
+  const Eigen::Isometry3d T_BA = pose_of_reference(topic, found.frame, places, reading, out);
+  attach_poses(out, std::move(found.poses), T_BA, bag.place + ": topic " + topic);
+}
+
+}  // namespace tumble::scenarios

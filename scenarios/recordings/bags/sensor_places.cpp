@@ -1,0 +1,75 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "scenarios/recordings/bags/sensor_places.hpp"
+
+#include <sstream>
+
+namespace tumble::scenarios {
+
+namespace {
+
+std::string pose_text(const Eigen::Isometry3d& T) {
+  std::ostringstream out;
+  const Eigen::Quaterniond q(T.linear());
+  const Eigen::IOFormat row(Eigen::StreamPrecision, Eigen::DontAlignCols, " ", " ");
+  out << "(" << T.translation().transpose().format(row) << ") m, quaternion x y z w ("
+      << q.coeffs().transpose().format(row) << ")";
+  return out.str();
+}
+
+bool is_given(const Eigen::Isometry3d& T_BA) {
+  return !T_BA.isApprox(Eigen::Isometry3d::Identity());
+}
+
+}  // namespace
+
+void SensorPlaces::place(const std::string& topic, const std::string& frame, const char* option,
+                         Eigen::Isometry3d& T_BA, std::vector<std::string>& notes) {
+  const std::string body = frames_.body();
+  const auto stated = body.empty() ? std::nullopt : frames_.pose(body, frame, where_);
+  if (stated) {
+    place_in_body(topic, *stated, T_BA, notes);
+  } else if (!is_given(T_BA)) {
+    if (const Placed* beside = neighbour(frame); beside != nullptr) {
+      T_BA = beside->T_BA * *frames_.pose(beside->frame, frame, where_);
+      notes.push_back(topic + ": placed beside " + beside->topic + " by /tf_static, which has no frame 'body' or " +
+                      "'base_link', at " + pose_text(T_BA));
+    } else {
+      notes.push_back(topic + ": neither /tf_static nor " + option +
+                      " says where it is on the body: taken to lie in its centre of mass, along its axes");
+    }
+  }
+  placed_.push_back({topic, frame, T_BA});
+}
+
+void SensorPlaces::place_in_body(const std::string& topic, const Eigen::Isometry3d& stated, Eigen::Isometry3d& T_BA,
+                                 std::vector<std::string>& notes) const {
+  constexpr double kSame = 1e-3;  // m and, nearly, rad
+  const std::string body = frames_.body();
+  if (!is_given(T_BA)) {
+    T_BA = stated;
+    notes.push_back(topic + ": placed in '" + body + "' by /tf_static, " + pose_text(stated));
+  } else if (!(T_BA.matrix() - stated.matrix()).isZero(kSame)) {
+    notes.push_back(topic + ": caution: /tf_static places it in '" + body + "' at " + pose_text(stated) +
+                    ", but given was " + pose_text(T_BA) + ", which holds");
+  }
+}
+
+const SensorPlaces::Placed* SensorPlaces::neighbour(const std::string& frame) const {
+  for (const Placed& each : placed_) {
+    // drivers give all sensors of a device one frame, which ties nothing
+    if (each.frame != frame && frames_.pose(each.frame, frame, where_)) return &each;
+  }
+  return nullptr;
+}
+
+std::optional<Eigen::Isometry3d> SensorPlaces::of(const std::string& frame) const {
+  for (const Placed& each : placed_) {
+    if (each.frame == frame) return each.T_BA;
+  }
+  if (const std::string body = frames_.body(); !body.empty()) return frames_.pose(body, frame, where_);
+  const Placed* const beside = neighbour(frame);
+  if (beside == nullptr) return std::nullopt;
+  return beside->T_BA * *frames_.pose(beside->frame, frame, where_);
+}
+
+}  // namespace tumble::scenarios
