@@ -76,7 +76,8 @@ int export_as(const Session& session, const ExportOptions& options) {
       scenarios::add_estimates(options.estimates, sensors, writing);
     };
   }
-  scenarios::export_recording(options.recording, format, options.out, choices);
+  for (const std::string& note : scenarios::export_recording(options.recording, format, options.out, choices))
+    session.note(note);
   return said(session, options, "format", format);
 }
 
