@@ -50,6 +50,7 @@ struct BagWriting {
   /// Of each lidar, where its points are set aside; null: they are in the records.
   const std::vector<PointStore>* points = nullptr;
   std::optional<ReaderNames> names = {};  ///< given: the first IMU and the first lidar alone, under these
+  bool empty_sweeps = true;               ///< false: those without a point are left out
 };
 
 /// The stamp of time 0 in a bag, ns since 1970: `origin_ns`, or the default above where that is 0.

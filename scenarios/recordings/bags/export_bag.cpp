@@ -58,6 +58,7 @@ std::vector<Event> events_of(const sim::Sensors& sensors, std::size_t imus, std:
   for (std::size_t s = 0; s < lidars; ++s) {
     const sim::LidarRecord& lidar = sensors.lidars[s];
     for (std::size_t i = 0; i < lidar.sweep_start_ns.size(); ++i) {
+      if (!writing.empty_sweeps && lidar.sweep_first[i] == lidar.sweep_first[i + 1]) continue;
       events.push_back({lidar.sweep_start_ns[i] + lidar.sweep_period_ns, Event::sweep, s, i});
     }
   }
