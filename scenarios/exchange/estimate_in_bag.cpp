@@ -8,7 +8,7 @@
 
 #include "scenarios/errors.hpp"
 #include "scenarios/methods/estimate_file.hpp"
-#include "scenarios/recordings/export_folder.hpp"
+#include "scenarios/recordings/export_names.hpp"
 #include "scenarios/recordings/recording_file.hpp"
 #include "scenarios/scoring/truth_track.hpp"
 
@@ -144,14 +144,12 @@ void require_own(const std::filesystem::path& path, const std::string& own) {
   throw BadInput("was made from another recording (its sensors have the digest " + made_from + ", these " + own + ")");
 }
 
-/// "slam/tumble" as a topic and a frame that nobody has yet.
-std::string free_name(const std::string& method, std::set<std::string>& taken) {
+/// "slam/tumble" as a topic and a frame.
+std::string plain_name(const std::string& method) {
   std::string stem;
   for (const char c : method) stem += std::isalnum(static_cast<unsigned char>(c)) != 0 ? c : '_';
   if (stem.empty() || std::isdigit(static_cast<unsigned char>(stem.front())) != 0) stem.insert(0, "estimate_");
-  std::string name = stem;
-  for (int number = 2; !taken.insert(name).second; ++number) name = stem + "_" + std::to_string(number);
-  return name;
+  return stem;
 }
 
 }  // namespace
@@ -172,9 +170,7 @@ BagTrack in_bag(const std::string& name, const Estimate& estimate, const sim::Se
 }
 
 void add_estimates(std::span<const std::filesystem::path> paths, const sim::Sensors& sensors, BagWriting& writing) {
-  std::set<std::string> taken = {"truth", "body", "world", "tf", "tf_static", "clock"};
-  for (std::size_t s = 0; s < sensors.imus.size(); ++s) taken.insert(file_stem(sensors.imus[s].name, "imu", s));
-  for (std::size_t s = 0; s < sensors.lidars.size(); ++s) taken.insert(file_stem(sensors.lidars[s].name, "lidar", s));
+  std::set<std::string> taken = export_names(sensors).taken;
   const std::string own =
       writing.points != nullptr ? digest(sensors, *writing.points, nullptr) : digest(sensors, nullptr);
   for (const std::filesystem::path& path : paths) {
@@ -188,8 +184,8 @@ void add_estimates(std::span<const std::filesystem::path> paths, const sim::Sens
     try {
       require_own(path, own);
       const bool of_file = !std::filesystem::is_directory(path);
-      writing.tracks.push_back(in_bag(free_name((of_file ? "" : std::string(to_string(kind)) + "_") + method, taken),
-                                      estimate, sensors, writing.points, writing.truth));
+      const std::string name = plain_name((of_file ? "" : std::string(to_string(kind)) + "_") + method);
+      writing.tracks.push_back(in_bag(free_name(name, taken), estimate, sensors, writing.points, writing.truth));
     } catch (const BadInput& error) {
       throw BadInput(path.string() + ": " + error.what());
     }

@@ -3,8 +3,10 @@
 
 #include <array>
 #include <optional>
+#include <utility>
 
 #include "scenarios/errors.hpp"
+#include "scenarios/recordings/export_names.hpp"
 #include "scenarios/recordings/recording_file.hpp"
 #include "sim/parameters.hpp"
 
@@ -14,20 +16,23 @@ namespace {
 
 using std::filesystem::path;
 
+using Notes = std::vector<std::string>;
+
 struct Format {
   const char* name;
-  void (*write)(const path& recording, const path& out, const ExportChoices& choices);
+  Notes (*write)(const path& recording, const path& out, const ExportChoices& choices);
 };
 
-void write_csv(const path& recording, const path& out, const ExportChoices&) {
+Notes write_csv(const path& recording, const path& out, const ExportChoices&) {
   const sim::Sensors sensors = read_sensors(recording);
-  if (!read_info(recording).has_truth) return export_csv(sensors, nullptr, out);
-  const sim::Truth truth = read_truth(recording);
-  export_csv(sensors, &truth, out);
+  std::optional<sim::Truth> truth;
+  if (read_info(recording).has_truth) truth = read_truth(recording);
+  export_csv(sensors, truth ? &*truth : nullptr, out);
+  return export_names(sensors).imus.notes;
 }
 
 template <void (*kExport)(const sim::Sensors&, const BagWriting&, const path&)>
-void write_bag(const path& recording, const path& out, const ExportChoices& choices) {
+Notes write_bag(const path& recording, const path& out, const ExportChoices& choices) {
   const path scratch = scratch_folder_of(out);
   std::optional<StoredTruth> truth;
   if (choices.truth) truth = read_truth(recording, scratch);
@@ -38,19 +43,27 @@ void write_bag(const path& recording, const path& out, const ExportChoices& choi
   writing.points = &points;
   if (choices.more) choices.more(sensors, writing);
   kExport(sensors, writing, out);
+  ExportNames names = export_names(sensors);
+  Notes notes = std::move(names.imus.notes);
+  notes.insert(notes.end(), names.lidars.notes.begin(), names.lidars.notes.end());
+  return notes;
 }
 
-void write_tum(const path& recording, const path& out, const ExportChoices& choices) {
+Notes write_tum(const path& recording, const path& out, const ExportChoices& choices) {
   export_tum(read_truth(recording, scratch_folder_of(out)), out, 0, choices.frame);
+  return {};
 }
 
-void write_kitti(const path& recording, const path& out, const ExportChoices& choices) {
+Notes write_kitti(const path& recording, const path& out, const ExportChoices& choices) {
   export_kitti(read_truth(recording), out, choices.frame);
+  return {};
 }
 
 template <void (*kExport)(const sim::Sensors&, const path&)>
-void write_sensors(const path& recording, const path& out, const ExportChoices&) {
-  kExport(read_sensors(recording), out);
+Notes write_sweeps(const path& recording, const path& out, const ExportChoices&) {
+  const sim::Sensors sensors = read_sensors(recording);
+  kExport(sensors, out);
+  return export_names(sensors).lidars.notes;
 }
 
 /// Sorted by name.
@@ -58,8 +71,8 @@ const std::array<Format, 9> kFormats = {{
     {"csv", write_csv},
     {"kitti", write_kitti},
     {"mcap", write_bag<export_mcap>},
-    {"pcd", write_sensors<export_pcd>},
-    {"ply", write_sensors<export_ply>},
+    {"pcd", write_sweeps<export_pcd>},
+    {"ply", write_sweeps<export_ply>},
     {"rosbag1", write_bag<export_ros1_bag>},
     {"rosbag2", write_bag<export_ros2_bag>},
     {"rosbag2_mcap", write_bag<export_ros2_mcap>},
@@ -83,7 +96,8 @@ std::string format_of_ending(const path& out) {
   return ending == ".mcap" ? "mcap" : ending == ".bag" ? "rosbag1" : ending == ".tum" ? "tum" : "";
 }
 
-void export_recording(const path& recording, const std::string& format, const path& out, const ExportChoices& choices) {
+Notes export_recording(const path& recording, const std::string& format, const path& out,
+                       const ExportChoices& choices) {
   for (const Format& each : kFormats) {
     if (format == each.name) return each.write(recording, out, choices);
   }

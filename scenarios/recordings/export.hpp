@@ -36,9 +36,10 @@ struct ExportChoices {
 /// folder, which is made when absent. Of bags (bag.hpp has their topics) `choices` says what else is in them. Files are
 /// replaced whole. Throws BadInput: unknown format (nearest named), a recording without what the format needs, a place
 /// that cannot be written. A bag is written sweep by sweep, its points and its truth set aside beside it; in memory are
-/// the samples of the IMUs, 32 bytes a message, and the poses that `choices` adds.
-void export_recording(const std::filesystem::path& recording, const std::string& format,
-                      const std::filesystem::path& out, const ExportChoices& choices = {});
+/// the samples of the IMUs, 32 bytes a message, and the poses that `choices` adds. Returns which sensors are written
+/// under another name than theirs (export_names.hpp).
+std::vector<std::string> export_recording(const std::filesystem::path& recording, const std::string& format,
+                                          const std::filesystem::path& out, const ExportChoices& choices = {});
 
 /// T_BA of a frame A as it truly is, calibration errors included: `body`, `centre` (of the sphere's shell), or a sensor
 /// by its name. Throws BadInput for another name, with those that there are.
@@ -59,7 +60,7 @@ void export_kitti(const sim::Truth& truth, const std::filesystem::path& file, co
 /// NAME.csv per IMU in the columns of a sensor_msgs/Imu (stamp s, stamp ns, frame, attitude x y z w, its covariance,
 /// rate, its covariance, specific force, its covariance; covariances in brackets, space separated; rad/s, m/s^2;
 /// attitude is unknown: covariance -1 first, as ROS has it). With a truth also truth.csv: time, T_WB, v_WB_W, w_WB_B,
-/// f_B, label. Throws BadInput for an IMU whose file would be another's or the truth's.
+/// f_B, label. NAME is the sensor's by export_names, here and below.
 void export_csv(const sim::Sensors& sensors, const sim::Truth* truth, const std::filesystem::path& folder);
 
 /// NAME_000000.ply (or .pcd) per sweep, binary, not deskewed, in L: x y z intensity ring, and offset_ns where points

@@ -47,7 +47,9 @@ int export_for_peer(const Session& session, const ExportOptions& options) {
   refuse(!options.frame.empty(), "--frame");
   refuse(!options.estimates.empty(), "--estimate");
   prepare_output(options.out, std::vector<std::filesystem::path>{options.recording});
-  scenarios::export_for(options.recording, options.peer, options.out, options.with_truth);
+  for (const std::string& note :
+       scenarios::export_for(options.recording, options.peer, options.out, options.with_truth))
+    session.note(note);
   session.note("manifest.json there says what lies in it; the peer is started by its 'run'");
   return said(session, options, "for", options.peer);
 }
@@ -76,7 +78,8 @@ int export_as(const Session& session, const ExportOptions& options) {
       scenarios::add_estimates(options.estimates, sensors, writing);
     };
   }
-  scenarios::export_recording(options.recording, format, options.out, choices);
+  for (const std::string& note : scenarios::export_recording(options.recording, format, options.out, choices))
+    session.note(note);
   return said(session, options, "format", format);
 }
 

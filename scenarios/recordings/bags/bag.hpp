@@ -45,11 +45,12 @@ struct BagTrack {
 struct BagWriting {
   std::int64_t origin_ns = 0;  ///< stamp of time 0; 0: 1 000 000 000 s after 1970, since ROS takes 0 for no time
   const StoredTruth* truth = nullptr;  ///< written only when given
-  std::vector<BagTrack> tracks = {};   ///< estimates; names differ from each other, from the sensors' and from "truth"
+  std::vector<BagTrack> tracks = {};   ///< estimates; names differ from each other and from export_names' `taken`
   SweepLayout sweeps = own_sweep_layout();
   /// Of each lidar, where its points are set aside; null: they are in the records.
   const std::vector<PointStore>* points = nullptr;
   std::optional<ReaderNames> names = {};  ///< given: the first IMU and the first lidar alone, under these
+  bool empty_sweeps = true;               ///< false: those without a point are left out
 };
 
 /// The stamp of time 0 in a bag, ns since 1970: `origin_ns`, or the default above where that is 0.
@@ -59,8 +60,8 @@ std::int64_t bag_origin_ns(const BagWriting& writing);
 /// 5) and a SQLite file of CDR messages with their definitions (schema 4, as since Iron), or as an MCAP file of profile
 /// ros2 (mcap.dev/spec: chunks of 1 MiB packed by LZ4, indexed, every checksum there is). In all of them:
 ///
-/// - "/NAME" (sensor_msgs/Imu; without attitude; white noise of the data sheet as covariance), NAME the sensor's; of
-///   several the primary one is the first topic of its type;
+/// - "/NAME" (sensor_msgs/Imu; without attitude; white noise of the data sheet as covariance), NAME the sensor's by
+///   export_names; of several the primary one is the first topic of its type;
 /// - "/NAME/points" (sensor_msgs/PointCloud2, stamped at the sweep's start, with the fields that drivers of Velodyne
 ///   give: x y z intensity ring time, the time float32 seconds after the stamp, to 4 ns within 0.1 s; and offset_ns,
 ///   the same in whole nanoseconds; neither where points have no times; or what `sweeps` says);

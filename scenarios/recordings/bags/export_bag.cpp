@@ -9,7 +9,7 @@
 #include "scenarios/recordings/bags/bag_messages.hpp"
 #include "scenarios/recordings/bags/bag_storage.hpp"
 #include "scenarios/recordings/bags/sweep_messages.hpp"
-#include "scenarios/recordings/export_folder.hpp"
+#include "scenarios/recordings/export_names.hpp"
 
 namespace tumble::scenarios {
 
@@ -58,6 +58,7 @@ std::vector<Event> events_of(const sim::Sensors& sensors, std::size_t imus, std:
   for (std::size_t s = 0; s < lidars; ++s) {
     const sim::LidarRecord& lidar = sensors.lidars[s];
     for (std::size_t i = 0; i < lidar.sweep_start_ns.size(); ++i) {
+      if (!writing.empty_sweeps && lidar.sweep_first[i] == lidar.sweep_first[i + 1]) continue;
       events.push_back({lidar.sweep_start_ns[i] + lidar.sweep_period_ns, Event::sweep, s, i});
     }
   }
@@ -94,20 +95,14 @@ struct SensorNames {
 
 std::vector<SensorNames> names_of_imus(const sim::Sensors& sensors, const std::optional<ReaderNames>& names) {
   std::vector<SensorNames> out;
-  for (const sim::ImuRecord& imu : sensors.imus) {
-    const std::string name = file_stem(imu.name, "imu", out.size());
-    out.push_back({"/" + name, name});
-  }
+  for (const std::string& name : export_names(sensors).imus.names) out.push_back({"/" + name, name});
   if (names && !out.empty()) out = {{names->imu_topic, names->imu_frame}};
   return out;
 }
 
 std::vector<SensorNames> names_of_lidars(const sim::Sensors& sensors, const std::optional<ReaderNames>& names) {
   std::vector<SensorNames> out;
-  for (const sim::LidarRecord& lidar : sensors.lidars) {
-    const std::string name = file_stem(lidar.name, "lidar", out.size());
-    out.push_back({"/" + name + "/points", name});
-  }
+  for (const std::string& name : export_names(sensors).lidars.names) out.push_back({"/" + name + "/points", name});
   if (names && !out.empty()) out = {{names->points_topic, names->lidar_frame}};
   return out;
 }

@@ -4,7 +4,7 @@
 
 #include "scenarios/errors.hpp"
 #include "scenarios/recordings/export.hpp"
-#include "scenarios/recordings/export_folder.hpp"
+#include "scenarios/recordings/export_names.hpp"
 #include "scenarios/recordings/number_text.hpp"
 #include "scenarios/recordings/replace_file.hpp"
 #include "scenarios/recordings/timed_points.hpp"
@@ -50,10 +50,11 @@ void append_points(std::string& out, const sim::LidarRecord& lidar, std::size_t 
 void export_sweeps(const sim::Sensors& sensors, const std::filesystem::path& folder, const char* extension,
                    std::string (*header)(std::size_t, bool)) {
   if (sensors.lidars.empty()) throw BadInput("the recording has no lidar: there is no sweep to export");
+  const std::vector<std::string> stems = export_names(sensors).lidars.names;
   OutputFolder output(folder);
   for (std::size_t k = 0; k < sensors.lidars.size(); ++k) {
     const sim::LidarRecord& lidar = sensors.lidars[k];
-    const std::string stem = file_stem(lidar.name, "lidar", k);
+    const std::string& stem = stems[k];
     std::string times = "# start of each sweep [s]\n";
     for (std::size_t sweep = 0; sweep < lidar.sweep_start_ns.size(); ++sweep) {
       const std::size_t first = lidar.sweep_first[sweep];

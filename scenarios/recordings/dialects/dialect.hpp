@@ -27,6 +27,7 @@ struct Dialect {
   bool needs_imu = true;
   bool needs_times = true;   ///< of points
   bool needs_rings = false;  ///< a lidar that scans in rings: no Livox
+  bool takes_empty = true;   ///< a sweep without a point; else such are left out
   ReaderNames (*names)(const SensorFacts&) = nullptr;
   SweepLayout (*sweeps)(const SensorFacts&) = nullptr;
   /// The peer's own files, with this recording's sensors; the rest as its authors have it.

@@ -111,6 +111,7 @@ std::vector<ConfigurationFile> dlio_configuration(const SensorFacts& facts, cons
 Dialect dlio_dialect() {
   const char* repository = "vectr-ucla/direct_lidar_inertial_odometry";
   Dialect out{"dlio", "rosbag1", "recording.bag"};
+  out.takes_empty = false;
   out.names = dlio_names;
   out.sweeps = ouster_layout;
   out.configuration = dlio_configuration;

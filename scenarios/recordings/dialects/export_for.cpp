@@ -62,6 +62,18 @@ void write_bag(const Dialect& dialect, const sim::Sensors& sensors, const BagWri
   writers.at(dialect.bag_format)(sensors, writing, place);
 }
 
+/// What the bag holds of the lidar: of sweeps without a point, which the peer cannot take, the dialect's notes say how
+/// many are left out. Returns what is to be said of them.
+std::vector<std::string> leave_out_empty_sweeps(Dialect& dialect, LidarFacts& lidar) {
+  const std::size_t empty = lidar.empty_sweeps;
+  if (dialect.takes_empty || empty == 0) return {};
+  lidar.sweeps -= empty;
+  const std::string note = std::to_string(empty) + (empty == 1 ? " sweep" : " sweeps") +
+                           " without a point left out: " + dialect.name + " cannot take an empty cloud";
+  dialect.notes.push_back(note);
+  return {note};
+}
+
 }  // namespace
 
 std::vector<std::string> peer_dialects() {
@@ -70,19 +82,22 @@ std::vector<std::string> peer_dialects() {
   return names;
 }
 
-void export_for(const path& recording, const std::string& peer, const path& folder, bool with_truth) {
-  const Dialect& dialect = dialect_of(peer);
+std::vector<std::string> export_for(const path& recording, const std::string& peer, const path& folder,
+                                    bool with_truth) {
+  Dialect dialect = dialect_of(peer);
   const RecordingInfo info = read_info(recording);
   const path scratch = scratch_folder_of(folder);
   std::vector<PointStore> points;
   const sim::Sensors sensors = read_sensors(recording, scratch, points);
-  const SensorFacts facts = facts_of(sensors, &points);
+  SensorFacts facts = facts_of(sensors, &points);
   require_fitting(dialect, sensors, points, facts);
+  const std::vector<std::string> notes = leave_out_empty_sweeps(dialect, *facts.lidar);
 
   OutputFolder output(folder);
   BagWriting writing;
   writing.origin_ns = info.origin_ns;
   writing.points = &points;
+  writing.empty_sweeps = dialect.takes_empty;
   writing.names = dialect.names(facts);
   writing.sweeps = dialect.sweeps(facts);
   const std::int64_t origin_ns = bag_origin_ns(writing);
@@ -95,6 +110,7 @@ void export_for(const path& recording, const std::string& peer, const path& fold
   }
   replace_file(folder / "manifest.json", manifest_of(dialect, facts, info, origin_ns, configuration, with_truth));
   output.keep();
+  return notes;
 }
 
 }  // namespace tumble::scenarios

@@ -40,6 +40,7 @@ std::vector<ConfigurationFile> glim_configuration(const SensorFacts& facts, cons
 
 Dialect glim_dialect() {
   Dialect out{"glim", "rosbag2", "bag"};
+  out.takes_empty = false;
   out.names = glim_names;
   out.sweeps = ouster_layout;
   out.configuration = glim_configuration;

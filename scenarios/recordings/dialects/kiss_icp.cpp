@@ -30,6 +30,7 @@ Dialect kiss_icp_dialect() {
   // MCAP its fields of points are not found with those of mcap-ros2-support 0.5.7 and 0.6.0.
   Dialect out{"kiss-icp", "rosbag1", "recording.bag"};
   out.needs_imu = out.needs_times = false;
+  out.takes_empty = false;
   out.names = kiss_icp_names;
   out.sweeps = ouster_layout;
   out.configuration = kiss_icp_configuration;

@@ -95,6 +95,7 @@ lio_sam:
 Dialect lio_sam_dialect() {
   Dialect out{"lio-sam", "rosbag1", "recording.bag"};
   out.needs_rings = true;
+  out.takes_empty = false;
   out.names = lio_sam_names;
   out.sweeps = velodyne_layout;
   out.configuration = lio_sam_configuration;

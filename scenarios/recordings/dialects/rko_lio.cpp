@@ -34,6 +34,7 @@ extrinsic_lidar2base_quat_xyzw_xyz: {}
 
 Dialect rko_lio_dialect() {
   Dialect out{"rko-lio", "rosbag2", "bag"};
+  out.takes_empty = false;
   out.names = rko_lio_names;
   out.sweeps = ouster_layout;
   out.configuration = rko_lio_configuration;

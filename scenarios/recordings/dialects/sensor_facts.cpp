@@ -98,7 +98,10 @@ LidarFacts facts_of(const Sweeps& sweeps, const std::string& robot) {
   out.sweeps = lidar.sweep_start_ns.size();
   out.period_s = static_cast<double>(lidar.sweep_period_ns) * 1e-9;
   sweeps.for_each([&](const sim::LidarRecord& sweep) {
-    if (sweep.range_m.empty()) return;
+    if (sweep.range_m.empty()) {
+      ++out.empty_sweeps;
+      return;
+    }
     const auto [nearest, farthest] = std::minmax_element(sweep.range_m.begin(), sweep.range_m.end());
     out.nearest_m = out.points == 0 ? *nearest : std::min<double>(out.nearest_m, *nearest);
     out.farthest_m = out.points == 0 ? *farthest : std::max<double>(out.farthest_m, *farthest);

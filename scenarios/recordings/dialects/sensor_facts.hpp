@@ -25,9 +25,9 @@ struct ImuFacts {
 /// Of the first lidar.
 struct LidarFacts {
   std::string device;
-  bool livox = false;  ///< by the device's name
-  bool timed = false;  ///< points have times of their own
-  std::size_t sweeps = 0, points = 0;
+  bool livox = false;                                    ///< by the device's name
+  bool timed = false;                                    ///< points have times of their own
+  std::size_t sweeps = 0, empty_sweeps = 0, points = 0;  ///< the empty ones are among the sweeps
   double period_s = 0.0;
   int rings = 1;                             ///< one more than the highest
   int columns = 1;                           ///< firings of a ring in a sweep, from the median step between its returns

@@ -1,11 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include <set>
 #include <string>
 #include <vector>
 
-#include "scenarios/errors.hpp"
 #include "scenarios/recordings/export.hpp"
-#include "scenarios/recordings/export_folder.hpp"
+#include "scenarios/recordings/export_names.hpp"
 #include "scenarios/recordings/number_text.hpp"
 #include "scenarios/recordings/replace_file.hpp"
 
@@ -72,24 +70,10 @@ std::string truth_text(const sim::Truth& truth) {
   return text;
 }
 
-/// Of the files of the IMUs: none is written over another, nor over the truth's.
-std::vector<std::string> stems_of(const sim::Sensors& sensors, bool with_truth) {
-  std::vector<std::string> stems;
-  std::set<std::string> taken;
-  if (with_truth) taken.insert("truth");
-  for (std::size_t i = 0; i < sensors.imus.size(); ++i) {
-    stems.push_back(file_stem(sensors.imus[i].name, "imu", i));
-    if (taken.insert(stems.back()).second) continue;
-    throw BadInput("IMU " + std::to_string(i) + ", named '" + sensors.imus[i].name + "', would go into " +
-                   stems.back() + ".csv, which is another IMU's or the truth's: give it another name");
-  }
-  return stems;
-}
-
 }  // namespace
 
 void export_csv(const sim::Sensors& sensors, const sim::Truth* truth, const std::filesystem::path& folder) {
-  const std::vector<std::string> stems = stems_of(sensors, truth != nullptr);
+  const std::vector<std::string> stems = export_names(sensors).imus.names;
   OutputFolder output(folder);
   for (std::size_t i = 0; i < sensors.imus.size(); ++i) {
     const std::string& stem = stems[i];

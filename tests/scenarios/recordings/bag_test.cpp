@@ -139,6 +139,38 @@ TEST_P(Bag, ThePrimaryImuIsTheFirstTopicOfItsType) {
   }
 }
 
+// two of one name came back as one, under the pose of the later
+TEST_P(Bag, SensorsOfOneNameStayApart) {
+  recording_.sensors.imus[1].name = recording_.sensors.imus[0].name = "os";
+  recording_.sensors.lidars[0].name = "os";
+  write();
+  const Imported imported = read();
+  ASSERT_EQ(imported.sensors.imus.size(), 2u);
+  for (std::size_t k = 0; k < 2; ++k) {
+    const sim::ImuRecord &imu = imported.sensors.imus[k], &given = recording_.sensors.imus[k];
+    EXPECT_EQ(imu.name, k == 0 ? "os" : "os_2");
+    EXPECT_EQ(imu.gyro_rad_s, given.gyro_rad_s);
+    EXPECT_TRUE(imu.T_BI.isApprox(given.T_BI, 1e-12));
+  }
+  ASSERT_EQ(imported.sensors.lidars.size(), 1u);
+  EXPECT_EQ(imported.sensors.lidars[0].name, "os_3");
+  EXPECT_TRUE(imported.sensors.lidars[0].T_BL.isApprox(recording_.sensors.lidars[0].T_BL, 1e-12));
+}
+
+TEST_P(Bag, ASensorIsNoFrameOfTheBags) {
+  const StoredTruth truth = fixture::stored_truth(recording_, folder_);
+  for (const char* name : {"body", "world", "map", "odom", "base_link", "truth"}) {
+    recording_.sensors.lidars[0].name = name;
+    std::filesystem::remove_all(path_);
+    GetParam().write(recording_.sensors, {0, &truth}, path_);
+    const Imported imported = read();
+    ASSERT_EQ(imported.sensors.lidars.size(), 1u) << name;
+    EXPECT_EQ(imported.sensors.lidars[0].name, std::string(name) + "_2");
+    EXPECT_TRUE(imported.sensors.lidars[0].T_BL.isApprox(recording_.sensors.lidars[0].T_BL, 1e-12)) << name;
+    EXPECT_TRUE(imported.sensors.imus[0].T_BI.isApprox(recording_.sensors.imus[0].T_BI, 1e-12)) << name;
+  }
+}
+
 INSTANTIATE_TEST_SUITE_P(Kinds, Bag,
                          testing::Values(fixture::kRos1, fixture::kRos2, fixture::kMcap,
                                          fixture::BagKind{"Ros2Mcap", export_ros2_mcap, import_ros2_bag}),

@@ -204,6 +204,29 @@ TEST_P(Dialects, WhatThePeerCannotDoWithoutIsRefused) {
   EXPECT_FALSE(std::filesystem::exists(folder_ / "refused"));
 }
 
+// those that read the last of no points, or refuse none, are not given such a sweep
+TEST_P(Dialects, AnEmptySweepIsThereOnlyForThosePeersThatTakeIt) {
+  const std::string peer = GetParam().peer;
+  const bool takes = peer == "fast-lio" || peer == "point-lio" || peer == "norlab";
+  sim::Recording recording = unordered();
+  sim::LidarRecord& lidar = recording.sensors.lidars[0];
+  for (const std::int64_t last : {1, 2}) {
+    lidar.sweep_start_ns.insert(lidar.sweep_start_ns.begin() + 1, 30000000 * last);
+    lidar.sweep_first.insert(lidar.sweep_first.begin() + 1, lidar.sweep_first[1]);
+  }
+  std::sort(lidar.sweep_start_ns.begin(), lidar.sweep_start_ns.end());
+  write(recording);
+  const std::vector<std::string> notes = export_for(folder_ / "a.h5", peer, out(), false);
+  const auto clouds = messages<ros::PointCloud2>(*open(out() / GetParam().bag), GetParam().points);
+  EXPECT_EQ(clouds.size(), takes ? 5u : 3u);
+  EXPECT_EQ(manifest()["lidar"]["sweeps"], clouds.size());
+  EXPECT_EQ(std::count_if(clouds.begin(), clouds.end(), [](const auto& cloud) { return cloud.width == 0; }),
+            takes ? 2 : 0);
+  const std::string note = "2 sweeps without a point left out: " + peer + " cannot take an empty cloud";
+  EXPECT_THAT(notes, testing::Conditional(takes, testing::IsEmpty(), testing::ElementsAre(note)));
+  EXPECT_EQ(fixture::bytes_of(out() / "manifest.json").find(note) != std::string::npos, !takes);
+}
+
 INSTANTIATE_TEST_SUITE_P(, Dialects, testing::ValuesIn(kWanted), [](const auto& of) {
   std::string name = of.param.peer;
   std::replace(name.begin(), name.end(), '-', '_');

@@ -7,11 +7,13 @@
 #include <algorithm>
 #include <sstream>
 
+#include "scenarios/recordings/export_names.hpp"
 #include "scenarios/recordings/fixture_recording.hpp"
 
 namespace tumble::scenarios {
 namespace {
 
+using testing::ElementsAre;
 using testing::HasSubstr;
 
 std::vector<std::vector<double>> rows_of(const std::filesystem::path& path) {
@@ -107,18 +109,47 @@ TEST_F(Export, CsvHasAFilePerImuAndOneOfTheTruth) {
   EXPECT_FALSE(std::filesystem::exists(folder_ / "real/truth.csv"));
 }
 
-TEST_F(Export, NoFileOfAnImuIsWrittenOverAnother) {
-  const auto complaint = [&](const sim::Truth* truth) {
-    return fixture::complaint([&] { export_csv(recording_.sensors, truth, folder_ / "csv"); });
-  };
+TEST_F(Export, NoFileOfASensorIsWrittenOverAnother) {
   recording_.sensors.imus[0].name = "truth";
-  EXPECT_THAT(complaint(&recording_.truth), HasSubstr("IMU 0, named 'truth', would go into truth.csv"));
-  EXPECT_FALSE(std::filesystem::exists(folder_ / "csv"));
-  EXPECT_EQ(complaint(nullptr), "") << "without a truth the name is free";
-  std::filesystem::remove_all(folder_ / "csv");
-  recording_.sensors.imus[0].name = "imu_1";
-  recording_.sensors.imus[1].name = "no name of a file";
-  EXPECT_THAT(complaint(nullptr), HasSubstr("IMU 1, named 'no name of a file', would go into imu_1.csv"));
+  recording_.sensors.imus[1].name = recording_.truth.imus[1].name = "imu";
+  fixture::Numbers numbers;
+  fixture::add_lidar(numbers, recording_, "lidar", 2, 4);
+  write_recording(folder_ / "a.h5", fixture::info(), recording_.sensors, &recording_.truth);
+  EXPECT_THAT(export_recording(folder_ / "a.h5", "csv", folder_ / "csv"),
+              ElementsAre("'truth' is a topic or frame that is no sensor's: IMU 0 is written as 'truth_2'"));
+  const auto lines = [&](const char* file) {
+    const std::string text = fixture::bytes_of(folder_ / "csv" / file);
+    return std::count(text.begin(), text.end(), '\n');
+  };
+  EXPECT_EQ(lines("truth.csv"), 41);
+  EXPECT_EQ(lines("truth_2.csv"), 71);
+  EXPECT_EQ(lines("imu.csv"), 71);
+  EXPECT_THAT(export_recording(folder_ / "a.h5", "pcd", folder_ / "pcd"),
+              ElementsAre("'lidar' is another sensor's name too: lidar 1 is written as 'lidar_2'"));
+  EXPECT_TRUE(std::filesystem::exists(folder_ / "pcd/lidar_000002.pcd"));
+  EXPECT_TRUE(std::filesystem::exists(folder_ / "pcd/lidar_2_000001.pcd"));
+}
+
+TEST(ExportNames, ASensorGivesWayOnlyToAnother) {
+  const auto named = [](const std::vector<std::string>& imus, const std::vector<std::string>& lidars) {
+    sim::Sensors sensors;
+    for (const std::string& name : imus) sensors.imus.emplace_back().name = name;
+    for (const std::string& name : lidars) sensors.lidars.emplace_back().name = name;
+    return export_names(sensors);
+  };
+  const ExportNames alone = named({"imu", "imu_reference"}, {"lidar"});
+  EXPECT_THAT(alone.imus.names, ElementsAre("imu", "imu_reference"));
+  EXPECT_THAT(alone.lidars.names, ElementsAre("lidar"));
+  EXPECT_TRUE(alone.imus.notes.empty() && alone.lidars.notes.empty());
+  // the third bears its name alone and keeps it
+  EXPECT_THAT(named({"a", "a", "a_2"}, {}).imus.names, ElementsAre("a", "a_3", "a_2"));
+  const ExportNames mixed = named({"os", "no name of a file", "imu_1"}, {"os", "os"});
+  EXPECT_THAT(mixed.imus.names, ElementsAre("os", "imu_1_2", "imu_1"));
+  EXPECT_THAT(mixed.lidars.names, ElementsAre("os_2", "os_3"));
+  EXPECT_THAT(mixed.lidars.notes, ElementsAre("'os' is another sensor's name too: lidar 0 is written as 'os_2'",
+                                              "'os' is another sensor's name too: lidar 1 is written as 'os_3'"));
+  for (const char* name : {"truth", "body", "world", "map", "odom", "base_link", "tf", "tf_static", "clock"})
+    EXPECT_THAT(named({}, {name}).lidars.names, ElementsAre(std::string(name) + "_2"));
 }
 
 TEST_F(Export, ANameCannotLeadOutOfTheFolder) {

@@ -1,0 +1,80 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "scenarios/recordings/export_names.hpp"
+
+#include <algorithm>
+#include <cctype>
+
+namespace tumble::scenarios {
+
+namespace {
+
+/// Of the bags (bag.hpp), and of a CSV's truth.
+const std::set<std::string>& own_names() {
+  static const std::set<std::string> names = {"body", "clock", "tf", "tf_static", "truth", "world"};
+  return names;
+}
+
+/// Frames in which readers, ours among them, look for no sensor.
+const std::set<std::string>& frames_of_no_sensor() {
+  static const std::set<std::string> names = {"base_link", "map", "odom"};
+  return names;
+}
+
+/// What a sensor would be called if it were alone.
+struct Claim {
+  std::string sensor, name;
+  bool own;  ///< the name that the recording has, else a number in the place of one that cannot be written
+  std::string given = {};
+};
+
+template <class Record>
+void add_claims(const std::vector<Record>& records, const std::string& kind, const std::string& word,
+                std::vector<Claim>& claims) {
+  const auto plain = [](unsigned char c) { return std::isalnum(c) != 0 || c == '_' || c == '-'; };
+  for (std::size_t index = 0; index < records.size(); ++index) {
+    const std::string &name = records[index].name, number = std::to_string(index);
+    const bool own = !name.empty() && std::all_of(name.begin(), name.end(), plain);
+    claims.push_back({word + " " + number, own ? name : kind + "_" + number, own});
+  }
+}
+
+std::string why_another(const Claim& claim) {
+  const bool sensors = !own_names().contains(claim.name) && !frames_of_no_sensor().contains(claim.name);
+  return "'" + claim.name + "' is " + (sensors ? "another sensor's name too" : "a topic or frame that is no sensor's") +
+         ": " + claim.sensor + " is written as '" + claim.given + "'";
+}
+
+}  // namespace
+
+ExportNames export_names(const sim::Sensors& sensors) {
+  std::vector<Claim> claims;
+  add_claims(sensors.imus, "imu", "IMU", claims);
+  add_claims(sensors.lidars, "lidar", "lidar", claims);
+  std::set<std::string> taken = own_names();
+  taken.insert(frames_of_no_sensor().begin(), frames_of_no_sensor().end());
+  for (const bool own : {true, false}) {
+    for (Claim& claim : claims)
+      if (claim.own == own && taken.insert(claim.name).second) claim.given = claim.name;
+  }
+  ExportNames out;
+  out.taken = own_names();
+  for (std::size_t index = 0; index < claims.size(); ++index) {
+    Claim& claim = claims[index];
+    GivenNames& of_kind = index < sensors.imus.size() ? out.imus : out.lidars;
+    if (claim.given.empty()) {
+      claim.given = free_name(claim.name, taken);
+      of_kind.notes.push_back(why_another(claim));
+    }
+    of_kind.names.push_back(claim.given);
+    out.taken.insert(claim.given);
+  }
+  return out;
+}
+
+std::string free_name(const std::string& name, std::set<std::string>& taken) {
+  std::string free = name;
+  for (int number = 2; !taken.insert(free).second; ++number) free = name + "_" + std::to_string(number);
+  return free;
+}
+
+}  // namespace tumble::scenarios
