@@ -44,7 +44,7 @@ std::size_t distance(std::string_view a, std::string_view b) {
 }  // namespace
 
 nb::object Keywords::take(const std::string& name) {
-  known_.push_back(name);
+  if (std::find(known_.begin(), known_.end(), name) == known_.end()) known_.push_back(name);
   const nb::str key(name.c_str());
   return given_.contains(key) ? nb::object(given_[key]) : nb::object();
 }

@@ -70,6 +70,8 @@ def test_defaults_are_accepted_and_unknown_names_are_not(name):
         assert caught.value.trouble == "unknown"
         assert caught.value.value == wrong
         assert listed[-1].name in str(caught.value), "names the known ones"
+        told = str(caught.value).rsplit(": ", 1)[1].split(", ")
+        assert len(told) == len(set(told)), "each once"
     with pytest.raises(tumble.TumbleError, match=f"nearest: {listed[0].name}"):
         make(name, **{listed[0].name + "s": 1.0})
 

@@ -5,7 +5,6 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-
 #include <functional>
 
 #include "tests/scenarios/methods/synthetic_recording.hpp"
