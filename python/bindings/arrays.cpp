@@ -17,12 +17,15 @@ namespace {
 template <class Scalar>
 using Given = nb::ndarray<const Scalar, nb::device::cpu>;
 
-nb::object as_array(nb::handle value) {
-  return nb::module_::import_("numpy").attr("asarray")(value);
-}
-
 std::string text(nb::handle value) {
   return nb::str(value).c_str();
+}
+
+/// A masked number is none: numpy hands out what lies below the mask.
+void require_unmasked(nb::handle value, const std::string& field) {
+  if (!nb::hasattr(value, "_mask")) return;
+  if (nb::cast<bool>(nb::module_::import_("numpy.ma").attr("is_masked")(value)))
+    raise_input("type", field, nb::str("masked"), nb::str("numbers without a mask"));
 }
 
 std::string shape_text(const std::vector<std::size_t>& shape) {
@@ -35,9 +38,10 @@ std::string shape_text(const std::vector<std::size_t>& shape) {
 template <class Scalar>
 Given<Scalar> array_of(nb::handle value, const std::string& field, const std::vector<std::size_t>& shape) {
   constexpr bool kFloat = std::is_floating_point_v<Scalar>;
+  require_unmasked(value, field);
   Given<Scalar> out;
   if (!nb::try_cast(value, out, false)) {
-    const nb::object array = as_array(value);
+    const nb::object array = as_array(value, field);
     const std::string kind = text(array.attr("dtype").attr("kind"));
     const bool number = kind == "i" || kind == "u" || (kFloat && kind == "f");
     if (!number || !nb::try_cast(array, out, kFloat)) {
@@ -60,12 +64,13 @@ template <class Scalar>
 std::vector<Scalar> counts_of(nb::handle value, const std::string& field, std::size_t count) {
   std::vector<Scalar> out(count);
   if (value.is_none()) return out;
+  require_unmasked(value, field);
   Given<Scalar> same;
   if (nb::try_cast(value, same, false) && same.ndim() == 1 && same.shape(0) == count) {
     for (std::size_t k = 0; k < count; ++k) out[k] = same.data()[static_cast<std::int64_t>(k) * same.stride(0)];
     return out;
   }
-  const nb::object array = as_array(value);
+  const nb::object array = as_array(value, field);
   const std::string kind = text(array.attr("dtype").attr("kind"));
   if (kind != "i" && kind != "u") raise_input("type", field, array.attr("dtype"), nb::str("whole numbers"));
   const Given<std::int64_t> wide = array_of<std::int64_t>(array.attr("astype")("int64"), field, {count});
@@ -93,7 +98,7 @@ ImuSample one_sample(nb::handle time_ns, nb::handle gyro_rad_s, nb::handle accel
   out.angular_velocity_rad_s = vector_of(gyro_rad_s, "gyro_rad_s");
   out.specific_force_m_s2 = vector_of(accel_m_s2, "accel_m_s2");
   if (!clip_flags.is_none()) {
-    const nb::object listed = nb::module_::import_("numpy").attr("atleast_1d")(clip_flags);
+    const nb::object listed = nb::module_::import_("numpy").attr("atleast_1d")(as_array(clip_flags, "clip_flags"));
     out.device_clip_flags = counts_of<std::uint8_t>(listed, "clip_flags", 1).front();
   }
   return out;
@@ -101,11 +106,34 @@ ImuSample one_sample(nb::handle time_ns, nb::handle gyro_rad_s, nb::handle accel
 
 }  // namespace
 
+nb::object as_array(nb::handle value, const std::string& field) {
+  require_unmasked(value, field);
+  try {
+    return nb::module_::import_("numpy").attr("asarray")(value);
+  } catch (const nb::python_error& error) {  // rows of several lengths, say
+    if (!error.matches(PyExc_ValueError) && !error.matches(PyExc_TypeError)) throw;
+  }
+  raise_input("type", field, value.type(), nb::str("an array of numbers"));
+}
+
+double number_of(nb::handle value, const std::string& field) {
+  if (PyNumber_Check(value.ptr()) != 0) {
+    const nb::object number = nb::steal(PyNumber_Float(value.ptr()));
+    double out = 0.0;
+    if (number.is_valid() && nb::try_cast(number, out)) return out;
+    PyErr_Clear();  // of a complex number, an array, an integer beyond a double
+  }
+  raise_input("type", field, value, nb::str("a number"));
+}
+
 TimeNs time_of(nb::handle value, const char* field) {
   const bool whole_number = PyIndex_Check(value.ptr()) != 0 && !PyBool_Check(value.ptr());
   if (!whole_number) raise_input("type", field, value, nb::str("a whole number of nanoseconds"));
   const nb::object index = nb::steal(PyNumber_Index(value.ptr()));
-  if (!index.is_valid()) throw nb::python_error();
+  if (!index.is_valid()) {  // of an array
+    PyErr_Clear();
+    raise_input("type", field, value, nb::str("a whole number of nanoseconds"));
+  }
   std::int64_t out = 0;
   if (!nb::try_cast(index, out, false)) raise_input("out_of_range", field, index, nb::str("within 64 bits"));
   return out;
@@ -129,7 +157,7 @@ static void require_nanoseconds(const std::vector<ImuSample>& samples) {
 std::vector<ImuSample> samples_of(nb::handle time_ns, nb::handle gyro_rad_s, nb::handle accel_m_s2,
                                   nb::handle clip_flags) {
   if (PyLong_Check(time_ns.ptr())) return {one_sample(time_ns, gyro_rad_s, accel_m_s2, clip_flags)};
-  const nb::object listed = as_array(time_ns);
+  const nb::object listed = as_array(time_ns, "time_ns");
   if (nb::cast<int>(listed.attr("ndim")) == 0) return {one_sample(time_ns, gyro_rad_s, accel_m_s2, clip_flags)};
   const std::size_t count = nb::len(listed);
   const Given<std::int64_t> times = array_of<std::int64_t>(listed, "time_ns", {count});
@@ -149,7 +177,7 @@ std::vector<ImuSample> samples_of(nb::handle time_ns, nb::handle gyro_rad_s, nb:
 
 std::vector<LidarPoint> points_of(nb::handle position_L_m, nb::handle offset_ns, nb::handle ring,
                                   nb::handle intensity) {
-  const nb::object listed = as_array(position_L_m);
+  const nb::object listed = as_array(position_L_m, "position_L_m");
   const std::size_t count =
       nb::hasattr(listed, "__len__") && nb::cast<int>(listed.attr("ndim")) > 0 ? nb::len(listed) : 0;
   const Given<float> positions = array_of<float>(listed, "position_L_m", {count, 3});

@@ -54,6 +54,12 @@ std::vector<LidarPoint> points_of(nb::handle position_L_m, nb::handle offset_ns,
 /// A time in nanoseconds: an integer, of Python or numpy. `type` for anything else.
 TimeNs time_of(nb::handle value, const char* field);
 
+/// What numpy makes an array of; `type` where it makes none, or where a mask is over some of it.
+nb::object as_array(nb::handle value, const std::string& field);
+
+/// One number, of Python or numpy; `type` for anything else, an integer beyond a double among it.
+double number_of(nb::handle value, const std::string& field);
+
 /// A row of `count` numbers.
 std::vector<double> numbers_of(nb::handle value, const std::string& field, std::size_t count);
 Eigen::Vector3d vector_of(nb::handle value, const std::string& field);

@@ -49,7 +49,7 @@ std::tuple<Rates, Attitudes, CarriedSmoother::Report> carried(const Carried& sel
       if (status.ok()) known.mark_near(rates);
     }
   }
-  require(status);
+  require(status, samples);
   return out;
 }
 

@@ -99,10 +99,12 @@ void add_imu(Object& self, const ArrayLike& time_ns, const ArrayLike& gyro, cons
   const std::vector<RateState> each = rates_for(samples, rates);
   Status status;
   std::size_t k = 0;
-  self.run([&](LidarInertialOdometry& mapper) {
-    for (; k < samples.size() && (status = mapper.add_imu(samples[k], each[k])).ok();) ++k;
+  const std::optional<TimeNs> last_ns = self.run_timed([&](LidarInertialOdometry& mapper, LastTimes& last) {
+    for (; k < samples.size() && (status = mapper.add_imu(samples[k], each[k])).ok(); ++k)
+      last.sample_ns = samples[k].time_ns;
+    return last.sample_ns;
   });
-  if (!status.ok()) require(status, k);
+  if (!status.ok()) require(status, k, nb::none(), {samples[k].time_ns, last_ns});
 }
 
 Report add_sweep(Object& self, const WholeNumber& start_ns, const WholeNumber& end_ns, const ArrayLike& position,
@@ -111,8 +113,15 @@ Report add_sweep(Object& self, const WholeNumber& start_ns, const WholeNumber& e
   const std::vector<LidarPoint> points = points_of(position, offset_ns, ring, intensity);
   Report report;
   Status status;
-  self.run([&](LidarInertialOdometry& mapper) { status = mapper.add_sweep(start, end, points, report); });
-  if (report.trajectory.empty()) require(status);  // else the pose is the inertial prior, and the verdict `rejected`
+  LastTimes before;
+  self.run_timed([&](LidarInertialOdometry& mapper, LastTimes& last) {
+    before = last;
+    status = mapper.add_sweep(start, end, points, report);
+    if (status.ok() || !report.trajectory.empty()) last.sweep_end_ns = end;
+  });
+  // with a trajectory the pose is the inertial prior, and the verdict `rejected`
+  if (report.trajectory.empty())
+    require(status, std::nullopt, nb::none(), exact_sweep(status, start, end, before.sweep_end_ns));
   return report;
 }
 

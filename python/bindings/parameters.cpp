@@ -44,7 +44,7 @@ std::size_t distance(std::string_view a, std::string_view b) {
 }  // namespace
 
 nb::object Keywords::take(const std::string& name) {
-  known_.push_back(name);
+  if (std::find(known_.begin(), known_.end(), name) == known_.end()) known_.push_back(name);
   const nb::str key(name.c_str());
   return given_.contains(key) ? nb::object(given_[key]) : nb::object();
 }
@@ -58,11 +58,7 @@ nb::object Keywords::need(const std::string& name) {
 void Keywords::read(const std::string& name, const Field& field, bool whole, double& out) {
   const nb::object given = take(name);
   if (!given.is_valid()) return;
-  double value = 0.0;
-  if (!PyNumber_Check(given.ptr()) || !nb::try_cast(nb::object(nb::steal(PyNumber_Float(given.ptr()))), value)) {
-    PyErr_Clear();
-    raise_input("type", name, given, nb::str("a number"));
-  }
+  const double value = number_of(given, name);
   if (whole && value != std::floor(value)) raise_input("out_of_range", name, given, nb::str("a whole number"));
   require_within_field(name, field, value);
   out = value;

@@ -46,7 +46,7 @@ Found find_rails(const ArrayLike& time_ns, const ArrayLike& gyro, const ArrayLik
     status = check_recording(samples, 2, 3600.0);
     if (status.ok()) found = ClippingFinder(params).find(samples);
   }
-  require(status);
+  require(status, samples);
   return found;
 }
 

@@ -83,7 +83,7 @@ std::pair<Rates, Report> smooth(const Smoother& self, const ArrayLike& time_ns, 
     const nb::gil_scoped_release released;
     status = self.estimate(samples, out.first.rows, out.second);
   }
-  require(status);
+  require(status, samples);
   return out;
 }
 
@@ -96,7 +96,7 @@ Rates saave(const Saave& self, const ArrayLike& time_ns, const ArrayLike& gyro, 
     const nb::gil_scoped_release released;
     status = self.estimate(samples, out.rows);
   }
-  require(status);
+  require(status, samples);
   return out;
 }
 

@@ -18,7 +18,7 @@ namespace {
 RigCalibration rig_from(nb::handle constants, nb::handle covariance) {
   constexpr int kSize = RigConstants::kSize;
   const std::vector<double> vector = numbers_of(constants, "constants", kSize);
-  const nb::object rows = nb::module_::import_("numpy").attr("asarray")(covariance).attr("reshape")(-1);
+  const nb::object rows = as_array(covariance, "covariance").attr("reshape")(-1);
   const std::vector<double> flat = numbers_of(rows, "covariance", static_cast<std::size_t>(kSize) * kSize);
   for (const double each : vector) {
     if (!std::isfinite(each)) raise_input("non_finite", "constants", nb::float_(each), nb::str("finite"));

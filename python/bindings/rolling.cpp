@@ -142,6 +142,8 @@ RollingOdometry::Params door_params(const nb::kwargs& given) {
   RollingOdometry::Params params;
   const nb::object units = keywords.need("units");
   keywords.need("radius_m");
+  if (!nb::isinstance<nb::iterable>(units))
+    raise_input("type", "units", units.type(), nb::str("pairs (ImuSheet, T_BI)"));
   for (const nb::handle unit : units) {
     const nb::object pair = nb::borrow(unit);
     if (!nb::isinstance<nb::tuple>(pair) || nb::len(pair) != 2) {
@@ -228,15 +230,17 @@ void bind_door(nb::module_& m) {
             const std::vector<std::vector<ImuSample>> all = samples_of_units(time_ns, gyro, accel, units);
             Status status;
             std::size_t k = 0;
-            self.run([&](Door& door) {
+            const std::optional<TimeNs> last_ns = self.run_timed([&](Door& door, LastTimes& last) {
               std::vector<ImuSample> now(units);
               for (; k < all.front().size(); ++k) {
                 for (std::size_t unit = 0; unit < units; ++unit) now[unit] = all[unit][k];
                 status = door.odometry.add_imus(now);
                 if (!status.ok()) break;
+                last.sample_ns = now.front().time_ns;
               }
+              return last.sample_ns;
             });
-            if (!status.ok()) require(status, k);
+            if (!status.ok()) require(status, k, nb::none(), {all.front()[k].time_ns, last_ns});
           },
           nb::arg("time_ns"), nb::arg("gyro"), nb::arg("accel"),
           "Takes what all units read at one time, or at N: of one unit arrays, of several lists with one for each "

@@ -35,7 +35,11 @@ void bind_saving(Class& bound, Restored restored) {
           "load",
           [](Object& self, nb::handle state) {
             const std::span<const std::byte> bytes = state_of(state);
-            require(self.run([&](T& inside) { return inside.load(bytes); }));
+            require(self.run_timed([&](T& inside, LastTimes& last) {
+              const Status status = inside.load(bytes);
+              if (status.ok()) last = {};
+              return status;
+            }));
           },
           nb::arg("state"), nb::sig("def load(self, state: bytes) -> None"),
           "Goes on from where save() was called, with the same bits. Bytes that are damaged, of other parameters or of "

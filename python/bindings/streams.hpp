@@ -5,7 +5,9 @@
 
 #include <cstddef>
 #include <memory>
+#include <optional>
 #include <span>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -74,14 +76,22 @@ Out feed(Guarded<Estimator>& to, const std::vector<ImuSample>& samples, Step ste
   Out out;
   Status status;
   std::size_t k = 0;
-  to.run([&](Estimator& estimator) {
+  const std::optional<TimeNs> last_ns = to.run_timed([&](Estimator& estimator, LastTimes& last) {
     for (; k < samples.size(); ++k) {
       status = step(estimator, samples[k], out);
       if (!status.ok()) break;
+      last.sample_ns = samples[k].time_ns;
     }
+    return last.sample_ns;
   });
-  if (!status.ok()) require(status, k, nb::cast(std::move(out)));
+  if (!status.ok()) require(status, k, nb::cast(std::move(out)), {samples[k].time_ns, last_ns});
   return out;
+}
+
+/// The times of a sweep that was refused: against its own start, or against the end of the sweep before.
+inline ExactTimes exact_sweep(const Status& status, TimeNs start_ns, TimeNs end_ns, std::optional<TimeNs> before_ns) {
+  if (std::string_view(status.field) == "end_ns") return {end_ns, start_ns};
+  return {start_ns, before_ns};
 }
 
 /// Of every method that takes samples.

@@ -1,7 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "trouble.hpp"
 
+#include <cmath>
+#include <cstring>
 #include <exception>
+#include <limits>
+#include <string_view>
 #include <utility>
 
 namespace tumble::python {
@@ -26,19 +30,43 @@ void set_invalid(const std::string& message) {
   PyErr_SetObject(type.ptr(), error.ptr());
 }
 
+/// As Python says it; Python does not say integers of thousands of digits.
+std::string said(nb::handle value) {
+  try {
+    return nb::str(value).c_str();
+  } catch (const nb::python_error&) {
+    return std::string("of ") + nb::str(value.type()).c_str();
+  }
+}
+
+/// A whole number: `exact`, unless a double says that it is another one.
+nb::object time_object(double time_ns, std::optional<TimeNs> exact) {
+  if (exact && static_cast<double>(*exact) == time_ns) return nb::int_(*exact);
+  constexpr double kLargest_ns = 9.2e18;
+  if (!(std::abs(time_ns) < kLargest_ns)) return nb::float_(time_ns);
+  return nb::int_(static_cast<TimeNs>(std::llround(time_ns)));
+}
+
 }  // namespace
 
 void raise_input(const char* trouble, const std::string& field, nb::handle value, nb::handle bound) {
-  const std::string text = field + " is " + nb::str(value).c_str() + ", must be " + nb::str(bound).c_str();
+  const std::string text = field + " is " + said(value) + ", must be " + said(bound);
   const nb::object type = error_class();
   const nb::object error = type(text.c_str(), trouble, field.c_str(), value, bound);
   PyErr_SetObject(type.ptr(), error.ptr());
   throw nb::python_error();
 }
 
-void require(const Status& status, std::optional<std::size_t> index, nb::object so_far) {
+void require(const Status& status, std::optional<std::size_t> index, nb::object so_far, const ExactTimes& times) {
   if (status.ok()) return;
   std::string message = status.message();
+  nb::object value = nb::float_(status.value), bound = nb::float_(status.bound);
+  if (std::string_view(status.field).ends_with("_ns")) {
+    value = time_object(status.value, times.value);
+    bound = time_object(status.bound, times.bound);
+    message =
+        std::string(to_string(status.trouble)) + ": " + status.field + " is " + said(value) + ", bound " + said(bound);
+  }
   nb::object at = nb::none();
   if (index) {
     message += " (sample " + std::to_string(*index) + ")";
@@ -46,9 +74,22 @@ void require(const Status& status, std::optional<std::size_t> index, nb::object 
   }
   const nb::object type = error_class();
   const nb::object error =
-      type(message.c_str(), to_string(status.trouble), status.field, status.value, status.bound, at, std::move(so_far));
+      type(message.c_str(), to_string(status.trouble), status.field, value, bound, at, std::move(so_far));
   PyErr_SetObject(type.ptr(), error.ptr());
   throw nb::python_error();
+}
+
+void require(const Status& status, std::span<const ImuSample> samples) {
+  const auto meant = [&status](const Status& found) {
+    return found.trouble == status.trouble && std::strcmp(found.field, status.field) == 0;
+  };
+  for (std::size_t k = 0; !status.ok() && k < samples.size(); ++k) {
+    const double gap_max_s = status.trouble == Trouble::gap ? status.bound : std::numeric_limits<double>::infinity();
+    const bool late = k > 0 && meant(check_follows(samples[k].time_ns, samples[k - 1].time_ns, gap_max_s));
+    if (late) require(status, k, nb::none(), {samples[k].time_ns, samples[k - 1].time_ns});
+    if (meant(check_sample(samples[k]))) require(status, k);
+  }
+  require(status);
 }
 
 nb::object doubt_of(const Status& status) {

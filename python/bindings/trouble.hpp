@@ -5,9 +5,12 @@
 
 #include <cstddef>
 #include <optional>
+#include <span>
 #include <string>
 
+#include "tumble/common/imu.hpp"
 #include "tumble/common/status.hpp"
+#include "tumble/common/time.hpp"
 
 /// How trouble of the library reaches Python: as tumble.TumbleError with trouble, field, value and bound.
 namespace tumble::python {
@@ -18,9 +21,18 @@ namespace nb = nanobind;
 /// `shape`, `unknown` of an argument. `bound`: a number or a text.
 [[noreturn]] void raise_input(const char* trouble, const std::string& field, nb::handle value, nb::handle bound);
 
+/// What a Status has as doubles, which have lost the nanoseconds of stamps since 1970; where it is known.
+struct ExactTimes {
+  std::optional<TimeNs> value, bound;
+};
+
 /// Raises TumbleError with a status' own message, unless it is ok. `index`: of the sample in an array; those before it
-/// were taken in. `so_far`: what came out of these.
-void require(const Status& status, std::optional<std::size_t> index = std::nullopt, nb::object so_far = nb::none());
+/// were taken in. `so_far`: what came out of these. Times are whole numbers: `times`, or what the status has of them.
+void require(const Status& status, std::optional<std::size_t> index = std::nullopt, nb::object so_far = nb::none(),
+             const ExactTimes& times = {});
+
+/// The same of a whole recording, which is refused with all its samples: looks for the one that the status means.
+void require(const Status& status, std::span<const ImuSample> samples);
 
 /// What doubt() of an estimator gives: nothing where all can be believed, else a TumbleError that is not raised.
 nb::object doubt_of(const Status& status);

@@ -83,10 +83,11 @@ void add_tumbling_imu(TumblingDoor& self, const ArrayLike& time_ns, const ArrayL
   const std::vector<ImuSample> samples = samples_of(time_ns, gyro, accel, clip_flags);
   Status status;
   std::size_t k = 0;
-  self.run([&](TumblingOdometry& odometry) {
-    for (; k < samples.size() && (status = odometry.add_imu(samples[k])).ok();) ++k;
+  const std::optional<TimeNs> last_ns = self.run_timed([&](TumblingOdometry& odometry, LastTimes& last) {
+    for (; k < samples.size() && (status = odometry.add_imu(samples[k])).ok(); ++k) last.sample_ns = samples[k].time_ns;
+    return last.sample_ns;
   });
-  if (!status.ok()) require(status, k);
+  if (!status.ok()) require(status, k, nb::none(), {samples[k].time_ns, last_ns});
 }
 
 void add_tumbling_sweep(TumblingDoor& self, const WholeNumber& start_ns, const WholeNumber& end_ns,
@@ -94,7 +95,14 @@ void add_tumbling_sweep(TumblingDoor& self, const WholeNumber& start_ns, const W
                         const ArrayLike& intensity) {
   const TimeNs start = time_of(start_ns, "start_ns"), end = time_of(end_ns, "end_ns");
   const std::vector<LidarPoint> points = points_of(position, offset_ns, ring, intensity);
-  require(self.run([&](TumblingOdometry& odometry) { return odometry.add_sweep(start, end, points); }));
+  LastTimes before;
+  const Status status = self.run_timed([&](TumblingOdometry& odometry, LastTimes& last) {
+    before = last;
+    const Status added = odometry.add_sweep(start, end, points);
+    if (added.ok()) last.sweep_end_ns = end;
+    return added;
+  });
+  require(status, std::nullopt, nb::none(), exact_sweep(status, start, end, before.sweep_end_ns));
 }
 
 Rates rates_of(const std::optional<RateState>& rate) {

@@ -43,7 +43,7 @@ def test_refuses_nan(take, spin, column, field):
     samples[column][7, 1] = np.nan
     with pytest.raises(tumble.TumbleError) as caught:
         take(*samples)
-    assert caught.value.trouble == "non_finite"
+    assert (caught.value.trouble, caught.value.index) == ("non_finite", 7)
     assert field in caught.value.field
     assert isinstance(caught.value, ValueError)
 
@@ -55,7 +55,55 @@ def test_refuses_time_that_goes_back(take, spin):
     with pytest.raises(tumble.TumbleError) as caught:
         take(times, *spin[1:3])
     assert caught.value.trouble == "time_order"
-    assert (caught.value.value, caught.value.bound) == (float(times[20]), float(times[19]))
+    assert (caught.value.value, caught.value.bound, caught.value.index) == (times[20], times[19], 20)
+
+
+@pytest.mark.parametrize("take", TAKERS.values(), ids=TAKERS.keys())
+def test_times_since_1970_are_told_to_the_nanosecond(take, spin):
+    """A double would say that 1753351234567890005 is not after itself."""
+    times = spin[0] + 1_753_351_234_567_890_123
+    times[20] = times[19] - 5
+    with pytest.raises(tumble.TumbleError) as caught:
+        take(times, *spin[1:3])
+    said = caught.value
+    assert (type(said.value), said.value, type(said.bound), said.bound) == (int, times[20], int, times[19])
+    assert f"time_ns is {times[20]}, bound {times[19]}" in str(said)
+
+
+def test_times_of_another_call_are_told_to_the_nanosecond(spin):
+    """The bound is a sample that was given before, also to the original of a copy; after load() a double's worth of it is known."""
+    times = spin[0] + 1_753_351_234_567_890_123
+    for make in STREAMS.values():
+        stream = make()
+        stream.add_imu(times[:50], spin[1][:50], spin[2][:50])
+        for other in (stream, copy.copy(stream)):
+            with pytest.raises(tumble.TumbleError) as caught:
+                other.add_imu(times[49:], spin[1][49:], spin[2][49:])
+            assert (caught.value.value, caught.value.bound, caught.value.index) == (times[49], times[49], 0)
+        if hasattr(stream, "save"):
+            again = pickle.loads(pickle.dumps(stream))
+            with pytest.raises(tumble.TumbleError) as caught:
+                again.add_imu(times[48:], spin[1][48:], spin[2][48:])
+            assert caught.value.value == times[48] and abs(caught.value.bound - times[49]) <= 256
+
+
+@pytest.mark.parametrize("take", TAKERS.values(), ids=TAKERS.keys())
+@pytest.mark.parametrize("column", [0, 1, 2])
+def test_refuses_what_is_masked(take, spin, column):
+    samples = [np.ma.masked_array(rows) if k == column else rows for k, rows in enumerate(spin[:3])]
+    take(*samples)  # nothing is masked yet
+    samples[column][5] = np.ma.masked
+    with pytest.raises(tumble.TumbleError) as caught:
+        take(*samples)
+    assert (caught.value.trouble, caught.value.value) == ("type", "masked")
+
+
+@pytest.mark.parametrize("rows", [[[0.0], [0.0, 1.0]], [object()] * 3, "abc"])
+def test_refuses_what_is_no_array(spin, rows):
+    for samples in ((spin[0], rows, spin[2]), (rows, *spin[1:3])):
+        with pytest.raises(tumble.TumbleError) as caught:
+            tumble.Vqf().add_imu(*samples)
+        assert caught.value.trouble == "type"
 
 
 @pytest.mark.parametrize("take", TAKERS.values(), ids=TAKERS.keys())
@@ -278,6 +326,7 @@ def test_sweeps(hill):
     odometry.add_imu(*(rows[:40] for rows in imu.samples))
     for arguments, trouble, field in [
             ((sweep.end_ns, sweep.start_ns, *points), "time_order", "end_ns"),
+            ((np.array([1, 2]), sweep.end_ns, *points), "type", "start_ns"),
             ((float(sweep.start_ns), sweep.end_ns, *points), "type", "start_ns"),
             ((sweep.start_ns, sweep.end_ns, points[0][:, :2], points[1]), "shape", "position_L_m"),
             ((sweep.start_ns, sweep.end_ns, points[0], points[1][:-1]), "shape", "offset_ns"),

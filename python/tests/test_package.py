@@ -26,6 +26,20 @@ def test_names_are_there_and_explained():
                     assert inspect.getdoc(value), f"{name}.{member}"
 
 
+def test_arrays_of_records_are_explained():
+    """What shape, which unit: behind each member that is an array, or in the record's own words."""
+    seen = 0
+    for module in ("recordings", "estimates", "truth"):
+        text = (TYPES.parent / f"{module}.py").read_text(encoding="utf-8")
+        for record in (node for node in ast.parse(text).body if isinstance(node, ast.ClassDef) and not node.name.startswith("_")):
+            for member in (node for node in record.body if isinstance(node, ast.AnnAssign)):
+                if any(word in ast.unparse(member.annotation) for word in ("Array", "Trajectory", "RateTable", "Truth")):
+                    seen += 1
+                    told = ast.unparse(member.target) in (ast.get_docstring(record) or "") or "#: " in text.splitlines()[member.lineno - 1]
+                    assert told, f"{module}.{record.name}: {ast.unparse(member)}"
+    assert seen > 50
+
+
 def test_stubs_have_what_the_module_has():
     tree = ast.parse(TYPES.read_text(encoding="utf-8"))
     known = {node.name: node for node in tree.body if isinstance(node, (ast.ClassDef, ast.FunctionDef))}

@@ -70,6 +70,8 @@ def test_defaults_are_accepted_and_unknown_names_are_not(name):
         assert caught.value.trouble == "unknown"
         assert caught.value.value == wrong
         assert listed[-1].name in str(caught.value), "names the known ones"
+        told = str(caught.value).rsplit(": ", 1)[1].split(", ")
+        assert len(told) == len(set(told)), "each once"
     with pytest.raises(tumble.TumbleError, match=f"nearest: {listed[0].name}"):
         make(name, **{listed[0].name + "s": 1.0})
 
@@ -113,3 +115,16 @@ def test_refuses_another_sheet(key):
     with pytest.raises(tumble.TumbleError) as caught:
         make("TumblingOdometry", **{key: 5})
     assert (caught.value.trouble, caught.value.field) == ("type", key)
+
+
+@pytest.mark.parametrize("value", [10**400, 10**5000, 1j, np.array([8.0, 9.0]), np.array([]), "8", None.__class__, [8.0]],
+                         ids=["beyond_a_double", "beyond_a_text", "complex", "two", "none_at_all", "text", "class", "list"])
+@pytest.mark.parametrize("make", [
+    lambda v: tumble.ImuSheet(gyro_range_rad_s=v), lambda v: tumble.RegimeStream(lever_arm_m=(0, 0, 0), gyro_range_rad_s=v),
+    lambda v: tumble.RollingFilter(radius_m=v)])
+def test_what_is_no_number_is_refused(make, value):
+    """Python has no float of these, which was once a null pointer."""
+    with pytest.raises(tumble.TumbleError) as caught:
+        make(value)
+    assert (caught.value.trouble, caught.value.bound) == ("type", "a number")
+    assert caught.value.field in ("gyro_range_rad_s", "radius_m")

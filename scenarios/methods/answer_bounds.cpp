@@ -4,9 +4,12 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
+#include <string_view>
 #include <system_error>
+#include <utility>
 
 #include "scenarios/errors.hpp"
 
@@ -23,6 +26,24 @@ constexpr double kPositionMax_m = 1e7;
 constexpr double kRateMax_rad_s = 1e6;
 constexpr double kAnswerNormTolerance = 1e-2;
 constexpr double kCorrelationTolerance = 1e-3;  // covariances that were written with few digits
+
+constexpr std::size_t kStampsToJudge = 10;  // fewer may lie within a moment of it
+constexpr double kUnitsApart = 100.0;       // what spans a hundredth is in another unit, or no answer
+
+/// ", and looks like UNIT", by how many times too long a span is that should be in `unit`; empty where it is like none.
+std::string unit_like(std::string_view unit, double times) {
+  constexpr std::array<std::pair<const char*, double>, 4> kUnits = {
+      {{"nanoseconds", 1e-9}, {"microseconds", 1e-6}, {"milliseconds", 1e-3}, {"seconds", 1.0}}};
+  double asked_s = 1.0;
+  for (const auto& [name, length_s] : kUnits)
+    if (unit == name) asked_s = length_s;
+  constexpr double kFactor = 5.0;  // part of the recording alone may be answered
+  for (const auto& [name, length_s] : kUnits) {
+    const double share = times * length_s / asked_s;  // of the recording, were it in these
+    if (unit != name && share > 1.0 / kFactor && share < kFactor) return fmt::format(" and looks like {}", name);
+  }
+  return "";
+}
 
 template <typename Vector>
 std::string text_of(const Vector& v) {
@@ -72,6 +93,7 @@ AnswerBounds::AnswerBounds(const sim::Sensors& sensors) : rows_(kBase), points_(
     span(lidar.sweep_start_ns, lidar.sweep_period_ns);
     points_ += kPerReading * lidar.position_L_m.size();
   }
+  if (first_ns < last_ns_) length_s_ = 1e-9 * static_cast<double>(last_ns_ - first_ns);
   first_ns_ = std::min<std::int64_t>(first_ns, 0);  // a recording starts at 0, its first sample may be later
 }
 
@@ -100,6 +122,32 @@ void AnswerBounds::require_time(std::int64_t time_ns, const std::string& where) 
   const auto seconds = [](std::int64_t ns) { return static_cast<double>(ns) * 1e-9; };
   throw BadInput(fmt::format("{}: stamp {:.9g} s, must be within {:.9g} to {:.9g} s: the recording and 10 s", where,
                              seconds(time_ns), seconds(first_ns_ - kMargin_ns), seconds(last_ns_ + kMargin_ns)));
+}
+
+void AnswerBounds::require_unit(std::span<const double> stamps_s, const char* unit, const Place& place) const {
+  if (stamps_s.size() < kStampsToJudge || !(length_s_ > 0.0)) return;
+  const auto [least, most] = std::ranges::minmax(stamps_s);
+  const double times = (most - least) / length_s_;
+  const auto outside = std::ranges::find_if(stamps_s, [this](double stamp_s) {
+    return stamp_s < 1e-9 * static_cast<double>(first_ns_ - kMargin_ns) ||
+           stamp_s > 1e-9 * static_cast<double>(last_ns_ + kMargin_ns);
+  });
+  const bool far = outside != stamps_s.end() && times > kUnitsApart, near = times < 1.0 / kUnitsApart;
+  if (!far && !near) return;
+  const std::string like = unit_like(unit, times);
+  if (far && like.empty()) return;  // single stamps that are wrong, say
+  const std::size_t row = far ? static_cast<std::size_t>(outside - stamps_s.begin()) : stamps_s.size() - 1;
+  throw BadInput(
+      fmt::format("{}: stamp {:.9g} s, and {} stamps span {:.3g} s of a recording of {:.3g} s, must be in "
+                  "{}{}",
+                  place(row), stamps_s[row], stamps_s.size(), most - least, length_s_, unit, like));
+}
+
+void AnswerBounds::require_unit(const Estimate& estimate, const char* unit, const Place& place) const {
+  std::vector<double> stamps_s;
+  for (const PoseState& pose : estimate.poses) stamps_s.push_back(1e-9 * static_cast<double>(pose.time_ns));
+  for (const AttitudeState& each : estimate.attitudes) stamps_s.push_back(1e-9 * static_cast<double>(each.time_ns));
+  require_unit(stamps_s, unit, place);
 }
 
 void AnswerBounds::require_pose(const PoseState& pose, const std::string& where) const {

@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <functional>
+#include <span>
 #include <string>
 
 #include "scenarios/methods/method.hpp"
@@ -34,6 +35,10 @@ class AnswerBounds {
   void require_rates(const std::vector<RateState>& rates, const Place& place) const;
   void require_poses(const std::vector<PoseState>& poses, const Place& place) const;
   void require_attitudes(const std::vector<AttitudeState>& attitudes, const Place& place) const;
+  /// Throws BadInput where ten stamps and more have a span that is as much too long as another unit makes it and lie
+  /// outside of the recording, or a hundredth of it and less. `unit`: what they were to be counted in.
+  void require_unit(std::span<const double> stamps_s, const char* unit, const Place& place) const;
+  void require_unit(const Estimate& estimate, const char* unit, const Place& place) const;
   /// Poses of each sweep and each of its trajectory, and the points of the map, as the poses above.
   void require_slam(const Estimate& estimate) const;
 
@@ -43,6 +48,7 @@ class AnswerBounds {
 
   std::uintmax_t rows_ = 0, points_ = 0;
   std::int64_t first_ns_ = 0, last_ns_ = 0;
+  double length_s_ = 0.0;  ///< of the readings
 };
 
 }  // namespace tumble::scenarios

@@ -8,8 +8,6 @@
 #include <system_error>
 
 #include "scenarios/draw/strict_yaml.hpp"
-#include "scenarios/errors.hpp"
-#include "scenarios/methods/external_method.hpp"
 
 namespace tumble::scenarios {
 
@@ -19,6 +17,15 @@ constexpr double kVersionLimit_s = 30.0;
 constexpr std::size_t kFirstLineMax = 120;
 
 }  // namespace
+
+std::string less_folder(std::string text, const std::filesystem::path& folder) {
+  const std::string whole = folder.string();
+  for (std::size_t at = 0; !whole.empty() && (at = text.find(whole, at)) != std::string::npos;) {
+    const bool within = at + whole.size() < text.size() && text[at + whole.size()] == '/';
+    text.replace(at, whole.size() + (within ? 1 : 0), within ? "" : ".");
+  }
+  return text;
+}
 
 std::string with_last_words(const std::string& what, const CommandEnd& end) {
   return what + (end.last_words.empty() ? "" : "; it said: " + end.last_words);

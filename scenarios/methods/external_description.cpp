@@ -14,6 +14,7 @@
 
 #include "scenarios/draw/strict_yaml.hpp"
 #include "scenarios/errors.hpp"
+#include "sim/situation.hpp"
 
 namespace tumble::scenarios {
 
@@ -45,6 +46,16 @@ ExternalDescription::Output output_named(const YamlNode& node) {
   for (std::size_t k = 0; k < known.size(); ++k)
     if (name == known[k]) return static_cast<ExternalDescription::Output>(k);
   node.fail("unknown output '" + name + "'" + suggestion(name, known));
+}
+
+/// A robot that there is: a method of another one would run on nothing, without a word.
+std::string robot_named(const YamlNode& node) {
+  const std::string name = node.identifier();
+  std::vector<std::string> known;
+  for (const sim::ComponentType& type : sim::robot_types()) known.push_back(type.name);
+  if (std::find(known.begin(), known.end(), name) == known.end())
+    node.fail("unknown robot '" + name + "'" + suggestion(name, known));
+  return name;
 }
 
 /// The words of a command, their placeholders known.
@@ -143,16 +154,25 @@ void read_python(const std::map<std::string, YamlNode>& fields, ExternalDescript
     for (const YamlNode& item : fields.at("interpreter").items()) out.interpreter.push_back(item.text());
 }
 
-/// The one kind after which a function of the text is named.
-Kind kind_of_function(const std::string& text, const std::string& file) {
-  static const std::regex pattern(R"((^|\n)def[ \t]{1,8}(rate|attitude|position|slam)[ \t]{0,8}\()");
+/// The kinds whose names the pattern's second group finds in the text.
+std::vector<Kind> kinds_found(const std::string& text, const std::regex& pattern) {
   std::vector<Kind> found;
   for (std::sregex_iterator it(text.begin(), text.end(), pattern), end; it != end; ++it)
     for (int k = 0; k <= static_cast<int>(Kind::slam); ++k)
       if ((*it)[2] == to_string(static_cast<Kind>(k))) found.push_back(static_cast<Kind>(k));
+  return found;
+}
+
+/// The one kind after which a function of the text is named, or where there is none what is assigned.
+Kind kind_of_function(const std::string& text, const std::string& file) {
+  static const std::regex defined(R"((^|\n)def[ \t]{1,8}(rate|attitude|position|slam)[ \t]{0,8}\()");
+  static const std::regex assigned(R"((^|\n)(rate|attitude|position|slam)[ \t]{0,8}=(?!=))");
+  std::vector<Kind> found = kinds_found(text, defined);
+  if (found.empty()) found = kinds_found(text, assigned);
   if (found.size() != 1)
     throw BadInput(file + ": defines " + std::to_string(found.size()) +
-                   " functions named rate, attitude, position or slam, must be one (a NAME.yaml can name another)");
+                   " functions named rate, attitude, position or slam, must be one (a NAME.yaml can name another, and "
+                   "whatever else can be called)");
   return found.front();
 }
 
@@ -185,8 +205,10 @@ std::vector<std::string> placeholders_in(const std::string& word) {
   for (std::sregex_iterator it(word.begin(), word.end(), placeholder()), end; it != end; ++it) {
     const std::string name = (*it)[1];
     if (std::find(known.begin(), known.end(), name) == known.end())
-      throw BadInput("unknown placeholder '{" + name + "}'" + suggestion(name, known) + " (there are " +
-                     fmt::format("{}", fmt::join(known, " ")) + ")");
+      throw BadInput("unknown placeholder '{" + name + "}'" +
+                     (sim::nearest_name(name, known).empty()
+                          ? suggestion(name, known)  // which lists them
+                          : suggestion(name, known) + " (there are " + fmt::format("{}", fmt::join(known, " ")) + ")"));
     out.push_back(name);
   }
   return out;
@@ -230,7 +252,7 @@ ExternalDescription read_external(const std::filesystem::path& file) {
   out.source = given("source") ? fields.at("source").text() : file.filename().string();
   if (given("frame")) out.frame = named(fields.at("frame"), Frame::centre);
   if (given("robots"))
-    for (const YamlNode& robot : fields.at("robots").items()) out.robots.push_back(robot.identifier());
+    for (const YamlNode& robot : fields.at("robots").items()) out.robots.push_back(robot_named(robot));
   if (given("environment"))
     for (const auto& [name, value] : fields.at("environment").entries()) out.environment[name] = value.any_text();
   if (given("time_limit_s")) out.time_limit_s = limit(fields.at("time_limit_s"), kTimeMax_s);

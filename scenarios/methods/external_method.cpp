@@ -102,14 +102,16 @@ CommandEnd provide_and_run(const ExternalDescription& description, const sim::Se
 Estimate run_its_command(const ExternalDescription& description, const sim::Sensors& sensors, std::string& transcript) {
   const ScratchFolder scratch("method");
   const std::map<std::string, std::string> values = places(description, scratch.path());
-  const CommandEnd end = provide_and_run(description, sensors, values, scratch.path());
-  transcript = end.transcript;
-  require_done(end);
-  try {
-    return read_external_result(description, values.at("output"), values.at("map"), sensors);
-  } catch (const BadInput& error) {
-    throw BadInput(with_last_words(error.what(), end));
-  }
+  return without_folder(scratch.path(), [&] {
+    const CommandEnd end = provide_and_run(description, sensors, values, scratch.path());
+    transcript = end.transcript;
+    require_done(end);
+    try {
+      return read_external_result(description, values.at("output"), values.at("map"), sensors);
+    } catch (const BadInput& error) {
+      throw BadInput(with_last_words(error.what(), end));
+    }
+  });
 }
 
 Estimate run(const ExternalDescription& description, const sim::Sensors& sensors) {

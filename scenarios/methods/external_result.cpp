@@ -3,6 +3,8 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
+#include <cstdlib>
 #include <fstream>
 #include <sstream>
 #include <string_view>
@@ -67,6 +69,24 @@ std::vector<RateState> read_rates(const std::filesystem::path& file, const sim::
   return rates;
 }
 
+/// First numbers of the lines of a TUM file, as they stand; those that are none, which its reader complains of, end it.
+std::vector<double> stamps_of(const std::filesystem::path& file) {
+  std::vector<double> stamps_s;
+  std::ifstream stream(file);
+  for (std::string line; std::getline(stream, line);) {
+    if (line.empty() || line.front() == '#' || line == "\r") continue;
+    char* end = nullptr;
+    const double stamp_s = std::strtod(line.c_str(), &end);
+    if (end == line.c_str() || !std::isfinite(stamp_s)) break;
+    stamps_s.push_back(stamp_s);
+  }
+  constexpr double kOrigin_s = 1e-9 * static_cast<double>(kExternalBagOrigin_ns);
+  // in its own unit the first stamp of a bag may be any; as seconds it is this
+  if (!stamps_s.empty() && stamps_s.front() > kOrigin_s / 2 && stamps_s.back() < kOrigin_s * 2)
+    for (double& stamp_s : stamps_s) stamp_s -= kOrigin_s;
+  return stamps_s;
+}
+
 /// A TUM file of poses in the frame stated.
 Estimate read_poses(const ExternalDescription& description, const std::filesystem::path& file) {
   if (!std::filesystem::is_regular_file(file))
@@ -120,6 +140,8 @@ AnswerBounds::Place rows_of(const std::filesystem::path& file, bool headed) {
 void require_sense(const AnswerBounds& bounds, const Estimate& estimate, ExternalDescription::Output output,
                    const std::filesystem::path& path) {
   const bool folder = output == ExternalDescription::Output::estimate;
+  const char* const poses = estimate.attitudes.empty() ? "trajectory.tum" : "attitude.tum";
+  bounds.require_unit(estimate, "seconds", rows_of(folder ? path / poses : path, false));
   bounds.require_rates(estimate.rates, rows_of(folder ? path / "rates.csv" : path, true));
   bounds.require_attitudes(estimate.attitudes, rows_of(folder ? path / "attitude.tum" : path, false));
   bounds.require_poses(estimate.poses, rows_of(folder ? path / "trajectory.tum" : path, false));
@@ -160,6 +182,8 @@ Estimate read_external_result(const ExternalDescription& description, const std:
       estimate.rates = read_rates(output, sensors);
       break;
     case ExternalDescription::Output::tum:
+      // before it is read: as seconds such stamps soon are beyond what a time can be, and that is no help
+      bounds.require_unit(stamps_of(output), "seconds", rows_of(output, false));
       estimate = read_poses(description, output);
       break;
     case ExternalDescription::Output::estimate:

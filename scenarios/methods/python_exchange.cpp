@@ -252,7 +252,9 @@ Estimate read_answer(const SharedMemory& memory, Kind kind, Frame frame, const s
     return estimate;
   }
   estimate.poses = read_poses(answer);
-  bounds.require_poses(estimate.poses, [](std::size_t k) { return "pose " + std::to_string(k) + " of the answer"; });
+  const AnswerBounds::Place place = [](std::size_t k) { return "pose " + std::to_string(k) + " of the answer"; };
+  bounds.require_unit(estimate, "nanoseconds", place);
+  bounds.require_poses(estimate.poses, place);
   if (kind == Kind::attitude) {
     for (const PoseState& pose : std::exchange(estimate.poses, {}))
       estimate.attitudes.push_back({pose.time_ns, pose.q_WA, Eigen::Matrix3d::Zero()});

@@ -55,10 +55,12 @@ Estimate call_python(const ExternalDescription& description, const sim::Sensors&
                   {"-c", kPythonRunner, description.python.string(), description.function, to_string(description.kind),
                    std::to_string(given.descriptor()), std::to_string(answer.descriptor())});
   command.descriptors = {given.descriptor(), answer.descriptor()};
-  const CommandEnd end = run_command(command);
-  transcript = end.transcript;
-  require_done(end);
-  return read_answer(answer, description.kind, description.frame, sensors);
+  return without_folder(scratch.path(), [&] {
+    const CommandEnd end = run_command(command);
+    transcript = end.transcript;
+    require_done(end);
+    return read_answer(answer, description.kind, description.frame, sensors);
+  });
 }
 
 std::string python_version(const ExternalDescription& description) {

@@ -8,6 +8,7 @@ numpy alone.
 import importlib.util
 import json
 import mmap
+import numbers as kinds
 import os
 import struct
 import sys
@@ -20,6 +21,7 @@ ALIGNMENT = 64
 TOLD_MAX = 1500  # characters of a traceback, the last ones
 UNIT_TOLERANCE = 1e-2  # as of a TUM file
 ROUNDING_NS = 1000  # a point so much after its sweep's end belongs to the end
+SYMMETRY_TOLERANCE = 1e-3  # of a covariance, in correlations: one of single precision
 
 
 class Refused(Exception):
@@ -72,12 +74,25 @@ def read_sensors(descriptor):
     return types.SimpleNamespace(**told)
 
 
+def unmasked(name, given):
+    """As an array; what lies below a mask is nobody's answer."""
+    if any(np.ma.is_masked(each) for each in (given, *(given if isinstance(given, (list, tuple)) else ()))):
+        raise Refused(f"{name} is masked in places, must be numbers everywhere")
+    return np.asarray(given)
+
+
 def numbers(name, given, *shape):
-    """As float64 of that shape, all finite. A size of None may be any."""
+    """As float64 of that shape, all finite. A size of None may be any. Refuses what float64 would lose a part of, as a complex number's."""
     try:
-        out = np.asarray(given, dtype=np.float64)
-    except (TypeError, ValueError):
-        raise Refused(f"{name} is no array of numbers but {type(given).__name__}") from None
+        found = unmasked(name, given)
+        real = found.dtype.kind in "iuf" or (
+            found.dtype.kind == "O" and all(isinstance(each, kinds.Real) and not isinstance(each, bool) for each in found.flat))
+        if not real:
+            raise TypeError
+        out = found.astype(np.float64)
+    except (TypeError, ValueError, OverflowError):
+        what = f"of {given.dtype}" if isinstance(given, np.ndarray) else type(given).__name__
+        raise Refused(f"{name} is no array of numbers but {what}") from None
     if out.ndim != len(shape) or any(wanted not in (None, size) for size, wanted in zip(out.shape, shape)):
         bound = ", ".join("N" if size is None else str(size) for size in shape)
         raise Refused(f"{name} has the shape {out.shape}, must be ({bound})")
@@ -88,7 +103,7 @@ def numbers(name, given, *shape):
 
 
 def instants(given):
-    out = np.asarray(given)
+    out = unmasked("time_ns", given)
     if out.ndim != 1 or out.dtype.kind not in "iu":
         raise Refused(f"time_ns is {out.dtype} of the shape {out.shape}, must be integers of the shape (N,)")
     if len(out) == 0:
@@ -99,13 +114,25 @@ def instants(given):
     return out.astype(np.int64)
 
 
+def covariances(given, count):
+    out = numbers("covariance", given, count, 3, 3)
+    deviation = np.sqrt(np.maximum(np.diagonal(out, axis1=1, axis2=2), 0.0))
+    apart = np.abs(out - out.transpose(0, 2, 1)) > SYMMETRY_TOLERANCE * deviation[:, :, None] * deviation[:, None, :]
+    bad = np.flatnonzero(apart.any(axis=(1, 2)))
+    if len(bad):
+        raise Refused(f"covariance[{bad[0]}] is {out[bad[0]].tolist()}, must be symmetric ({len(bad)} of {count} are not)")
+    return out
+
+
 def parts(returned, names):
-    """What was returned, by name: attributes of those names, or a tuple in their order, whose last may be absent."""
+    """What was returned, by name: attributes of those names, or a tuple in their order, whose last may be absent or None."""
     if returned is None:
         raise Refused(f"nothing was returned, must be {', '.join(names)}")
     if hasattr(returned, names[0]):
         return {name: getattr(returned, name) for name in names if getattr(returned, name, None) is not None}
     given = returned if isinstance(returned, tuple) else (returned,)
+    if len(given) > 1 and given[-1] is None:
+        given = given[:-1]
     if len(given) > len(names):
         raise Refused(f"{len(given)} values were returned, must be at most {len(names)}: {', '.join(names)}")
     return dict(zip(names, given))
@@ -115,7 +142,7 @@ def rates(returned, count):
     given = parts(returned, ("rate", "covariance"))
     out = {"rate": numbers("rate", given.get("rate"), count, 3)}
     if "covariance" in given:
-        out["covariance"] = numbers("covariance", given["covariance"], count, 3, 3)
+        out["covariance"] = covariances(given["covariance"], count)
     return out
 
 

@@ -276,6 +276,7 @@ TEST(Exchange, ATrajectoryIsScoredWithItsRotationAndOverWhatItCovers) {
   EXPECT_EQ(ended.status, 0) << ended.err;
   const json part = json_of(ended);
   EXPECT_EQ(part["status"], "partial");
+  EXPECT_THAT(run_program({"score", tum, recording, "--frame", "body", "--kind", "slam"}).out, HasSubstr("partial"));
   EXPECT_NEAR(part["covered"]["share"].get<double>(), 0.5, 0.05);
   EXPECT_NEAR(metric(part, "rotation_error_end_rad"), 0.1, 1e-3);
   EXPECT_LT(metric(part, "translation_error_end_m"), 1e-3);

@@ -112,6 +112,8 @@ TEST(ScoreTables, HaveARowPerMetricAndAColumnPerMethod) {
             "error   2.5       0.5\n"
             "cost    0.1\n");
   EXPECT_EQ(overall_status(outcomes), "diverged");
+  const std::vector<Table> said = score_tables("t", std::span(outcomes).last(1), "partial");
+  EXPECT_EQ(said.at(0).text(), "t: slam\nmetric       icp\n-------  -------\nstatus   partial\noverlap      0.9\n");
 }
 
 TEST(ScoreTables, RowsInJsonCarryWhatTheDatabaseDoes) {

@@ -120,7 +120,7 @@ std::string cover_text(const Standing& standing) {
 }
 
 /// A trajectory of somebody else is judged over what it answers, and how much that is is said: "partial" for one that
-/// holds there, but begins late or ends early.
+/// holds there, but leaves more than a fifth of the recording in one piece without a pose.
 std::string judge_trajectory(const Session& session, const Standing& standing, const scenarios::ScoredEstimate& scored,
                              scenarios::Outcome& outcome) {
   std::string status = to_string(outcome.status);
@@ -214,7 +214,7 @@ int score_estimate(const Session& session, const ScoreOptions& options) {
                              {"method", outcome.method},
                              {"status", status},
                              {"scores", score_rows(outcomes)}};
-  std::vector<Table> tables = score_tables(options.estimate.string(), outcomes);
+  std::vector<Table> tables = score_tables(options.estimate.string(), outcomes, status);
   if (standing) {
     document.update(to_json(*standing));
     add_cover(*standing, tables.front());

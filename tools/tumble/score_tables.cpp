@@ -22,11 +22,11 @@ std::string cell(const Outcome& outcome, const std::string& metric) {
   return "";
 }
 
-Table kind_table(const std::string& title, const std::vector<const Outcome*>& outcomes) {
+Table kind_table(const std::string& title, const std::vector<const Outcome*>& outcomes, const std::string& said) {
   std::vector<std::string> header = {"metric"}, status = {"status"}, metrics;
   for (const Outcome* outcome : outcomes) {
     header.push_back(outcome->method);
-    status.push_back(to_string(outcome->status));
+    status.push_back(said.empty() ? to_string(outcome->status) : said);
     for (const scenarios::Score& score : outcome->scores) {
       if (scenarios::parse_binned(score.metric)) continue;  // of use over many draws
       if (std::find(metrics.begin(), metrics.end(), score.metric) == metrics.end()) metrics.push_back(score.metric);
@@ -45,14 +45,15 @@ Table kind_table(const std::string& title, const std::vector<const Outcome*>& ou
 
 }  // namespace
 
-std::vector<Table> score_tables(const std::string& title, std::span<const Outcome> outcomes) {
+std::vector<Table> score_tables(const std::string& title, std::span<const Outcome> outcomes,
+                                const std::string& status) {
   std::vector<Table> tables;
   for (const Kind kind : {Kind::rate, Kind::attitude, Kind::position, Kind::slam}) {
     std::vector<const Outcome*> selected;
     for (const Outcome& outcome : outcomes) {
       if (outcome.kind == kind) selected.push_back(&outcome);
     }
-    if (!selected.empty()) tables.push_back(kind_table(title + ": " + to_string(kind), selected));
+    if (!selected.empty()) tables.push_back(kind_table(title + ": " + to_string(kind), selected, status));
   }
   return tables;
 }

@@ -12,8 +12,9 @@
 namespace tumble::tools {
 
 /// One table per kind: a row per metric, a column per method, the status first. Metrics in the order in which they
-/// come.
-std::vector<Table> score_tables(const std::string& title, std::span<const scenarios::Outcome> outcomes);
+/// come. `status`: what is said in the place of the outcomes' own, where it is more.
+std::vector<Table> score_tables(const std::string& title, std::span<const scenarios::Outcome> outcomes,
+                                const std::string& status = "");
 
 /// The outcomes' numbers as rows (scenario, seed, kind, method, status, metric, value), as in the results database.
 nlohmann::json score_rows(std::span<const scenarios::Outcome> outcomes);

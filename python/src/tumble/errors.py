@@ -11,9 +11,9 @@ class TumbleError(ValueError):
     trouble   "empty", "non_finite", "time_order", "gap", "out_of_range", "too_few", "degenerate", "diverged" as the library
               has them (`Status`); "type", "shape", "unknown" of an argument; "file" of a file; "program" of the program
     field     the input or the parameter; of a file its path and place
-    value     what was found, in the field's unit
+    value     what was found, in the field's unit; a time is an int of nanoseconds
     bound     what it broke: a number, or a text
-    index     of an array of samples: the one that was refused; those before it were taken in
+    index     of an array of samples: the one that was refused; a stream has taken in those before it, what takes a whole recording none
     so_far    what came out of these, where anything does
     """
 

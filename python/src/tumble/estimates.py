@@ -11,6 +11,7 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
+from .checks import having, path_of, refusal, unmasked
 from .errors import TumbleError
 from .files import beside
 
@@ -32,15 +33,20 @@ class Trajectory:
 def write_tum(path: str | os.PathLike[str], poses: Any) -> None:
     """Writes whatever has time_ns, position and quaternion, or time_ns and quaternion alone (the place is 0 then), as TUM:
     `t x y z qx qy qz qw`, t in seconds, to the nanosecond. Numbers come back to the bit. Written beside and renamed."""
-    times, quaternions = np.asarray(poses.time_ns), np.asarray(poses.quaternion)
-    positions = np.asarray(getattr(poses, "position", np.zeros((len(times), 3))))
+    having("poses", poses, "whatever has time_ns and quaternion", "time_ns", "quaternion")
+    times, quaternions = unmasked("time_ns", poses.time_ns), unmasked("quaternion", poses.quaternion)
+    if times.dtype.kind not in "iu":
+        raise refusal("type", "time_ns", times.dtype, "int64 (nanoseconds)")
+    if times.ndim != 1:
+        raise refusal("shape", "time_ns", times.shape, "(N,)")
+    positions = unmasked("position", getattr(poses, "position", np.zeros((len(times), 3))))
     for name, rows, columns in (("position", positions, 3), ("quaternion", quaternions, 4)):
         if rows.shape != (len(times), columns):
             raise TumbleError(f"{name} is {rows.shape}, must be {(len(times), columns)}", "shape", name, rows.shape,
                               (len(times), columns))
         if not np.isfinite(rows).all():
             raise TumbleError(f"{name} is not finite", "non_finite", name, float("nan"), "finite")
-    with beside(path) as part, open(part, "w", encoding="ascii") as out:
+    with beside(path_of("path", path)) as part, open(part, "w", encoding="ascii") as out:
         for time_ns, p, q in zip(times.tolist(), positions.tolist(), quaternions.tolist(), strict=True):
             sign, whole = ("-", -time_ns) if time_ns < 0 else ("", time_ns)
             print(f"{sign}{whole // 10**9}.{whole % 10**9:09d}", *map(repr, p), *map(repr, q), file=out)
@@ -59,7 +65,7 @@ def _nanoseconds(text: str) -> int:
 def read_tum(path: str | os.PathLike[str], separator: str | None = None) -> Trajectory:
     """Poses of a TUM file; lines that begin with # are left out. separator: of the numbers, else blanks. TumbleError `file` with the
     line that is wrong."""
-    name = os.fspath(path)
+    name = path_of("path", path)
     times, rows = [], []
     try:
         with open(name, encoding="utf-8") as file:
@@ -104,10 +110,10 @@ class Estimate:
     method: str
     kind: str
     frame: str
-    status: str
-    health: dict[str, float]
-    rates: RateTable | None = None
-    poses: Trajectory | None = None
+    status: str  #: "ok", or the trouble of the run
+    health: dict[str, float]  #: what the method counted, by name
+    rates: RateTable | None = None  #: of the first IMU
+    poses: Trajectory | None = None  #: of the frame; of an attitude without a place
     sweep_poses: Trajectory | None = None  #: inside of sweeps
     sweeps: dict[str, Array] = field(default_factory=dict)  #: columns of sweeps.csv
 
@@ -133,7 +139,7 @@ def _rates(path: pathlib.Path) -> RateTable:
 
 def read_estimate(folder: str | os.PathLike[str]) -> Estimate:
     """The folder that `tumble estimate -o` and, per method, `tumble run -o` leave."""
-    root = pathlib.Path(folder)
+    root = pathlib.Path(path_of("folder", folder))
     try:
         told = json.loads((root / "estimate.json").read_text(encoding="utf-8"))
         out = Estimate(told["method"], told["kind"], told["frame"], told["status"]["trouble"], told["health"])

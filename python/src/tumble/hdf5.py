@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
+from .checks import unmasked
 from .errors import TumbleError
 from .files import optional
 
@@ -101,9 +102,9 @@ def put(group: Any, name: str, rows: Any, dtype: str, unit: str, shape: tuple[in
     """Writes a dataset with its unit and the names of its columns, stored as the program does. many=False: rows of a fixed number,
     which are too few to be deflated.
 
-    TumbleError `shape`; `type` of numbers that are to be whole and are not, `out_of_range` of those that the file's type does not hold.
+    TumbleError `shape`; `type` of numbers that are complex, masked, or to be whole and are not, `out_of_range` of those that the file's type does not hold.
     """
-    given = np.asarray(rows)
+    given = unmasked(f"{group.name}/{name}", rows)
     if np.dtype(dtype).kind in "iu" and given.dtype.kind not in "iu":
         raise TumbleError(f"{group.name}/{name} is {given.dtype}, must be {np.dtype(dtype)}", "type", f"{group.name}/{name}",
                           given.dtype, np.dtype(dtype))

@@ -16,18 +16,22 @@ from __future__ import annotations
 
 import os
 import pathlib
+import re
 import sys
 from collections.abc import Callable, Sequence
 from typing import Any
 
 import numpy as np
 
+from .checks import number_from, path_of, refusal, symmetric, unmasked, wrong_type
 from .errors import TumbleError
 from .estimates import Trajectory, write_tum
 from .files import beside
 from .recordings import Recording, read
 
 KINDS = ("rate", "attitude", "position", "slam")
+ROBOTS = ("rig", "sphere", "pendulum")
+TIME_MAX_S = 1e6
 
 
 def serve(kind: str, function: Callable[[Recording], Any], arguments: Sequence[str] | None = None) -> None:
@@ -52,21 +56,24 @@ def serve(kind: str, function: Callable[[Recording], Any], arguments: Sequence[s
 
 def _write_rates(path: str, recording: Recording, result: Any) -> None:
     if hasattr(result, "rate"):
-        rate, covariance = result.rate, result.covariance
+        rate, covariance = result.rate, getattr(result, "covariance", None)
     elif isinstance(result, tuple):
-        rate, covariance = result
+        if len(result) not in (1, 2):
+            raise refusal("shape", "result", f"{len(result)} values", "rate, or rate and covariance")
+        rate, covariance = (*result, None)[:2]
     else:
         rate, covariance = result, None
-    times = recording.imus[0].time_ns
-    rows = [np.asarray(rate, dtype=float)]
+    times = recording.first_imu.time_ns
+    rows = [unmasked("rate", rate).astype(float)]
     if rows[0].shape != (len(times), 3):
         raise TumbleError(f"rate is {rows[0].shape}, must be {(len(times), 3)}", "shape", "rate", rows[0].shape, (len(times), 3))
     header = "time_ns,wx_rad_s,wy_rad_s,wz_rad_s"
     if covariance is not None:
-        matrices = np.asarray(covariance, dtype=float)
+        matrices = unmasked("covariance", covariance).astype(float)
         if matrices.shape != (len(times), 3, 3):
             raise TumbleError(f"covariance is {matrices.shape}, must be {(len(times), 3, 3)}", "shape", "covariance", matrices.shape,
                               (len(times), 3, 3))
+        symmetric("covariance", matrices)
         rows.append(matrices[:, [0, 0, 0, 1, 1, 2], [0, 1, 2, 1, 2, 2]])
         header += ",cxx,cxy,cxz,cyy,cyz,czz"
     with beside(path) as part, open(part, "w", encoding="ascii") as out:
@@ -81,15 +88,33 @@ def describe_method(path: str | os.PathLike[str], name: str, kind: str, script: 
     such files: scenarios/methods/EXTERNAL.md."""
     if kind not in KINDS:
         raise TumbleError(f"kind is '{kind}', must be one of {', '.join(KINDS)}", "unknown", "kind", kind, KINDS)
+    _require_description(name, script, robots, time_limit_s)
+    if isinstance(robots, str):
+        robots = (robots,)
     quoted = [_quoted(word) for word in (sys.executable, str(pathlib.Path(script).resolve()), "{recording}", "{output}")]
     lines = [f"name: {_quoted(name)}", f"kind: {kind}", f"command: [{', '.join(quoted)}]", f"time_limit_s: {float(time_limit_s)!r}"]
     if doc:
         lines.append(f"doc: {_quoted(doc)}")
     if robots:
         lines.append(f"robots: [{', '.join(robots)}]")
-    with beside(path) as part:
+    with beside(path_of("path", path)) as part:
         pathlib.Path(part).write_text("\n".join(lines) + "\n", encoding="utf-8")
     return pathlib.Path(path)
+
+
+def _require_description(name: str, script: str | os.PathLike[str], robots: Sequence[str], time_limit_s: float) -> None:
+    """What the program refuses when it reads the file, now."""
+    if not isinstance(name, str) or not re.fullmatch(r"[a-z][a-z0-9_]{0,99}", name):
+        raise refusal("out_of_range", "name", repr(name), "a lower-case letter followed by letters, digits and underscores, 100 at most")
+    if not pathlib.Path(path_of("script", script)).is_file():
+        raise refusal("file", "script", os.fspath(script), "a file")
+    if number_from("time_limit_s", time_limit_s, 0.0) == 0.0 or time_limit_s > TIME_MAX_S:
+        raise refusal("out_of_range", "time_limit_s", time_limit_s, f"within (0, {TIME_MAX_S:g}]")
+    if not isinstance(robots, Sequence):
+        raise wrong_type("robots", robots, "names")
+    for robot in (robots,) if isinstance(robots, str) else robots:
+        if robot not in ROBOTS:
+            raise refusal("unknown", "robots", repr(robot), f"of {', '.join(ROBOTS)}")
 
 
 def _quoted(text: str) -> str:

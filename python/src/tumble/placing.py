@@ -7,6 +7,7 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
+from .checks import having, whole
 from .errors import TumbleError
 from .recordings import Recording
 
@@ -51,6 +52,9 @@ def point_errors(recording: Recording, poses: Any, every: int = 1) -> tuple[Arra
     by its own mounting of the IMU: what the calibration is off by is part of the distance.
     TumbleError `empty` without a truth or without returns.
     """
+    having("recording", recording, "a Recording", "truth", "imus", "lidars")
+    having("poses", poses, "whatever has time_ns, position and quaternion", "time_ns", "position", "quaternion")
+    every = whole("every", every, 1, 2**63 - 1)
     truth = recording.truth
     if truth is None:
         raise TumbleError("truth is not there, must be in the recording", "empty", "truth", None, "a truth")

@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
+from .checks import having, refusal
 from .errors import TumbleError
 from .files import optional
 from .placing import point_errors
@@ -29,6 +30,11 @@ def rate(imu: Imu, rates: Any, truth: Array | None = None, axes: str = "xyz") ->
     deviations about it, the truth (N, 3) where it is given. Where the gyro clips on an axis its panel is shaded."""
     if not axes or set(axes) - set("xyz"):
         raise TumbleError(f"axes is '{axes}', must be of x, y, z", "unknown", "axes", axes, "xyz")
+    having("imu", imu, "an Imu, as recording.imus[0]", "time_ns", "gyro")
+    having("rates", rates, "whatever has rate, covariance and clipped_axes, as tumble.rate gives", "rate", "covariance", "clipped_axes")
+    for name, rows in (("rates", rates.rate), ("truth", truth)):
+        if rows is not None and np.shape(rows) != np.shape(imu.gyro):
+            raise refusal("shape", name, np.shape(rows), np.shape(imu.gyro))
     figure = _figure(figsize=(9.0, 1.0 + 2.0 * len(axes)))
     t = (imu.time_ns - imu.time_ns[0]) * 1e-9
     panels = figure.subplots(len(axes), 1, sharex=True, squeeze=False)[:, 0]
@@ -52,6 +58,11 @@ def rate(imu: Imu, rates: Any, truth: Array | None = None, axes: str = "xyz") ->
 def trajectory(poses: Any, truth: Any = None) -> Any:
     """A way from above and from the side. poses, truth: whatever has `position` (N, 3), m (Poses, Trajectory, Truth). The truth is moved
     to where `poses` begin; it is not turned."""
+    for name, given in (("poses", poses), ("truth", truth)):
+        if given is not None or name == "poses":
+            having(name, given, "whatever has position", "position")
+            if np.ndim(given.position) != 2 or np.shape(given.position)[1] != 3 or len(given.position) == 0:
+                raise refusal("shape", f"{name}.position", np.shape(given.position), "(N, 3), N at least 1")
     figure = _figure(figsize=(9.0, 4.5))
     for panel, (a, b) in zip(figure.subplots(1, 2), ((0, 1), (0, 2)), strict=True):
         if truth is not None:
@@ -84,6 +95,7 @@ def scores(frame: Any, metric: str, unit: str = "") -> Any:
     """One metric of a sweep's frame (`tumble.sweep`, `tumble.results`) by method, a dot per draw and a bar at the median, on a logarithmic
     scale. A draw that a method did not end `ok`, or has no value of, is a cross at the top and counts as the worst in the median.
     unit: of the axis; else what the metric's name ends in."""
+    having("frame", frame, "a frame of tumble.results", "metric", "kind", "method", "status", "value")
     rows = frame[frame.metric == metric]
     if len(rows) == 0:
         known = sorted(set(frame.metric.dropna()))

@@ -9,9 +9,11 @@ import pathlib
 import shutil
 import sqlite3
 import subprocess
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Mapping, Sequence
+from numbers import Integral, Real
 from typing import Any
 
+from .checks import path_of, refusal, whole, wrong_type
 from .errors import TumbleError
 from .files import optional
 
@@ -51,27 +53,56 @@ def call(verb: str, *words: Path | Number, timeout_s: float | None = None) -> st
 
 
 def _word(word: Path | Number) -> str:
-    return os.fspath(word) if isinstance(word, (str, os.PathLike)) else repr(word)
+    if not isinstance(word, (str, os.PathLike, Real)):
+        raise wrong_type("word", word, "a text, a path or a number")
+    return os.fspath(word) if isinstance(word, (str, os.PathLike)) else _digits(word)
+
+
+def _digits(number: Number | Real) -> str:
+    """As the program reads it: numpy's own numbers have their type in their text."""
+    return repr(int(number) if isinstance(number, Integral) else float(number))
+
+
+def _named(field: str, given: Path) -> str:
+    """What stands where the program expects no option."""
+    text = path_of(field, given)
+    if not text or text.startswith("-"):
+        raise refusal("unknown", field, repr(text), "a name or a file (one that begins with - as ./-NAME)")
+    return text
 
 
 def _settings(settings: Mapping[str, Number] | None) -> list[str]:
-    return [word for name, value in (settings or {}).items() for word in ("--set", f"{name}={value!r}")]
+    if settings is not None and not isinstance(settings, Mapping):
+        raise wrong_type("settings", settings, "a dictionary of numbers by their names")
+    for name, value in (settings or {}).items():
+        if not isinstance(name, str) or not isinstance(value, Real):
+            raise refusal("type", "settings", f"{name!r}: {value!r}", "numbers by their names")
+    return [word for name, value in (settings or {}).items() for word in ("--set", f"{name}={_digits(value)}")]
 
 
-def _repeated(flag: str, values: Iterable[Path]) -> list[str]:
-    return [word for value in values for word in (flag, os.fspath(value))]
+def _methods(methods: Path | Iterable[Path]) -> list[str]:
+    if isinstance(methods, (str, os.PathLike)):
+        methods = (methods,)
+    if not isinstance(methods, Iterable):
+        raise wrong_type("methods", methods, "names, or files that describe a method")
+    return [word for each in methods for word in ("--method", path_of("methods", each))]
+
+
+def _seed(field: str, given: Any) -> int:
+    return whole(field, given, 0, 2**64 - 1)
 
 
 def record(scenario: Path, path: Path, seed: int = 1) -> pathlib.Path:
     """Draws and simulates one situation, leaves its recording."""
-    call("record", scenario, "--seed", int(seed), "-o", path)
+    call("record", _named("scenario", scenario), "--seed", _seed("seed", seed), "-o", path_of("path", path))
     return pathlib.Path(path)
 
 
 def estimate(recording: Path, method: Path, folder: Path, settings: Mapping[str, Number] | None = None) -> pathlib.Path:
     """Runs one method of the program on a recording, leaves the folder of its estimate (`read_estimate`). `settings`: by the
     whole name, {"rate/tumble_lag.lag_s": 0.5}."""
-    call("estimate", recording, "--method", method, *_settings(settings), "-o", folder)
+    call("estimate", _named("recording", recording), "--method", path_of("method", method), *_settings(settings), "-o",
+         path_of("folder", folder))
     return pathlib.Path(folder)
 
 
@@ -79,43 +110,45 @@ def score(estimate: Path, recording: Path, kind: str | None = None, frame: str |
     """Scores of an estimate (a folder, or a TUM file with kind "position" or "slam") against the truth of a recording: metric to
     value, None where there was nothing to score."""
     words = [*(["--kind", kind] if kind else []), *(["--frame", frame] if frame else [])]
-    told = json.loads(call("score", estimate, recording, *words, "--json"))
+    told = json.loads(call("score", _named("estimate", estimate), _named("recording", recording), *words, "--json"))
     return {row["metric"]: row["value"] for row in told["scores"]}
 
 
-def run(scenario: Path, seed: int = 1, methods: Iterable[Path] = (), folder: Path | None = None,
+def run(scenario: Path, seed: int = 1, methods: Path | Iterable[Path] = (), folder: Path | None = None,
         settings: Mapping[str, Number] | None = None) -> dict[str, Any]:
     """Draws, simulates, estimates and scores one situation; with `folder` leaves recording, estimates and pictures. Returns what
     the program tells as JSON."""
-    words = ["--seed", int(seed), *_repeated("--method", methods), *_settings(settings), *(["-o", folder] if folder else [])]
-    told: dict[str, Any] = json.loads(call("run", scenario, *words, "--json"))
+    words = ["--seed", _seed("seed", seed), *_methods(methods), *_settings(settings), *(["-o", folder] if folder else [])]
+    told: dict[str, Any] = json.loads(call("run", _named("scenario", scenario), *words, "--json"))
     return told
 
 
-def sweep(suite: Path, db: Path, seeds: tuple[int, int] | None = None, methods: Iterable[Path] = (), jobs: int | None = None,
+def sweep(suite: Path, db: Path, seeds: tuple[int, int] | None = None, methods: Path | Iterable[Path] = (), jobs: int | None = None,
           data: Path | None = None, timeout_s: float | None = None) -> Any:
     """Runs a suite, a suite's file or a scenario into a results database, and returns `results(db)`.
 
     seeds     first and last, both included; else the suite's
-    methods   names, or files NAME.yaml that describe a command (`describe_method`); else the suite's
+    methods   names, or files NAME.yaml that describe a command (`describe_method`); one of them, or several; else the suite's
     jobs      processes at a time; else the processors
     What the database holds already is not run again. Pictures of single draws are not left.
     """
-    words: list[Path | Number] = ["--db", db, "--examples", 0, *_repeated("--method", methods)]
+    words: list[Path | Number] = ["--db", path_of("db", db), "--examples", 0, *_methods(methods)]
     if seeds is not None:
-        words += ["--seeds", f"{int(seeds[0])}..{int(seeds[1])}"]
+        if not isinstance(seeds, Sequence) or isinstance(seeds, str) or len(seeds) != 2:
+            raise refusal("type", "seeds", repr(seeds), "the first and the last")
+        words += ["--seeds", f"{_seed('seeds', seeds[0])}..{_seed('seeds', seeds[1])}"]
     if jobs is not None:
-        words += ["--jobs", int(jobs)]
+        words += ["--jobs", whole("jobs", jobs, 1, 2**31 - 1)]
     if data is not None:
         words += ["--data", data]
-    call("sweep", suite, *words, timeout_s=timeout_s)
+    call("sweep", _named("suite", suite), *words, timeout_s=timeout_s)
     return results(db)
 
 
 def score_rows(db: Path) -> list[dict[str, Any]]:
     """Rows of a results database as dictionaries: scenario, seed, kind, method, status, metric, value. An outcome without scores
     has one row whose metric is None."""
-    path = pathlib.Path(db)
+    path = pathlib.Path(path_of("db", db))
     if not path.is_file():
         raise TumbleError(f"{path} is not there", "file", str(path), None, "a results database")
     connection = sqlite3.connect(f"file:{path.resolve()}?mode=ro", uri=True)

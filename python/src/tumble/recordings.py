@@ -11,6 +11,7 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
+from .checks import having, number_from, path_of, refusal, rigid, rising, unmasked, whole
 from .errors import TumbleError
 from .files import beside, optional
 from .hdf5 import XYZ, Group, missing, put, same_length
@@ -27,7 +28,7 @@ class Imu:
     gyro: Array  #: (N, 3), rad/s, IMU axes
     accel: Array  #: (N, 3), m/s^2: specific force, +9.8 up at rest
     T_BI: Array = field(default_factory=lambda: np.eye(4))
-    clip_flags: Array | None = None  #: (N,) uint8, bits gyro x y z, accel x y z, as the device reports them
+    clip_flags: Array | None = None  #: (N,) uint8, bits gyro x y z, accel x y z, as the device reports them; None: it reports none
     name: str = "imu"
     device: str = ""
     period_ns: int = 0  #: 0: the median of the times
@@ -35,8 +36,8 @@ class Imu:
     accel_range_m_s2: float = 0.0
     gyro_noise_rad_s_sqrt_hz: float = 0.0
     accel_noise_m_s2_sqrt_hz: float = 0.0
-    magnetic_field_t: Array | None = None  #: (N, 3), tesla
-    earth_field_t: Array | None = None  #: (3,), W
+    magnetic_field_t: Array | None = None  #: (N, 3), tesla, IMU axes; None: no magnetometer
+    earth_field_t: Array | None = None  #: (3,), tesla, W: what a magnetometer would read without iron around
 
     def __len__(self) -> int:
         return len(self.time_ns)
@@ -74,9 +75,9 @@ class Lidar:
     offset_ns: Array  #: (P,) uint32
     sweep_period_ns: int
     T_BL: Array = field(default_factory=lambda: np.eye(4))
-    range_m: Array | None = None  #: (P,) float32
-    intensity: Array | None = None
-    ring: Array | None = None
+    range_m: Array | None = None  #: (P,) float32; when absent the distances of `position`
+    intensity: Array | None = None  #: (P,) float32, as the device states it; when absent 0
+    ring: Array | None = None  #: (P,) uint16, which laser; when absent 0
     name: str = "lidar"
     device: str = ""
     point_times: str = "measured"  #: or "not_skewed", "unknown"
@@ -133,7 +134,7 @@ class Recording:
     origin_ns: int = 0  #: of a real recording: stamp of time 0 in its source's clock, nanoseconds since 1970; 0: not known
     tumble_version: str = ""  #: of the program that made it
     engine_version: str = ""  #: of MuJoCo
-    truth: Truth | None = None
+    truth: Truth | None = None  #: where it is known and was read
 
     @property
     def sweeps(self) -> Lidar:
@@ -143,9 +144,16 @@ class Recording:
         return self.lidars[0]
 
     @property
+    def first_imu(self) -> Imu:
+        """The primary one. TumbleError `empty` where there is none."""
+        if not self.imus:
+            raise TumbleError("imus is empty, must be at least one", "empty", "imus", 0, 1)
+        return self.imus[0]
+
+    @property
     def T_IL(self) -> Array:
         """(4, 4), the first lidar in axes of the first IMU, from the two calibrations."""
-        T_BI, T_BL = self.imus[0].T_BI, self.sweeps.T_BL
+        T_BI, T_BL = self.first_imu.T_BI, self.sweeps.T_BL
         R = T_BI[:3, :3].T
         out = np.eye(4)
         out[:3, :3] = R @ T_BL[:3, :3]
@@ -157,6 +165,9 @@ ROUNDING_NS = 1000  # a point so much after its sweep's end belongs to the end
 
 _IMU_NUMBERS = {"stated_gyro_range_rad_s": "gyro_range_rad_s", "stated_accel_range_m_s2": "accel_range_m_s2",
                 "gyro_noise_rad_s_sqrt_hz": "gyro_noise_rad_s_sqrt_hz", "accel_noise_m_s2_sqrt_hz": "accel_noise_m_s2_sqrt_hz"}
+_TIME_MAX_NS = 10**17  # the program's: beyond it a time is another clock's
+
+
 def _read_imu(group: Group) -> Imu:
     numbers = {to: group.attribute(name, float) for name, to in _IMU_NUMBERS.items()}
     earth = group.rows("earth_field_W_t", "f8", (3,), optional=True)
@@ -192,7 +203,7 @@ def read(path: str | os.PathLike[str], truth: bool = True) -> Recording:
     TumbleError with `file`: which place of the file is missing or of another type or shape. ImportError without h5py.
     """
     h5py = optional("h5py", "files")
-    name = os.fspath(path)
+    name = path_of("path", path)
     try:
         file = h5py.File(name, "r")
     except OSError as error:
@@ -225,10 +236,13 @@ def write(path: str | os.PathLike[str], recording: Recording, truth: bool = True
 
     Sensors that were changed have to keep as many samples and points as their truth, or it has no rows. The digests that the program
     writes, which would show damage, are left out. Written beside its place and renamed. TumbleError `shape` where arrays do not fit
-    together, `type` for times that are no integers, `out_of_range` for whole numbers that the file's type does not hold.
+    together, `type` for times that are no integers and numbers that are complex or masked, `time_order` for times that do not rise,
+    `out_of_range` for what the program would refuse to read: a range below 0, a T_BI that is no pose, whole numbers that the file's type does not hold.
     """
     h5py = optional("h5py", "files")
-    with beside(path) as part, h5py.File(part, "w", libver=("v110", "v110")) as file:
+    having("recording", recording, "a Recording", "imus", "lidars", "truth")
+    _require_sound(recording)
+    with beside(path_of("path", path)) as part, h5py.File(part, "w", libver=("v110", "v110")) as file:
         texts = {"format": "tumble recording", "scenario": recording.scenario, "situation_yaml": recording.situation_yaml,
                  "tumble_version": recording.tumble_version, "engine_version": recording.engine_version,
                  "attribution": recording.attribution, "digest": ""}
@@ -251,6 +265,37 @@ def write(path: str | os.PathLike[str], recording: Recording, truth: bool = True
         if known is not None:
             write_truth(file.create_group("truth"), known, [len(imu) for imu in recording.imus],
                         [len(lidar.position) for lidar in recording.lidars])
+
+
+def _require_sound(recording: Recording) -> None:
+    """Refuses what the program refuses to read (scenarios/recordings/recording_check.cpp), but for lengths and types (`put`)."""
+    for name in ("sphere_radius_m", "gravity_m_s2"):
+        number_from(name, getattr(recording, name), 0.0)
+    whole("seed", recording.seed, 0, 2**64 - 1)
+    whole("origin_ns", recording.origin_ns, -(2**63), 2**63 - 1)
+    for k, imu in enumerate(recording.imus):
+        place = f"imus[{k}]"
+        for name in _IMU_NUMBERS.values():
+            number_from(f"{place}.{name}", getattr(imu, name), 0.0)
+        whole(f"{place}.period_ns", imu.period_ns, 0, 2**63 - 1)
+        rigid(f"{place}.T_BI", imu.T_BI)
+        _require_times(f"{place}.time_ns", imu.time_ns)
+        if imu.earth_field_t is not None and not np.isfinite(unmasked(f"{place}.earth_field_t", imu.earth_field_t)).all():
+            raise refusal("non_finite", f"{place}.earth_field_t", imu.earth_field_t, "finite")
+    for k, lidar in enumerate(recording.lidars):
+        place = f"lidars[{k}]"
+        whole(f"{place}.sweep_period_ns", lidar.sweep_period_ns, 1, 2**63 - 1)
+        rigid(f"{place}.T_BL", lidar.T_BL)
+        _require_times(f"{place}.sweep_start_ns", lidar.sweep_start_ns)
+
+
+def _require_times(field: str, given: Any) -> None:
+    times = unmasked(field, given)
+    if times.ndim != 1 or times.dtype.kind not in "iu":
+        return  # `put` says so
+    rising(field, times)
+    for number in times[[0, -1]] if len(times) else ():
+        whole(field, number, -_TIME_MAX_NS, _TIME_MAX_NS)
 
 
 def _write_imu(group: Any, imu: Imu) -> None:

@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 
 from . import _tumble
+from .checks import having
 from .errors import TumbleError
 from .recordings import Imu, Recording
 
@@ -16,8 +17,13 @@ from .recordings import Imu, Recording
 RIG_BODY_L = ((-0.5, -0.4, -0.27), (0.5, 0.4, 0.23))
 
 
+def _require_imu(imu: Any) -> None:
+    having("imu", imu, "an Imu, as recording.imus[0]", "samples", "lever_arm_m", "period_ns", "gyro_range_rad_s", "accel_range_m_s2")
+
+
 def sheet_of(imu: Imu) -> _tumble.ImuSheet:
     """What a recording states of an IMU; where it says nothing of a noise the library's number stands."""
+    _require_imu(imu)
     numbers = {"gyro_range_rad_s": imu.gyro_range_rad_s, "accel_range_m_s2": imu.accel_range_m_s2}
     period_ns = imu.period_ns or (float(np.median(np.diff(imu.time_ns))) if len(imu) > 1 else 0.0)
     if period_ns > 0:
@@ -35,6 +41,7 @@ def rate(imu: Imu, gravity_m_s2: float = 9.80665, live: bool = False, **options:
     live      RegimeStream instead, which looks 0.2 s ahead (lag_s) and not over the whole: `rate/tumble_lag`
     options   keywords of these; they count before what the recording states
     """
+    _require_imu(imu)
     stated: dict[str, Any] = {
         "lever_arm_m": imu.lever_arm_m, "gyro_range_rad_s": imu.gyro_range_rad_s or None,
         "accel_range_m_s2": imu.accel_range_m_s2 or None, "evidence_gravity_m_s2": gravity_m_s2, "carried_gravity_m_s2": gravity_m_s2}
@@ -53,6 +60,10 @@ def rate(imu: Imu, gravity_m_s2: float = 9.80665, live: bool = False, **options:
     return _tumble.Rates.joined([stream.add_imu(*imu.samples), stream.flush()])
 
 
+def _require_recording(recording: Any) -> None:
+    having("recording", recording, "a Recording", "first_imu", "lidars", "robot", "gravity_m_s2")
+
+
 @dataclass
 class Tumble:
     """A tumble as TumblingOdometry saw it."""
@@ -66,7 +77,8 @@ class Tumble:
 
 def tumbling_options(recording: Recording, **options: Any) -> dict[str, Any]:
     """Keywords of TumblingOdometry from what a recording states; `options` count before them."""
-    imu = recording.imus[0]
+    _require_recording(recording)
+    imu = recording.first_imu
     stated: dict[str, Any] = {"imu": sheet_of(imu), "lever_arm_m": imu.lever_arm_m, "T_IL": recording.T_IL,
                               "gravity_m_s2": recording.gravity_m_s2}
     if recording.robot == "rig":
@@ -125,7 +137,8 @@ def rolling(recording: Recording, **options: Any) -> _tumble.RollingPoses:
 
     options: keywords of RollingOdometry; they count before what the recording states.
     """
-    imus = [imu for k, imu in enumerate(recording.imus) if k == 0 or imu.name != "imu_reference"][:4]
+    _require_recording(recording)
+    imus = [recording.first_imu, *(imu for imu in recording.imus[1:] if imu.name != "imu_reference")][:4]
     for imu in imus[1:]:
         if not np.array_equal(imu.time_ns, imus[0].time_ns):
             raise TumbleError(f"{imu.name}.time_ns is not that of {imus[0].name}, must be the same", "time_order", f"{imu.name}.time_ns")

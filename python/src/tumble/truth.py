@@ -35,7 +35,7 @@ class ImuTruth:
     accel_bias: Array = _none("f8", 3)  #: (N, 3), m/s^2
     gyro_elements: Array | None = None  #: (3, 3), row i: what element i makes of the reading's axes; None: upright
     gyro_element_offset_rad_s: Array | None = None  #: (3,), taken off after the rail
-    accel_elements: Array | None = None
+    accel_elements: Array | None = None  #: (3, 3), likewise
     accel_element_offset_m_s2: Array | None = None  #: (3,)
     magnetic_field_t: Array | None = None  #: (N, 3), T: true mean over the window
 

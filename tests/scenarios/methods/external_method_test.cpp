@@ -203,6 +203,30 @@ TEST_F(ExternalMethod, NonsenseIsRefusedWithLineValueAndBound) {
   EXPECT_THAT(refused(describe("rate", kRawByAwk + "; sed -i '7s/,[^,]*/,1e7/' {output}")), HasSubstr("1e+06 rad/s"));
 }
 
+TEST_F(ExternalMethod, StampsInAnotherUnitAreNamedWithTheFirstThatIsOutside) {
+  const auto in = [&](const std::string& power, const std::string& kind = "slam") {
+    return describe(kind, "awk -F, 'NR > 1 { printf \"%.9f 0 0 0 0 0 0 1\\n\", ($1 + 1e-9 * $2) * 1e" + power +
+                              " }' {csv}/imu.csv > {output}");
+  };
+  EXPECT_GT(run(in("0")).poses.size(), 100u);
+  EXPECT_THAT(refused(in("9")), ::testing::AllOf(HasSubstr("poses.tum:1: stamp"),
+                                                 HasSubstr("must be in seconds and looks like nanoseconds")));
+  EXPECT_THAT(refused(in("6", "position")), HasSubstr("looks like microseconds"));
+  EXPECT_THAT(refused(in("3", "attitude")), HasSubstr("looks like milliseconds"));
+  EXPECT_THAT(refused(in("-3")), HasSubstr("must be in seconds"));
+}
+
+TEST_F(ExternalMethod, MessagesDoNotNameAFolderThatIsGone) {
+  const std::string gone = "tumble-method";
+  const auto plain = [&](const std::string& what) { return what.find(gone) == std::string::npos; };
+  const std::string columns = refused(describe("slam", "printf '0.1 1\\n' > {output}"));
+  EXPECT_THAT(columns, ::testing::StartsWith("poses.tum:1: "));
+  EXPECT_TRUE(plain(columns));
+  const std::string said = no_answer(describe("slam", "echo cannot write {output} in $PWD; exit 3")).second;
+  EXPECT_THAT(said, HasSubstr("cannot write poses.tum in ."));
+  EXPECT_TRUE(plain(said));
+}
+
 TEST_F(ExternalMethod, WhatIsNoCovarianceIsRefused) {
   const auto with = [&](const std::string& covariance) {
     return describe("rate", kRawByAwk + "; sed -i -e 's/$/," + covariance +
@@ -216,7 +240,14 @@ TEST_F(ExternalMethod, WhatIsNoCovarianceIsRefused) {
 
 TEST_F(ExternalMethod, DescriptionsAreCheckedBeforeAnythingRuns) {
   EXPECT_THAT(refused(describe("rate", "{csw} {output}")), HasSubstr("did you mean 'csv'"));
-  EXPECT_THAT(refused(describe("rate", "{bag} {output}")), HasSubstr("rosbag1 rosbag2 mcap"));
+  const std::string placeholder = refused(describe("rate", "{bag} {output}"));
+  EXPECT_THAT(placeholder, HasSubstr("rosbag1 rosbag2 mcap"));
+  const std::string unlike = refused(describe("rate", "{x_y_z_9_9_9} {output}"));
+  EXPECT_NE(unlike.find("rosbag1"), std::string::npos);
+  EXPECT_EQ(unlike.find("rosbag1"), unlike.rfind("rosbag1")) << "said once: " << unlike;
+  EXPECT_THAT(refused(describe("rate", "{output}", "robots: [rigg]\n")),
+              HasSubstr("robots[0]: unknown robot 'rigg'; did you mean 'rig'"));
+  EXPECT_THAT(refused(describe("rate", "{output}", "robots: [rig, car]\n")), HasSubstr("unknown robot 'car'"));
   EXPECT_THAT(refused(describe("rate", "true")), HasSubstr("{output}"));
   EXPECT_THAT(refused(describe("rates", "{output}")), HasSubstr("did you mean 'rate'"));
   EXPECT_THAT(refused(describe("rate", "{output}", "time_limit_s: 0\n")), HasSubstr("time_limit_s"));

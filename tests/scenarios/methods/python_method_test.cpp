@@ -54,6 +54,15 @@ TEST_F(PythonMethod, AFileAloneIsAMethodOfItsName) {
   EXPECT_EQ(method.info.name, "believer");
   EXPECT_EQ(method.info.kind, Kind::rate);
   EXPECT_EQ(method.run(recording().sensors, {}, {}).rates.size(), recording().sensors.imus[0].time_ns.size());
+  for (const char* body :
+       {"rate = lambda r: r.imus[0].gyro\n",
+        "class Mine:\n    def __call__(self, r):\n        return r.imus[0].gyro\n\nrate = Mine()\n",
+        "rate = 100\ndef attitude(r):\n    return r.imus[0].time_ns, [[0, 0, 0, 1]] * len(r.imus[0].time_ns)\n"}) {
+    write("called.py", body);
+    EXPECT_NO_THROW(run(folder_ / "called.py")) << body;
+  }
+  write("number.py", "rate = 100\n");
+  EXPECT_THAT(refused(folder_ / "number.py"), HasSubstr("no function 'rate'"));
   write("two.py", "def rate(r):\n    pass\ndef slam(r):\n    pass\n");
   EXPECT_THAT(refused(folder_ / "two.py"), HasSubstr("2 functions"));
   write("none.py", "def rates(r):\n    pass\n");
@@ -63,10 +72,11 @@ TEST_F(PythonMethod, AFileAloneIsAMethodOfItsName) {
 }
 
 TEST_F(PythonMethod, CovariancesComeAsATupleOrByName) {
-  const std::string covariance = "np.tile(np.diag([1.0, 2.0, 3.0]) + 0.5 * np.eye(3, k=1), (n, 1, 1))";
+  const std::string covariance =
+      "np.tile(np.diag([1.0, 2.0, 3.0]) + 0.5 * (np.eye(3, k=1) + np.eye(3, k=-1)), (n, 1, 1))";
   const std::string of = "imu = recording.imus[0]; n = len(imu.time_ns); ";
   const Estimate tuple = run(function("rate", of + "return imu.gyro, " + covariance));
-  EXPECT_EQ(tuple.rates[7].covariance_rad2_s2, (Eigen::Matrix3d() << 1, 0.5, 0, 0, 2, 0.5, 0, 0, 3).finished());
+  EXPECT_EQ(tuple.rates[7].covariance_rad2_s2, (Eigen::Matrix3d() << 1, 0.5, 0, 0.5, 2, 0.5, 0, 0.5, 3).finished());
   const Estimate named = run(function(
       "rate", of + "import types; return types.SimpleNamespace(rate=imu.gyro, covariance=" + covariance + ")"));
   EXPECT_EQ(named.rates[7].covariance_rad2_s2, tuple.rates[7].covariance_rad2_s2);
@@ -143,6 +153,41 @@ TEST_F(PythonMethod, WhatItReturnsIsRefusedWithPlaceValueAndBound) {
   EXPECT_THAT(refused(function("rate", "os._exit(0)")), HasSubstr("left no answer"));
   EXPECT_THAT(refused(function("rate", "os.write(int(sys.argv[5]), b'x' * 100); os._exit(0)")), HasSubstr("damaged"));
   EXPECT_THAT(refused(function("rate", "pass", "function: rote\n")), HasSubstr("no function 'rote'"));
+}
+
+// each was once taken for the numbers that a conversion makes of it
+TEST_F(PythonMethod, WhatWouldLoseAPartOfItselfIsRefused) {
+  const std::string q = "np.tile([0, 0, 0, 1], (n, 1))";
+  EXPECT_THAT(wrong("rate", "imu.gyro * 1j"), HasSubstr("rate is no array of numbers but of complex128"));
+  EXPECT_THAT(wrong("rate", "(imu.gyro * 1j).tolist()"), HasSubstr("no array of numbers but list"));
+  EXPECT_THAT(wrong("position", "t, np.zeros((n, 3)) + 1j, " + q), HasSubstr("position is no array of numbers"));
+  EXPECT_THAT(wrong("rate", "imu.gyro.astype(str)"), HasSubstr("no array of numbers but of <U"));
+  EXPECT_THAT(wrong("rate", "imu.gyro.astype(str).astype(object)"), HasSubstr("but of object"));
+  EXPECT_THAT(wrong("rate", "imu.gyro > 0"), HasSubstr("no array of numbers but of bool"));
+  EXPECT_THAT(wrong("rate", "np.ma.masked_greater(imu.gyro, 0)"), HasSubstr("rate is masked in places"));
+  EXPECT_THAT(wrong("attitude", "np.ma.masked_less(t, t[9]), " + q), HasSubstr("time_ns is masked"));
+  EXPECT_THAT(
+      wrong("rate", "imu.gyro, np.where(np.arange(n)[:, None, None] < 3, np.eye(3), np.eye(3) + 0.5 * np.eye(3, k=1))"),
+      AllOf(HasSubstr("covariance[3] is [[1.0, 0.5"), HasSubstr("must be symmetric")));
+  for (const char* same :
+       {"imu.gyro.astype(object)", "imu.gyro.tolist()", "np.ma.masked_greater(imu.gyro, 1e9)", "imu.gyro, None"})
+    EXPECT_EQ(run(function("rate", std::string("imu = recording.imus[0]; return ") + same)).rates[7].w_WI_I_rad_s,
+              recording().sensors.imus[0].gyro_rad_s[7])
+        << same;
+}
+
+TEST_F(PythonMethod, TimesInAnotherUnitAreNamed) {
+  const std::string all = ", np.zeros((len(s), 3)), np.tile([0, 0, 0, 1], (len(s), 1))";
+  const auto of = [&](const std::string& times) {
+    return function("slam", "s = np.unique(recording.imus[0].time_ns" + times + "); return s" + all);
+  };
+  EXPECT_THAT(refused(of(" // 1000")),
+              AllOf(HasSubstr("pose "), HasSubstr("must be in nanoseconds and looks like microseconds")));
+  EXPECT_THAT(refused(of(" // 1000000")), HasSubstr("looks like milliseconds"));
+  EXPECT_THAT(refused(of("[:10] // 10**5")), AllOf(HasSubstr("must be in nanoseconds"), Not(HasSubstr("looks like"))));
+  EXPECT_THAT(refused(of(" * 1000")), AllOf(HasSubstr("stamp"), HasSubstr("s")));
+  EXPECT_EQ(run(of("[:9] // 1000")).poses.size(), 9u);
+  EXPECT_GT(run(of("[5:50]")).poses.size(), 40u);
 }
 
 TEST_F(PythonMethod, DescriptionsAndInterpretersAreCheckedBeforeAnythingRuns) {
