@@ -64,6 +64,9 @@ void require(const Status& status, std::optional<std::size_t> index, nb::object 
   if (std::string_view(status.field).ends_with("_ns")) {
     value = time_object(status.value, times.value);
     bound = time_object(status.bound, times.bound);
+    // a bound that was rounded down must not say that the time is in order
+    if (status.trouble == Trouble::time_order && PyObject_RichCompareBool(bound.ptr(), value.ptr(), Py_LT) == 1)
+      bound = value;
     message =
         std::string(to_string(status.trouble)) + ": " + status.field + " is " + said(value) + ", bound " + said(bound);
   }

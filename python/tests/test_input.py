@@ -85,6 +85,10 @@ def test_times_of_another_call_are_told_to_the_nanosecond(spin):
             with pytest.raises(tumble.TumbleError) as caught:
                 again.add_imu(times[48:], spin[1][48:], spin[2][48:])
             assert caught.value.value == times[48] and abs(caught.value.bound - times[49]) <= 256
+            again = pickle.loads(pickle.dumps(stream))
+            with pytest.raises(tumble.TumbleError) as caught:
+                again.add_imu(times[49:], spin[1][49:], spin[2][49:])
+            assert caught.value.value == times[49] <= caught.value.bound
 
 
 @pytest.mark.parametrize("take", TAKERS.values(), ids=TAKERS.keys())
