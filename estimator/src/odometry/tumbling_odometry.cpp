@@ -14,6 +14,19 @@ namespace {
 // Of the horizontal part of gravity: what the levelling leaves, and a world that is not quite level.
 constexpr double kGravitySigma_m_s2 = 0.03;
 
+/// Points fired at `from_ns` and later, their times counted from there.
+std::vector<LidarPoint> points_from(TimeNs from_ns, TimeNs start_ns, std::span<const LidarPoint> points) {
+  std::vector<LidarPoint> out;
+  out.reserve(points.size());
+  for (LidarPoint point : points) {
+    const TimeNs offset_ns = start_ns + point.offset_ns - from_ns;
+    if (offset_ns < 0) continue;
+    point.offset_ns = static_cast<std::uint32_t>(offset_ns);
+    out.push_back(point);
+  }
+  return out;
+}
+
 RegimeStream::Params rate_params(const TumblingOdometry::Params& params) {
   require_fields(params);
   RegimeStream::Params out = params.expert.rate;
@@ -98,8 +111,9 @@ Status TumblingOdometry::take_in(const ImuSample& sample) {
 
 Status TumblingOdometry::add_sweep(TimeNs start_ns, TimeNs end_ns, std::span<const LidarPoint> points) {
   if (end_ns < start_ns) return {Trouble::time_order, "end_ns", double(end_ns), double(start_ns)};
-  if (sweep_end_ns_ && start_ns < *sweep_end_ns_)
-    return {Trouble::time_order, "start_ns", double(start_ns), double(*sweep_end_ns_)};
+  const TimeNs from_ns = std::max(start_ns, sweep_end_ns_.value_or(start_ns));
+  if (from_ns > start_ns && from_ns - start_ns > (end_ns - start_ns) / 2)
+    return {Trouble::time_order, "start_ns", double(start_ns), double(from_ns)};
   const TimeNs latest_ns = newest_ns_.value_or(end_ns) + static_cast<TimeNs>(1e9 * kAhead_s);
   if (end_ns > latest_ns) return {Trouble::out_of_range, "end_ns", double(end_ns), double(latest_ns)};
   const std::size_t most = params_.expert.sweeps_max + static_cast<std::size_t>(kSweepsMax_hz * params_.lag_s);
@@ -107,7 +121,7 @@ Status TumblingOdometry::add_sweep(TimeNs start_ns, TimeNs end_ns, std::span<con
     return {Trouble::out_of_range, "sweeps waiting", double(waiting_.size() + 1), double(most)};
   if (const Status status = mapping::check_offsets(end_ns - start_ns, points); !status.ok()) return status;
   sweep_end_ns_ = end_ns;
-  waiting_.push_back({start_ns, end_ns, {points.begin(), points.end()}});
+  waiting_.push_back({from_ns, end_ns, points_from(from_ns, start_ns, points)});
   register_covered();
   return {};
 }

@@ -53,10 +53,10 @@ class TumblingOdometry {
   /// (gaps() counts), and the mapper bridges the gap by inertia; one stamp that is wrong costs one sample.
   Status add_imu(const ImuSample& sample);
 
-  /// Takes a sweep of points fired in [start_ns, end_ns], at any time after its last point; they are copied. Trouble
-  /// that leaves the state as it was: `time_order` (before the end of the last one, or an end before its start),
-  /// `out_of_range` (the offset of a point beyond the sweep; an end more than a second after the newest sample of the
-  /// IMU; too many that wait already). What the mapper makes of it comes with take().
+  /// Takes a sweep of points fired in [start_ns, end_ns], at any time after its last point; they are copied. Those from
+  /// before the last sweep's end are left out: stamps jitter. Trouble that leaves the state as it was: `time_order` (an
+  /// end before its start, or more than half of it before that end), `out_of_range` (the offset of a point beyond the
+  /// sweep; an end more than a second after the newest sample; too many that wait). What the mapper makes: take().
   Status add_sweep(TimeNs start_ns, TimeNs end_ns, std::span<const LidarPoint> points);
 
   /// The next sweep that was registered, in order; nothing when there is none yet.
