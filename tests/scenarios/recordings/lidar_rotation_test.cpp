@@ -33,7 +33,8 @@ sim::ImuRecord gyro(double length_s) {
   imu.period_ns = kSample_ns;
   for (std::int64_t t = kSample_ns; t < static_cast<std::int64_t>(1e9 * length_s); t += kSample_ns) {
     imu.time_ns.push_back(t);
-    imu.gyro_rad_s.push_back(rate_at(1e-9 * static_cast<double>(t - kSample_ns / 2)));
+    const std::int64_t middle_ns = t - kSample_ns / 2;
+    imu.gyro_rad_s.push_back(rate_at(1e-9 * static_cast<double>(middle_ns)));
   }
   return imu;
 }
