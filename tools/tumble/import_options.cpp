@@ -156,7 +156,8 @@ void declare_reference(VerbOptions& verb, ImportOptions& options) {
            "or a KITTI file "
            "with a pose per sweep [trajectory.csv beside VTK sweeps]");
   verb.add("--reference-frame", options.reference_frame,
-           "whose poses they are: lidar or body [of a file: the lidar, if there is one; of a topic: the body]");
+           "whose poses they are: lidar or body [of a file: the lidar, if there is one; of a topic: the frame that its "
+           "messages name, if it is known, else the body]");
   verb.add("--reference-topic", options.reference_topic,
            "of a bag: nav_msgs/Odometry or geometry_msgs/PoseStamped, poses that become the truth [none]");
   verb.add_flag(
