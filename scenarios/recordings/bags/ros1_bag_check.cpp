@@ -42,12 +42,16 @@ class Walk {
     if (op(file) != ros1::kFile) fail(at, "the first record is no bag header");
     if (number<std::uint64_t>(file, "index_pos") == 0)
       fail(at, "the bag was not closed: it has no index ('rosbag reindex' makes one)");
-    if (number<std::uint64_t>(file, "index_pos") >= bytes_) fail(at, "the index lies beyond the end: truncated?");
+    const std::uint64_t index_at = number<std::uint64_t>(file, "index_pos");
+    if (index_at >= bytes_) fail(at, "the index lies beyond the end: truncated?");
+    bool indexed = false;
     for (at = file.end(); at < bytes_;) {
       const CheckedRecord next = record(at, bytes_);
+      indexed = indexed || at == index_at;
       step(next);
       at = next.end();
     }
+    if (!indexed) fail(index_at, "here the index should begin, and no record does");
     for (const auto& [info_at, chunk_at] : infos_) {
       if (!chunks_.contains(chunk_at))
         fail(info_at, "names a chunk at " + std::to_string(chunk_at) + ": there is none");
@@ -80,11 +84,9 @@ class Walk {
     return value;
   }
 
-  CheckedRecord record(std::uint64_t at, std::uint64_t end) {
-    CheckedRecord out;
-    out.at = at;
-    const std::uint32_t header = length(at, end, "a record's header", kRecordHeaderMax);
-    const std::string bytes = text(at + 4, header);
+  /// Those of the header of the record at `at`.
+  std::map<std::string, std::string> fields(std::uint64_t at, const std::string& bytes) const {
+    std::map<std::string, std::string> out;
     for (std::size_t place = 0; place < bytes.size();) {
       std::uint32_t size = 0;
       if (bytes.size() - place < 4) fail(at, "a field of the record's header is cut");
@@ -93,9 +95,17 @@ class Walk {
       const std::string field = bytes.substr(place + 4, size);
       const std::size_t equals = field.find('=');
       if (equals == std::string::npos) fail(at, "a field of the record's header has no '='");
-      out.fields[field.substr(0, equals)] = field.substr(equals + 1);
+      out[field.substr(0, equals)] = field.substr(equals + 1);
       place += 4 + size;
     }
+    return out;
+  }
+
+  CheckedRecord record(std::uint64_t at, std::uint64_t end) {
+    CheckedRecord out;
+    out.at = at;
+    const std::uint32_t header = length(at, end, "a record's header", kRecordHeaderMax);
+    out.fields = fields(at, text(at + 4, header));
     out.data_at = at + 4 + header + 4;
     out.data_bytes = length(at + 4 + header, end, "a record's data", ~0u);
     return out;
@@ -139,6 +149,8 @@ class Walk {
   void connection(const CheckedRecord& record) {
     connections_.insert(number<std::uint32_t>(record, "conn"));
     if (!record.fields.contains("topic")) fail(record.at, "a connection without topic");
+    if (record.data_bytes > kRecordHeaderMax) fail(record.at, "a connection of more than a MiB");
+    fields(record.at, text(record.data_at, record.data_bytes));  // what it says of its type is a header too
   }
 
   void chunk(const CheckedRecord& record) {
