@@ -30,16 +30,20 @@ class HeaderLines {
 
   /// The words of the next line. The header must end in a line, not in the file.
   std::vector<std::string> next() {
-    std::string line;
-    if (!std::getline(stream_, line) || stream_.eof()) fail("the header does not end: truncated?");
+    if (!std::getline(stream_, line_) || stream_.eof()) fail("the header does not end: truncated?");
     ++number_;
-    bytes_ += line.size() + 1;
+    bytes_ += line_.size() + 1;
     if (bytes_ > kCloudHeaderMax) fail("the header is longer than " + std::to_string(kCloudHeaderMax) + " bytes");
-    std::istringstream words(line);
+    // the library that reads the points parts words by blanks and tabs alone
+    if (line_.find_first_of("\v\f") != std::string::npos) fail("holds a form feed or a vertical tab");
+    std::istringstream words(line_);
     std::vector<std::string> out;
     for (std::string word; words >> word;) out.push_back(word);
     return out;
   }
+
+  /// Whether the last line has no character at all.
+  bool line_is_empty() const { return line_.empty(); }
 
   [[noreturn]] void fail(const std::string& what) const {
     throw BadInput(path_.string() + ":" + std::to_string(number_) + ": " + what);
@@ -103,6 +107,7 @@ class HeaderLines {
  private:
   std::filesystem::path path_;
   std::ifstream stream_;
+  std::string line_;
   int number_ = 0;
   std::uint64_t bytes_ = 0, bytes_in_file_ = 0;
 };
@@ -134,14 +139,15 @@ constexpr std::array<const char*, 11> kPcdWords = {"VERSION", "FIELDS",    "SIZE
                                                    "HEIGHT",  "VIEWPOINT", "POINTS", "DATA", "COLUMNS"};
 
 /// The lines of a PCD's header by their first words. They stand once each and in this order, as the format has it: the
-/// library that reads the points takes a line that is unknown, doubled or in its wrong place for the header's end or
-/// for another one, and trusts what it then has.
+/// library that reads the points takes a line that is unknown, doubled, in its wrong place or of blanks alone for the
+/// header's end or for another one, and trusts what it then has.
 std::map<std::string, Words> pcd_lines(HeaderLines& lines) {
   const std::span order = std::span(kPcdWords).first<10>();
   std::map<std::string, Words> found;
   std::size_t next = 0;
   while (!found.contains("DATA")) {
     const Words words = lines.next();
+    if (words.empty() && !lines.line_is_empty()) lines.fail("a line of blanks, must be empty or have a word");
     if (words.empty() || words.front().starts_with("#")) continue;
     const auto at = std::find(order.begin(), order.end(), words.front());
     if (at == order.end()) lines.fail("begins with no word of a PCD's header");
