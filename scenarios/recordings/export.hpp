@@ -42,7 +42,7 @@ std::vector<std::string> export_recording(const std::filesystem::path& recording
                                           const std::filesystem::path& out, const ExportChoices& choices = {});
 
 /// T_BA of a frame A as it truly is, calibration errors included: `body`, `centre` (of the sphere's shell), or a sensor
-/// by its name. Throws BadInput for another name, with those that there are.
+/// by its name of export_names, else its own. Throws BadInput for another name, with those that there are.
 Eigen::Isometry3d true_mounting(const sim::Truth& truth, const std::string& frame);
 
 /// "t x y z qx qy qz qw" per physics sample: T_WA of the frame, seconds from the start with nine decimals, numbers that

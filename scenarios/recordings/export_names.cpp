@@ -44,12 +44,12 @@ std::string why_another(const Claim& claim) {
          ": " + claim.sensor + " is written as '" + claim.given + "'";
 }
 
-}  // namespace
-
-ExportNames export_names(const sim::Sensors& sensors) {
+/// Of sensors or of their truth.
+template <class Recorded>
+ExportNames names_of(const Recorded& recorded) {
   std::vector<Claim> claims;
-  add_claims(sensors.imus, "imu", "IMU", claims);
-  add_claims(sensors.lidars, "lidar", "lidar", claims);
+  add_claims(recorded.imus, "imu", "IMU", claims);
+  add_claims(recorded.lidars, "lidar", "lidar", claims);
   std::set<std::string> taken = own_names();
   taken.insert(frames_of_no_sensor().begin(), frames_of_no_sensor().end());
   for (const bool own : {true, false}) {
@@ -60,7 +60,7 @@ ExportNames export_names(const sim::Sensors& sensors) {
   out.taken = own_names();
   for (std::size_t index = 0; index < claims.size(); ++index) {
     Claim& claim = claims[index];
-    GivenNames& of_kind = index < sensors.imus.size() ? out.imus : out.lidars;
+    GivenNames& of_kind = index < recorded.imus.size() ? out.imus : out.lidars;
     if (claim.given.empty()) {
       claim.given = free_name(claim.name, taken);
       of_kind.notes.push_back(why_another(claim));
@@ -69,6 +69,16 @@ ExportNames export_names(const sim::Sensors& sensors) {
     out.taken.insert(claim.given);
   }
   return out;
+}
+
+}  // namespace
+
+ExportNames export_names(const sim::Sensors& sensors) {
+  return names_of(sensors);
+}
+
+ExportNames export_names(const sim::Truth& truth) {
+  return names_of(truth);
 }
 
 std::string free_name(const std::string& name, std::set<std::string>& taken) {

@@ -1,10 +1,15 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include <fmt/format.h>
+
 #include <algorithm>
+#include <optional>
 #include <span>
 #include <string>
+#include <vector>
 
 #include "scenarios/errors.hpp"
 #include "scenarios/recordings/export.hpp"
+#include "scenarios/recordings/export_names.hpp"
 #include "scenarios/recordings/number_text.hpp"
 #include "scenarios/recordings/replace_file.hpp"
 
@@ -44,21 +49,27 @@ void append_poses(const sim::Truth& truth, const Eigen::Isometry3d& T_BA, std::i
   }
 }
 
+/// Of the sensor that is written as `frame`; of one whose name cannot be written also by that.
+template <class Record>
+std::optional<Eigen::Isometry3d> mounting_in(const std::vector<Record>& records, const GivenNames& given,
+                                             Eigen::Isometry3d Record::* mounting, const std::string& frame) {
+  for (std::size_t k = 0; k < records.size(); ++k)
+    if (given.names[k] == frame) return records[k].*mounting;
+  for (const Record& record : records)
+    if (record.name == frame) return record.*mounting;
+  return std::nullopt;
+}
+
 }  // namespace
 
 Eigen::Isometry3d true_mounting(const sim::Truth& truth, const std::string& frame) {
   if (frame == "body") return Eigen::Isometry3d::Identity();
   if (frame == "centre") return Eigen::Isometry3d(Eigen::Translation3d(truth.p_BG_m));
-  std::string known = "body centre";
-  for (const sim::ImuTruth& imu : truth.imus) {
-    if (imu.name == frame) return imu.T_BI;
-    known += " " + imu.name;
-  }
-  for (const sim::LidarTruth& lidar : truth.lidars) {
-    if (lidar.name == frame) return lidar.T_BL;
-    known += " " + lidar.name;
-  }
-  throw BadInput("the truth has no frame '" + frame + "' (known: " + known + ")");
+  const ExportNames names = export_names(truth);
+  if (const auto T_BI = mounting_in(truth.imus, names.imus, &sim::ImuTruth::T_BI, frame)) return *T_BI;
+  if (const auto T_BL = mounting_in(truth.lidars, names.lidars, &sim::LidarTruth::T_BL, frame)) return *T_BL;
+  throw BadInput(fmt::format("the truth has no frame '{}' (known: body centre {} {})", frame,
+                             fmt::join(names.imus.names, " "), fmt::join(names.lidars.names, " ")));
 }
 
 void export_tum(const sim::Truth& truth, const std::filesystem::path& file, std::int64_t origin_ns,

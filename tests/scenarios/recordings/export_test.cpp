@@ -109,6 +109,20 @@ TEST_F(Export, CsvHasAFilePerImuAndOneOfTheTruth) {
   EXPECT_FALSE(std::filesystem::exists(folder_ / "real/truth.csv"));
 }
 
+TEST_F(Export, EachOfTwoSensorsOfOneNameHasAFrame) {
+  sim::Truth& truth = recording_.truth;
+  ASSERT_GE(truth.imus.size(), 2u);
+  truth.imus[0].name = truth.imus[1].name = "imu";
+  truth.imus[0].T_BI = Eigen::Translation3d(0.1, 0.0, 0.0);
+  truth.imus[1].T_BI = Eigen::Translation3d(0.2, 0.0, 0.0);
+  EXPECT_EQ(true_mounting(truth, "imu").translation().x(), 0.1);
+  EXPECT_EQ(true_mounting(truth, "imu_2").translation().x(), 0.2);
+  truth.imus[1].name = "/imu/data";  // cannot be written
+  EXPECT_EQ(true_mounting(truth, "imu_1").translation().x(), 0.2);
+  EXPECT_EQ(true_mounting(truth, "/imu/data").translation().x(), 0.2);
+  EXPECT_THROW(true_mounting(truth, "imu_2"), BadInput);
+}
+
 TEST_F(Export, NoFileOfASensorIsWrittenOverAnother) {
   recording_.sensors.imus[0].name = "truth";
   recording_.sensors.imus[1].name = recording_.truth.imus[1].name = "imu";
