@@ -52,7 +52,7 @@ void append_poses(const sim::Truth& truth, const Eigen::Isometry3d& T_BA, std::i
 /// Of the sensor that is written as `frame`; of one whose name cannot be written also by that.
 template <class Record>
 std::optional<Eigen::Isometry3d> mounting_in(const std::vector<Record>& records, const GivenNames& given,
-                                             Eigen::Isometry3d Record::* mounting, const std::string& frame) {
+                                             Eigen::Isometry3d Record::*mounting, const std::string& frame) {
   for (std::size_t k = 0; k < records.size(); ++k)
     if (given.names[k] == frame) return records[k].*mounting;
   for (const Record& record : records)
