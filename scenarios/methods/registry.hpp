@@ -10,8 +10,8 @@
 #include "scenarios/methods/method.hpp"
 #include "tumble/common/imu.hpp"
 
-/// How a method enters the registry. Add one: write KIND_NAME.cpp that defines `Method KIND_NAME()`, declare it here
-/// and name it once in registry.cpp.
+/// How a method enters the registry. Add one: write KIND_NAME.cpp that defines `Method KIND_NAME()`, declare it here,
+/// name it once in registry.cpp, and the file in CMakeLists.txt.
 namespace tumble::scenarios {
 
 /// What a method computes; `parameters` is complete and within bounds, `oracle.truth` is set when the method needs it.

@@ -2,12 +2,16 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <fstream>
+#include <ostream>
 #include <set>
+#include <string>
 
 #include "scenarios/draw/scenario.hpp"
 #include "scenarios/sweep/sweep.hpp"
 #include "sim/simulate.hpp"
 #include "tests/scenarios/tree_data.hpp"
+#include "tests/temporary_folder.hpp"
 
 namespace tumble::scenarios {
 namespace {
@@ -41,6 +45,15 @@ struct SphereExpected {
   double slip_least_s, slip_most_s, slide_least_s, slide_most_s;
 };
 
+void PrintTo(const SphereExpected& expected, std::ostream* out) {
+  *out << expected.scenario;
+}
+
+void expect_rest(const sim::Truth& truth, std::size_t k) {
+  EXPECT_LT(truth.v_WB_m_s[k].norm(), 0.01);
+  EXPECT_LT(truth.w_WB_B_rad_s[k].norm(), 0.05);
+}
+
 class SphereScenario : public ::testing::TestWithParam<SphereExpected> {};
 
 // Where a scenario is not about slip it may still scrape: at the edge of an obstacle the sphere has two contacts, of
@@ -58,9 +71,26 @@ TEST_P(SphereScenario, ShowsWhatItIsAboutAndEndsAtRest) {
   EXPECT_LE(seconds(sim::ContactLabel::slip), GetParam().slip_most_s);
   EXPECT_GE(seconds(sim::ContactLabel::slide), GetParam().slide_least_s);
   EXPECT_LE(seconds(sim::ContactLabel::slide), GetParam().slide_most_s);
-  for (const std::size_t k : {std::size_t{0}, truth.q_WB.size() - 1}) {
-    EXPECT_LT(truth.v_WB_m_s[k].norm(), 0.01);
-    EXPECT_LT(truth.w_WB_B_rad_s[k].norm(), 0.05);
+  expect_rest(truth, 0);
+  expect_rest(truth, truth.q_WB.size() - 1);
+}
+
+class TutorialScenario : public testing::TemporaryFolder {};
+
+// docs/tutorials/add_a_scenario.md, which a newcomer copies: as it says, two metres straight on
+TEST_F(TutorialScenario, EndsAtRestWhereItSays) {
+  std::ifstream page(test::source_dir() / "docs/tutorials/add_a_scenario.md");
+  std::string text, line;
+  while (std::getline(page, line) && line != "```yaml") continue;
+  while (std::getline(page, line) && line != "```") text += line + "\n";
+  ASSERT_NE(text, "");
+  write("icy_patch.yaml", text);
+  const Scenario scenario = load_scenario(tree_data(), folder_ / "icy_patch.yaml");
+  for (const std::uint64_t seed : {1, 2, 1001}) {
+    const sim::Truth truth =
+        sim::simulate(sim::BuiltSituation(draw(tree_data(), scenario, seed), tree_data().models())).truth;
+    expect_rest(truth, truth.q_WB.size() - 1);
+    EXPECT_NEAR((truth.p_WB_m.back() - truth.p_WB_m.front()).x(), 2.0, 0.1) << seed;
   }
 }
 

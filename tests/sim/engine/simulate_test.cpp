@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 #include "sim/compose.hpp"
 #include "sim/engine/physics.hpp"
@@ -187,12 +188,15 @@ TEST(Simulate, StartPoseIsWhereTheTruthBegins) {
 
 TEST(Simulate, AnUnknownSiteNamesTheNearest) {
   Situation situation = tumble_down(1.0, 100.0);
-  situation.sensors[0].site = "mti3";
-  try {
-    simulate(built(situation));
-    FAIL() << "site mti3 was accepted";
-  } catch (const InvalidSituation& error) {
-    EXPECT_THAT(error.what(), ::testing::HasSubstr("did you mean 'mti30'"));
+  for (const auto& [site, told] :
+       {std::pair{"mti3", "did you mean 'mti30'"}, std::pair{"nowhere", "(known: mti30 vn100"}}) {
+    situation.sensors[0].site = site;
+    try {
+      simulate(built(situation));
+      FAIL() << "site " << site << " was accepted";
+    } catch (const InvalidSituation& error) {
+      EXPECT_THAT(error.what(), ::testing::HasSubstr(told));
+    }
   }
 }
 
