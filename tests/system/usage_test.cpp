@@ -187,6 +187,20 @@ TEST(List, NamesWhatThereIs) {
               testing::IsSupersetOf({"raw", "saave", "oracle", "integrate", "madgwick", "rolling", "icp"}));
   EXPECT_THAT(names("sensors"), testing::IsSupersetOf({"mti30", "vn100", "rs16", "phidget1044", "mid100"}));
   EXPECT_THAT(names("suites"), testing::IsSupersetOf({"hill", "slip", "demo", "gate"}));
+  EXPECT_THAT(names("metrics"), testing::IsSupersetOf({"map_overlap", "pose_nees", "rate_coverage_3sigma"}));
+}
+
+TEST(List, AMetricSaysWhatIsBetter) {
+  const auto of = [](const char* metric) { return json_of(run_program({"list", "metrics", metric, "--json"})).at(0); };
+  const nlohmann::json error = of("translation_error_end_m"), overlap = of("map_overlap"), nees = of("pose_nees");
+  EXPECT_EQ(error.value("unit", ""), "m");
+  EXPECT_EQ(error.value("kind", ""), "slam");
+  EXPECT_EQ(error.value("better", ""), "lower");
+  EXPECT_TRUE(error.value("headline", false));
+  EXPECT_EQ(overlap.value("better", ""), "higher");
+  EXPECT_EQ(nees.value("better", ""), "near 1");
+  EXPECT_NE(nees.value("doc", ""), "");
+  EXPECT_THAT(run_program({"list", "metrics", "map_overlop"}).err, HasSubstr("map_overlap"));
 }
 
 TEST(List, EveryNumberOfASensorHasUnitAndSource) {

@@ -6,6 +6,7 @@
 #include "scenarios/draw/data_sheet.hpp"
 #include "scenarios/draw/scenario.hpp"
 #include "scenarios/methods/method.hpp"
+#include "scenarios/scoring/score.hpp"
 #include "scenarios/sweep/sweep.hpp"
 #include "sim/situation.hpp"
 #include "tools/tumble/arguments.hpp"
@@ -262,11 +263,62 @@ Listing list_suites(const scenarios::DataRoot& data, const std::string& only) {
   return out;
 }
 
+/// What counts as better.
+std::string sense_text(const scenarios::MetricInfo& metric) {
+  switch (metric.sense) {
+    case scenarios::Sense::lower:
+      return "lower";
+    case scenarios::Sense::higher:
+      return "higher";
+    case scenarios::Sense::two_sided:
+      return "near " + number_text(metric.target);
+    case scenarios::Sense::none:
+      break;
+  }
+  return "no contest";
+}
+
+const char* place_text(scenarios::Place place) {
+  switch (place) {
+    case scenarios::Place::headline:
+      return "headline, gate";
+    case scenarios::Place::held:
+      return "gate";
+    case scenarios::Place::detail:
+      break;
+  }
+  return "";
+}
+
+Listing list_metrics(const std::string& only) {
+  Listing out;
+  Table table("", {"metric", "kind", "unit", "better", "shown first, held", "meaning"});
+  std::vector<std::string> names;
+  for (const scenarios::Metric& metric : scenarios::metrics()) names.push_back(metric.info.name);
+  if (!only.empty()) require_known("metric", only, names);
+  for (const scenarios::Metric& metric : scenarios::metrics()) {
+    const scenarios::MetricInfo& info = metric.info;
+    if (!only.empty() && info.name != only) continue;
+    const std::string unit = symbol(info.unit);
+    table.add_row({info.name, to_string(metric.kind), unit, sense_text(info), place_text(info.place), info.doc});
+    out.document.push_back({{"name", info.name},
+                            {"kind", to_string(metric.kind)},
+                            {"unit", unit},
+                            {"better", sense_text(info)},
+                            {"headline", info.place == scenarios::Place::headline},
+                            {"gate", info.place != scenarios::Place::detail},
+                            {"doc", info.doc}});
+  }
+  out.tables.push_back(std::move(table));
+  return out;
+}
+
 Listing listing(const Session& session, const std::string& what, const std::string& only) {
-  const std::vector<std::string> known = {"scenarios", "methods", "sensors", "suites"};
+  const std::vector<std::string> known = {"scenarios", "methods", "metrics", "sensors", "suites"};
   require_known("list", what, known);
   if (what == "scenarios") return list_scenarios(session.data(), only);
   if (what == "methods") return list_methods(only);
+  if (what == "metrics") return list_metrics(only);
   if (what == "sensors") return list_sensors(session.data(), only);
   return list_suites(session.data(), only);
 }
@@ -276,7 +328,7 @@ Listing listing(const Session& session, const std::string& what, const std::stri
 Action declare_list(VerbOptions& verb, const Session& session) {
   auto what = std::make_shared<std::string>();
   auto only = std::make_shared<std::string>();
-  verb.add("WHAT", *what, "scenarios, methods, sensors or suites").required();
+  verb.add("WHAT", *what, "scenarios, methods, metrics, sensors or suites").required();
   verb.add("NAME", *only, "one of them, with all of its numbers");
   return [&session, what, only] {
     const Listing out = listing(session, *what, *only);

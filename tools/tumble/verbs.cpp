@@ -5,7 +5,7 @@ namespace tumble::tools {
 
 std::span<const Verb> verbs() {
   static constexpr Verb kVerbs[] = {
-      {"list", "names and parameters of scenarios, methods, sensors or suites", declare_list},
+      {"list", "names and parameters of scenarios, methods, metrics, sensors or suites", declare_list},
       {"run", "draw, simulate, estimate and score one situation", declare_run},
       {"record", "draw and simulate one situation", declare_record},
       {"estimate", "run a method over a recording, real or simulated; never opens the truth", declare_estimate},
