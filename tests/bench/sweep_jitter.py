@@ -23,7 +23,8 @@ METHODS = ("slam/tumble", "slam/tumble_lag")
 
 
 def begin_earlier(lidar, most_ns, draws):
-    """The first sweep stays where it is: a recording starts there."""
+    """The first sweep stays where it is: a recording starts there. The period has room for the points of all."""
+    lidar.sweep_period_ns += most_ns
     by_ns = draws.integers(0, most_ns + 1, len(lidar.sweep_start_ns))
     by_ns[0] = 0
     points = np.diff(np.asarray(lidar.sweep_first).astype(np.int64))
