@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "scenarios/scoring/metric.hpp"
 
+#include <fmt/format.h>
+
 #include <cmath>
 #include <map>
 #include <numbers>
@@ -91,6 +93,20 @@ MetricStyle style_of(Unit unit) {
       break;
   }
   return {symbol(unit), 1.0};
+}
+
+std::string sense_text(const MetricInfo& metric) {
+  switch (metric.sense) {
+    case Sense::lower:
+      return "lower is better";
+    case Sense::higher:
+      return "higher is better";
+    case Sense::two_sided:
+      return fmt::format("best near {:g}", metric.target);
+    case Sense::none:
+      break;
+  }
+  return "no contest";
 }
 
 bool is_better(const MetricInfo& metric, double a, double b) {

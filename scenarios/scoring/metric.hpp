@@ -55,6 +55,9 @@ struct MetricStyle {
 };
 MetricStyle style_of(Unit unit);
 
+/// "lower is better", "higher is better", "best near 1", "no contest".
+std::string sense_text(const MetricInfo& metric);
+
 /// Whether `a` is better than `b`; never where there is no contest, nor where either is NaN. With a target, what lies
 /// nearer to it, as a ratio where both are positive.
 bool is_better(const MetricInfo& metric, double a, double b);

@@ -195,10 +195,10 @@ TEST(List, AMetricSaysWhatIsBetter) {
   const nlohmann::json error = of("translation_error_end_m"), overlap = of("map_overlap"), nees = of("pose_nees");
   EXPECT_EQ(error.value("unit", ""), "m");
   EXPECT_EQ(error.value("kind", ""), "slam");
-  EXPECT_EQ(error.value("better", ""), "lower");
+  EXPECT_EQ(error.value("sense", ""), "lower is better");
   EXPECT_TRUE(error.value("headline", false));
-  EXPECT_EQ(overlap.value("better", ""), "higher");
-  EXPECT_EQ(nees.value("better", ""), "near 1");
+  EXPECT_EQ(overlap.value("sense", ""), "higher is better");
+  EXPECT_EQ(nees.value("sense", ""), "best near 1");
   EXPECT_NE(nees.value("doc", ""), "");
   EXPECT_THAT(run_program({"list", "metrics", "map_overlop"}).err, HasSubstr("map_overlap"));
 }

@@ -55,20 +55,6 @@ std::string cell_text(const BenchCell& cell) {
   return cell.lost == 0 ? median : fmt::format("{} (lost {} of {})", median, cell.lost, cell.draws);
 }
 
-const char* sense_text(scenarios::Sense sense) {
-  switch (sense) {
-    case scenarios::Sense::lower:
-      return "lower is better";
-    case scenarios::Sense::higher:
-      return "higher is better";
-    case scenarios::Sense::two_sided:
-      return "has a target";
-    case scenarios::Sense::none:
-      break;
-  }
-  return "no contest";
-}
-
 Table metric_table(const scenarios::Suite& suite, const std::string& metric, const std::vector<MethodRow>& rows,
                    const std::vector<BenchResult>& all) {
   const BenchResult* baseline = baseline_of(rows);
@@ -77,7 +63,7 @@ Table metric_table(const scenarios::Suite& suite, const std::string& metric, con
     header.push_back(fmt::format("{} ({})", each.name, each.draws.size()));
   header.emplace_back("all");
   if (baseline != nullptr) header.push_back("better than " + baseline->method + " in");
-  Table table(fmt::format("{}: median, {}", metric, sense_text(scenarios::metric_info(metric).sense)), header);
+  Table table(fmt::format("{}: median, {}", metric, sense_text(scenarios::metric_info(metric))), header);
   table.align_right_from(1);
   for (const MethodRow& row : rows) {
     std::vector<std::string> cells = {row.label};

@@ -263,21 +263,6 @@ Listing list_suites(const scenarios::DataRoot& data, const std::string& only) {
   return out;
 }
 
-/// What counts as better.
-std::string sense_text(const scenarios::MetricInfo& metric) {
-  switch (metric.sense) {
-    case scenarios::Sense::lower:
-      return "lower";
-    case scenarios::Sense::higher:
-      return "higher";
-    case scenarios::Sense::two_sided:
-      return "near " + number_text(metric.target);
-    case scenarios::Sense::none:
-      break;
-  }
-  return "no contest";
-}
-
 const char* place_text(scenarios::Place place) {
   switch (place) {
     case scenarios::Place::headline:
@@ -292,7 +277,7 @@ const char* place_text(scenarios::Place place) {
 
 Listing list_metrics(const std::string& only) {
   Listing out;
-  Table table("", {"metric", "kind", "unit", "better", "shown first, held", "meaning"});
+  Table table("", {"metric", "kind", "unit", "sense", "shown first, held", "meaning"});
   std::vector<std::string> names;
   for (const scenarios::Metric& metric : scenarios::metrics()) names.push_back(metric.info.name);
   if (!only.empty()) require_known("metric", only, names);
@@ -304,7 +289,7 @@ Listing list_metrics(const std::string& only) {
     out.document.push_back({{"name", info.name},
                             {"kind", to_string(metric.kind)},
                             {"unit", unit},
-                            {"better", sense_text(info)},
+                            {"sense", sense_text(info)},
                             {"headline", info.place == scenarios::Place::headline},
                             {"gate", info.place != scenarios::Place::detail},
                             {"doc", info.doc}});
