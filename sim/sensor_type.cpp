@@ -7,6 +7,7 @@
 #include "sim/lidar/lidar_parameters.hpp"
 #include "sim/lidar/lidar_simulation.hpp"
 #include "sim/registry.hpp"
+#include "sim/series/series_sensors.hpp"
 
 namespace tumble::sim {
 
@@ -52,8 +53,8 @@ const SensorType& rosette_lidar_sensor() {
 }  // namespace
 
 std::span<const SensorType* const> all_sensor_types() {
-  static const std::array<const SensorType*, 3> kTypes = {&imu_sensor(), &spinning_lidar_sensor(),
-                                                          &rosette_lidar_sensor()};
+  static const std::array<const SensorType*, 4> kTypes = {&imu_sensor(), &spinning_lidar_sensor(),
+                                                          &rosette_lidar_sensor(), &barometer_sensor()};
   return kTypes;
 }
 

@@ -15,7 +15,7 @@ namespace tumble::sim {
 /// A sensor of the robot: where it is mounted, which device it is, and how far the estimator's calibration is off.
 struct SensorSpec {
   std::string name;    ///< unique in the situation: "imu", "imu_reference", "lidar"
-  std::string kind;    ///< registry entry: "imu", "spinning_lidar", "rosette_lidar"
+  std::string kind;    ///< registry entry: "imu", "spinning_lidar", "barometer"
   std::string device;  ///< data sheet that the values came from: "mti30"; kept for the record
   std::string site;    ///< site of the robot's MJCF that carries it
   Values values;       ///< numbers of the device (data sheet, then the scenario's changes)

@@ -28,12 +28,16 @@ def small():
                                 gyro_element_offset_rad_s=rows(3), accel_elements=rows(3, 3), accel_element_offset_m_s2=rows(3),
                                 magnetic_field_t=rows(count, 3))
     lidar_truth = tumble.LidarTruth("lidar", pose, rows(7, 3).astype(np.float32), np.array([-2, -1, 0, 1, 0, 1, 0], np.int32))
+    units = {"pressure_pa": "Pa", "temperature_k": "K"}
+    series = tumble.Series(np.array([5, 7, 11]), {name: rows(3) for name in units}, units, {"pressure_pa": 2.0, "temperature_k": 0.0}, pose,
+                           "barometer", "barometer", "bmp388", 20_000_000)
+    series_truth = tumble.SeriesTruth("barometer", pose, {name: rows(3) for name in units}, units)
     contacts = tumble.Contacts(np.array([0, 5, 5], np.int64), rows(3, 3), rows(3, 3), rows(3, 3), rows(3), np.array([0, 1, -1], np.int32))
     quaternion = rows(9, 4)
     quaternion /= np.linalg.norm(quaternion, axis=1, keepdims=True)
     truth = tumble.Truth(500_000, rows(9, 3), quaternion, rows(9, 3), rows(9, 3), (np.arange(9) % 4).astype(np.uint8), rows(3), [imu_truth],
-                         [lidar_truth], rows(9, 3), contacts, ["terrain", "Fels_Ä"])
-    return tumble.Recording([imu], [lidar], robot="rig", gravity_m_s2=9.8, scenario="hill", seed=2**64 - 1, situation_yaml="a: 1",
+                         [lidar_truth], [series_truth], rows(9, 3), contacts, ["terrain", "Fels_Ä"])
+    return tumble.Recording([imu], [lidar], [series], robot="rig", gravity_m_s2=9.8, scenario="hill", seed=2**64 - 1, situation_yaml="a: 1",
                             attribution="nobody", origin_ns=1_234_567_890_123_456_789, tumble_version="0.1", engine_version="3", truth=truth)
 
 
@@ -47,6 +51,10 @@ def same(a, b, place="recording"):
         assert len(a) == len(b), place
         for k, (own, other) in enumerate(zip(a, b, strict=True)):
             same(own, other, f"{place}[{k}]")
+    elif isinstance(a, dict):
+        assert list(a) == list(b), place
+        for key, own in a.items():
+            same(own, b[key], f"{place}[{key!r}]")
     elif isinstance(a, np.ndarray):
         assert a.dtype == b.dtype and a.shape == b.shape and a.tobytes() == b.tobytes(), place
     else:
@@ -81,12 +89,32 @@ def test_a_reference_that_knows_poses_alone(tmp_path):
     known = first.truth
     known.position[3], known.quaternion[3] = np.nan, np.nan
     first.truth = tumble.Truth(known.period_ns, known.position, known.quaternion, known.velocity, known.rate,
-                               imus=[tumble.ImuTruth(rate=known.imus[0].rate)], lidars=[tumble.LidarTruth()])
+                               imus=[tumble.ImuTruth(rate=known.imus[0].rate)], lidars=[tumble.LidarTruth()],
+                               series=[tumble.SeriesTruth()])
     tumble.write(tmp_path / "a.h5", first)
     back = tumble.read(tmp_path / "a.h5")
     same(back, first)
     assert len(back.truth.label) == len(back.truth.contacts) == len(back.truth.imus[0].gyro_bias) == 0
     assert back.truth.imus[0].gyro_elements is None and np.array_equal(back.truth.imu_T_BI[0], np.eye(4))
+
+
+def test_a_series(tmp_path):
+    """A sensor that is neither IMU nor lidar: by quantity, left out of files that have none, refused where it is none."""
+    recording = small()
+    barometer = recording.series[0]
+    assert len(barometer) == 3 and barometer["pressure_pa"] is barometer.values["pressure_pa"]
+    tumble.write(tmp_path / "none.h5", dataclasses.replace(recording, series=[], truth=dataclasses.replace(recording.truth, series=[])))
+    with h5py.File(tmp_path / "none.h5") as file:
+        assert "series" not in file["sensors"] and "series" not in file["truth"]
+    assert tumble.read(tmp_path / "none.h5").series == []
+    for wrong, about in (({"values": {"a,b": np.zeros(3)}}, "a,b"), ({"values": {"a_m": np.zeros(2)}}, r"\(2,\)"), ({"T_BX": np.zeros((4, 4))}, "T_BX"),
+                         ({"noise": {"pressure_pa": -1.0}}, "noise"), ({"time_ns": np.array([3, 2, 1])}, "time_ns")):
+        with pytest.raises(tumble.TumbleError, match=about):
+            tumble.write(tmp_path / "wrong.h5", dataclasses.replace(recording, series=[dataclasses.replace(barometer, **wrong)], truth=None))
+    recording.truth.series = []
+    with pytest.raises(tumble.TumbleError, match="truth.series is 0, must be 1"):
+        tumble.write(tmp_path / "wrong.h5", recording)
+    assert not (tmp_path / "wrong.h5").exists()
 
 
 def test_sweeps_are_views():

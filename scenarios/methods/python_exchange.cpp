@@ -120,6 +120,24 @@ json of_lidar(const sim::LidarRecord& lidar, Arrays& arrays) {
           {"ring", arrays.add("<u2", lidar.ring)}};
 }
 
+json of_series(const sim::SeriesRecord& series, Arrays& arrays) {
+  json values = json::object(), units = json::object(), noise = json::object();
+  for (const sim::Quantity& quantity : series.quantities) {
+    values[quantity.name] = arrays.add("<f8", quantity.values);
+    units[quantity.name] = quantity.unit;
+    noise[quantity.name] = quantity.noise;
+  }
+  return {{"name", series.name},
+          {"kind", series.kind},
+          {"device", series.device},
+          {"period_ns", series.period_ns},
+          {"T_BX", arrays.add(series.T_BX)},
+          {"time_ns", arrays.add("<i8", series.time_ns)},
+          {"values", std::move(values)},
+          {"units", std::move(units)},
+          {"noise", std::move(noise)}};
+}
+
 /// The memory of an answer: its text, and arrays that are where the text says.
 class Answer {
  public:
@@ -227,11 +245,13 @@ void read_map(const Answer& answer, Estimate& estimate) {
 
 void write_sensors(const sim::Sensors& sensors, SharedMemory& memory) {
   Arrays arrays;
-  json imus = json::array(), lidars = json::array();
+  json imus = json::array(), lidars = json::array(), series = json::array();
   for (const sim::ImuRecord& imu : sensors.imus) imus.push_back(of_imu(imu, arrays));
   for (const sim::LidarRecord& lidar : sensors.lidars) lidars.push_back(of_lidar(lidar, arrays));
+  for (const sim::SeriesRecord& each : sensors.series) series.push_back(of_series(each, arrays));
   const json text = {{"imus", std::move(imus)},
                      {"lidars", std::move(lidars)},
+                     {"series", std::move(series)},
                      {"robot", sensors.robot},
                      {"sphere_radius_m", sensors.sphere_radius_m},
                      {"gravity_m_s2", sensors.gravity_m_s2}};

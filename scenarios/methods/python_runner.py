@@ -50,7 +50,7 @@ class Lidar(types.SimpleNamespace):
 
 
 def read_sensors(descriptor):
-    """The recording: imus, lidars, robot, sphere_radius_m, gravity_m_s2. Arrays are views of the memory, not to be written."""
+    """The recording: imus, lidars, series, robot, sphere_radius_m, gravity_m_s2. Arrays are views of the memory, not to be written."""
     memory = mmap.mmap(descriptor, 0, flags=mmap.MAP_PRIVATE, prot=mmap.PROT_READ)  # shared, a sealed one is refused by some kernels
     (length,) = struct.unpack_from("<Q", memory)
     data = -(-(8 + length) // ALIGNMENT) * ALIGNMENT
@@ -60,7 +60,7 @@ def read_sensors(descriptor):
             return [made(each) for each in node]
         if not isinstance(node, dict):
             return node
-        if "offset" in node:
+        if node.keys() == {"dtype", "shape", "offset"}:
             count = int(np.prod(node["shape"]))
             return np.frombuffer(memory, node["dtype"], count, data + node["offset"]).reshape(node["shape"]) if count else (
                 np.zeros(node["shape"], node["dtype"]))
@@ -71,6 +71,7 @@ def read_sensors(descriptor):
         imu["earth_field_t"] = None if imu["earth_field_t"] is None else np.array(imu["earth_field_t"])
     told["imus"] = [types.SimpleNamespace(**imu, lever_arm_m=imu["T_BI"][:3, :3].T @ imu["T_BI"][:3, 3]) for imu in told["imus"]]
     told["lidars"] = [Lidar(**lidar) for lidar in told["lidars"]]
+    told["series"] = [types.SimpleNamespace(**each) for each in told["series"]]
     return types.SimpleNamespace(**told)
 
 

@@ -35,17 +35,32 @@ json lidar(const sim::LidarRecord& record) {
           {"T_BL", mounting(record.T_BL)}};
 }
 
+json series(const sim::SeriesRecord& record) {
+  json quantities = json::array();
+  for (const sim::Quantity& quantity : record.quantities)
+    quantities.push_back({{"name", quantity.name}, {"unit", quantity.unit}, {"noise", quantity.noise}});
+  return {{"name", record.name},
+          {"kind", record.kind},
+          {"device", record.device},
+          {"period_ns", record.period_ns},
+          {"samples", record.time_ns.size()},
+          {"quantities", quantities},
+          {"T_BX", mounting(record.T_BX)}};
+}
+
 }  // namespace
 
 std::string sensors_text(const sim::Sensors& sensors) {
-  json imus = json::array(), lidars = json::array();
+  json imus = json::array(), lidars = json::array(), others = json::array();
   for (const sim::ImuRecord& record : sensors.imus) imus.push_back(imu(record));
   for (const sim::LidarRecord& record : sensors.lidars) lidars.push_back(lidar(record));
+  for (const sim::SeriesRecord& record : sensors.series) others.push_back(series(record));
   const json all = {{"robot", sensors.robot},
                     {"sphere_radius_m", sensors.sphere_radius_m},
                     {"gravity_m_s2", sensors.gravity_m_s2},
                     {"imus", imus},
-                    {"lidars", lidars}};
+                    {"lidars", lidars},
+                    {"series", others}};
   return all.dump(2) + "\n";
 }
 

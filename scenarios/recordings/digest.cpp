@@ -76,6 +76,10 @@ class FieldHasher : public Hasher {
     count(records.size());
     for (const Record& record : records) fields(*this, record);
   }
+  template <class Record, class Fields>
+  void optional_list(const char* name, const std::vector<Record>& records, Fields&& fields) {
+    if (!records.empty()) list(name, records, fields);
+  }
 };
 
 void hash_truth(FieldHasher& hasher, const sim::Truth& truth) {

@@ -18,6 +18,11 @@ using std::filesystem::path;
 
 using Notes = std::vector<std::string>;
 
+Notes joined(Notes first, const Notes& second) {
+  first.insert(first.end(), second.begin(), second.end());
+  return first;
+}
+
 struct Format {
   const char* name;
   Notes (*write)(const path& recording, const path& out, const ExportChoices& choices);
@@ -28,7 +33,8 @@ Notes write_csv(const path& recording, const path& out, const ExportChoices&) {
   std::optional<sim::Truth> truth;
   if (read_info(recording).has_truth) truth = read_truth(recording);
   export_csv(sensors, truth ? &*truth : nullptr, out);
-  return export_names(sensors).imus.notes;
+  ExportNames names = export_names(sensors);
+  return joined(std::move(names.imus.notes), names.series.notes);
 }
 
 template <void (*kExport)(const sim::Sensors&, const BagWriting&, const path&)>
@@ -44,9 +50,11 @@ Notes write_bag(const path& recording, const path& out, const ExportChoices& cho
   if (choices.more) choices.more(sensors, writing);
   kExport(sensors, writing, out);
   ExportNames names = export_names(sensors);
-  Notes notes = std::move(names.imus.notes);
-  notes.insert(notes.end(), names.lidars.notes.begin(), names.lidars.notes.end());
-  return notes;
+  Notes left_out;
+  for (const sim::SeriesRecord& series : sensors.series)
+    left_out.push_back("'" + series.name + "', a " + series.kind +
+                       ", is left out: bags of ours have no message for it");
+  return joined(joined(std::move(names.imus.notes), names.lidars.notes), left_out);
 }
 
 Notes write_tum(const path& recording, const path& out, const ExportChoices& choices) {

@@ -37,7 +37,7 @@ struct ExportChoices {
 /// replaced whole. Throws BadInput: unknown format (nearest named), a recording without what the format needs, a place
 /// that cannot be written. A bag is written sweep by sweep, its points and its truth set aside beside it; in memory are
 /// the samples of the IMUs, 32 bytes a message, and the poses that `choices` adds. Returns which sensors are written
-/// under another name than theirs (export_names.hpp).
+/// under another name than theirs (export_names.hpp), and which a bag has no message for.
 std::vector<std::string> export_recording(const std::filesystem::path& recording, const std::string& format,
                                           const std::filesystem::path& out, const ExportChoices& choices = {});
 
@@ -59,7 +59,8 @@ void export_kitti(const sim::Truth& truth, const std::filesystem::path& file, co
 
 /// NAME.csv per IMU in the columns of a sensor_msgs/Imu (stamp s, stamp ns, frame, attitude x y z w, its covariance,
 /// rate, its covariance, specific force, its covariance; covariances in brackets, space separated; rad/s, m/s^2;
-/// attitude is unknown: covariance -1 first, as ROS has it). With a truth also truth.csv: time, T_WB, v_WB_W, w_WB_B,
+/// attitude is unknown: covariance -1 first, as ROS has it), and per series: stamp s, stamp ns, frame, and a column for
+/// each quantity. With a truth also truth.csv: time, T_WB, v_WB_W, w_WB_B,
 /// f_B, label. NAME is the sensor's by export_names, here and below.
 void export_csv(const sim::Sensors& sensors, const sim::Truth* truth, const std::filesystem::path& folder);
 

@@ -50,6 +50,7 @@ ExportNames names_of(const Recorded& recorded) {
   std::vector<Claim> claims;
   add_claims(recorded.imus, "imu", "IMU", claims);
   add_claims(recorded.lidars, "lidar", "lidar", claims);
+  add_claims(recorded.series, "series", "series", claims);
   std::set<std::string> taken = own_names();
   taken.insert(frames_of_no_sensor().begin(), frames_of_no_sensor().end());
   for (const bool own : {true, false}) {
@@ -60,7 +61,9 @@ ExportNames names_of(const Recorded& recorded) {
   out.taken = own_names();
   for (std::size_t index = 0; index < claims.size(); ++index) {
     Claim& claim = claims[index];
-    GivenNames& of_kind = index < recorded.imus.size() ? out.imus : out.lidars;
+    const bool after_imus = index >= recorded.imus.size();
+    const bool after_lidars = index >= recorded.imus.size() + recorded.lidars.size();
+    GivenNames& of_kind = after_lidars ? out.series : after_imus ? out.lidars : out.imus;
     if (claim.given.empty()) {
       claim.given = free_name(claim.name, taken);
       of_kind.notes.push_back(why_another(claim));

@@ -17,7 +17,7 @@ struct GivenNames {
 
 /// The names under which a recording's sensors are written, whatever the format: topics, frames, stems of files.
 struct ExportNames {
-  GivenNames imus, lidars;
+  GivenNames imus, lidars, series;
   std::set<std::string> taken;  ///< these, and the exports' own topics and frames
 };
 

@@ -76,6 +76,10 @@ class RecordingReader {
       fields(inner, records.emplace_back());
     }
   }
+  template <class Record, class Fields>
+  void optional_list(const char* name, std::vector<Record>& records, Fields&& fields) {
+    if (group_.has(name)) list(name, records, fields);
+  }
 
   /// Absent in files that others wrote.
   std::string digest_or_empty() const { return group_.has_attribute("digest") ? group_.text_attribute("digest") : ""; }

@@ -2,6 +2,7 @@
 #include "scenarios/recordings/recording_check.hpp"
 
 #include <algorithm>
+#include <cctype>
 #include <cmath>
 #include <initializer_list>
 #include <span>
@@ -168,6 +169,58 @@ std::string lidar_problem(const sim::LidarRecord& lidar, const Points& points) {
                    sweep_problem(lidar, points.position_L_m.size()), point_times_problem(lidar, points.offset_ns)});
 }
 
+/// A name as it may stand in the head of a column: letters, digits and _.
+std::string column_problem(const std::string& name) {
+  const auto plain = [](unsigned char c) { return std::isalnum(c) != 0 || c == '_'; };
+  if (!name.empty() && std::all_of(name.begin(), name.end(), plain)) return "";
+  return "name must be letters, digits and _, at least one";
+}
+
+/// Of readings or of their truth, whose quantities have names and units that can be told apart.
+template <class Quantity>
+std::string quantities_problem(const std::vector<Quantity>& quantities) {
+  std::string problem;
+  for (std::size_t i = 0; i < quantities.size() && problem.empty(); ++i) {
+    const std::string& name = quantities[i].name;
+    const auto same = [&](const Quantity& other) { return other.name == name; };
+    problem = first_of({column_problem(name), text_problem("unit", quantities[i].unit),
+                        std::count_if(quantities.begin(), quantities.end(), same) > 1 ? "name is another's too" : ""});
+    problem = in("quantities/" + std::to_string(i), problem);
+  }
+  return problem;
+}
+
+std::string series_problem(const sim::SeriesRecord& series) {
+  std::string problem = first_of({text_problem("name", series.name), text_problem("kind", series.kind),
+                                  text_problem("device", series.device), times_problem("time_ns", series.time_ns),
+                                  positive("period_ns", series.period_ns), pose_problem("T_BX", series.T_BX),
+                                  quantities_problem(series.quantities)});
+  for (std::size_t i = 0; i < series.quantities.size() && problem.empty(); ++i) {
+    const sim::Quantity& quantity = series.quantities[i];
+    problem = in("quantities/" + std::to_string(i),
+                 first_of({at_least("noise", quantity.noise, 0.0),
+                           length_problem({{"time_ns", series.time_ns.size()}, {"values", quantity.values.size()}})}));
+  }
+  return problem;
+}
+
+std::string series_truth_problem(const sim::SeriesTruth& series) {
+  return first_of(
+      {text_problem("name", series.name), pose_problem("T_BX", series.T_BX), quantities_problem(series.quantities)});
+}
+
+/// What a sensor's readings and their truth do not have in common.
+std::string series_mismatch(const sim::SeriesRecord& series, const sim::SeriesTruth& truth) {
+  if (truth.quantities.empty()) return "";  // a reference knows none
+  if (truth.quantities.size() != series.quantities.size()) return "truth and sensor differ in the number of quantities";
+  std::string problem;
+  for (std::size_t i = 0; i < truth.quantities.size() && problem.empty(); ++i) {
+    problem = in("quantities/" + std::to_string(i),
+                 optional_length_problem("truth values", truth.quantities[i].values.size(), series.time_ns.size()));
+  }
+  return problem;
+}
+
 /// `imu`: a sim::ImuTruth, or one whose rows are set aside; so with the other truths.
 template <class Imu>
 std::string imu_truth_problem(const Imu& imu) {
@@ -264,6 +317,9 @@ std::string truth_problem(const Truth& truth) {
   for (std::size_t i = 0; i < truth.lidars.size() && problem.empty(); ++i) {
     problem = in("truth/lidars/" + std::to_string(i), lidar_truth_problem(truth.lidars[i], truth.surfaces.size()));
   }
+  for (std::size_t i = 0; i < truth.series.size() && problem.empty(); ++i) {
+    problem = in("truth/series/" + std::to_string(i), series_truth_problem(truth.series[i]));
+  }
   return problem;
 }
 
@@ -281,6 +337,9 @@ std::string find_problem(const sim::Sensors& sensors, const std::vector<PointSto
     problem = in("sensors/lidars/" + std::to_string(i),
                  points.empty() ? lidar_problem(lidar, lidar) : lidar_problem(lidar, points.at(i)));
   }
+  for (std::size_t i = 0; i < sensors.series.size() && problem.empty(); ++i) {
+    problem = in("sensors/series/" + std::to_string(i), series_problem(sensors.series[i]));
+  }
   return problem;
 }
 
@@ -295,6 +354,7 @@ std::string find_problem(const StoredTruth& truth) {
 std::string find_mismatch(const sim::Sensors& sensors, const sim::Truth& truth) {
   if (truth.imus.size() != sensors.imus.size()) return "truth and sensors differ in the number of IMUs";
   if (truth.lidars.size() != sensors.lidars.size()) return "truth and sensors differ in the number of lidars";
+  if (truth.series.size() != sensors.series.size()) return "truth and sensors differ in the number of series";
   std::string problem;
   for (std::size_t i = 0; i < truth.imus.size() && problem.empty(); ++i) {
     const sim::ImuRecord& imu = sensors.imus[i];
@@ -311,6 +371,9 @@ std::string find_mismatch(const sim::Sensors& sensors, const sim::Truth& truth) 
     problem = in("lidars/" + std::to_string(i),
                  optional_length_problem("truth hit_W_m", truth.lidars[i].hit_W_m.size(),
                                          first.empty() ? 0 : static_cast<std::size_t>(first.back())));
+  }
+  for (std::size_t i = 0; i < truth.series.size() && problem.empty(); ++i) {
+    problem = in("series/" + std::to_string(i), series_mismatch(sensors.series[i], truth.series[i]));
   }
   return problem;
 }

@@ -20,6 +20,9 @@ void shift(sim::Sensors& sensors, std::int64_t by_ns) {
   for (sim::LidarRecord& lidar : sensors.lidars) {
     for (std::int64_t& time : lidar.sweep_start_ns) time += by_ns;
   }
+  for (sim::SeriesRecord& series : sensors.series) {
+    for (std::int64_t& time : series.time_ns) time += by_ns;
+  }
 }
 
 }  // namespace
@@ -35,6 +38,11 @@ std::pair<std::int64_t, std::int64_t> span_of(const sim::Sensors& sensors) {
     if (lidar.sweep_start_ns.empty()) continue;
     first = std::min(first, lidar.sweep_start_ns.front());
     last = std::max(last, lidar.sweep_start_ns.back() + lidar.sweep_period_ns);
+  }
+  for (const sim::SeriesRecord& series : sensors.series) {
+    if (series.time_ns.empty()) continue;
+    first = std::min(first, series.time_ns.front());
+    last = std::max(last, series.time_ns.back());
   }
   if (first > last) throw BadInput("the recording holds no reading");
   return {first, last};

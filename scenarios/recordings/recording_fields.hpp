@@ -14,9 +14,9 @@
 ///
 /// An archive has: value(name, text | double | int64), pose(name, isometry), point(name, vector, unit),
 /// rows(name, vector, unit, columns, storage), texts(name, strings), list(name, records, fields), group(name, record,
-/// fields). optional_rows, optional_point and point_times are for what came after the first files: absent when empty,
-/// zero or measured, and then not hashed either, so that older files keep their digests. rows are a std::vector, or a
-/// ColumnFile of the same rows where points are set aside on the disk.
+/// fields). optional_rows, optional_point, optional_list and point_times are for what came after the first files:
+/// absent when empty, zero or measured, and then not hashed either, so that older files keep their digests. rows are a
+/// std::vector, or a ColumnFile of the same rows where points are set aside on the disk.
 namespace tumble::scenarios {
 
 namespace hdf5 {
@@ -102,6 +102,22 @@ void lidar_fields(Archive& archive, Lidar& lidar) {
   }
 }
 
+template <class Archive, class Series>
+void series_fields(Archive& archive, Series& series) {
+  archive.value("name", series.name);
+  archive.value("kind", series.kind);
+  archive.value("device", series.device);
+  archive.value("period_ns", series.period_ns);
+  archive.pose("T_BX", series.T_BX);
+  archive.rows("time_ns", series.time_ns, "ns", "", Storage::deflated);
+  archive.list("quantities", series.quantities, [](auto& inner, auto& quantity) {
+    inner.value("name", quantity.name);
+    inner.value("unit", quantity.unit);
+    inner.value("noise", quantity.noise);
+    inner.rows("values", quantity.values, quantity.unit.c_str(), "", Storage::deflated);
+  });
+}
+
 /// `lidars`: sensors.lidars, or what stands for them.
 template <class Archive, class Sensors, class Lidars>
 void sensors_fields(Archive& archive, Sensors& sensors, Lidars& lidars) {
@@ -110,6 +126,7 @@ void sensors_fields(Archive& archive, Sensors& sensors, Lidars& lidars) {
   archive.value("gravity_m_s2", sensors.gravity_m_s2);
   archive.list("imus", sensors.imus, [](auto& inner, auto& imu) { imu_fields(inner, imu); });
   archive.list("lidars", lidars, [](auto& inner, auto& lidar) { lidar_fields(inner, lidar); });
+  archive.optional_list("series", sensors.series, [](auto& inner, auto& series) { series_fields(inner, series); });
 }
 
 template <class Archive, class Sensors>
@@ -152,6 +169,17 @@ void lidar_truth_fields(Archive& archive, Lidar& lidar) {
   archive.rows("surface_id", lidar.surface_id, "1", "", Storage::deflated);
 }
 
+template <class Archive, class Series>
+void series_truth_fields(Archive& archive, Series& series) {
+  archive.value("name", series.name);
+  archive.pose("T_BX", series.T_BX);
+  archive.list("quantities", series.quantities, [](auto& inner, auto& quantity) {
+    inner.value("name", quantity.name);
+    inner.value("unit", quantity.unit);
+    inner.rows("values", quantity.values, quantity.unit.c_str(), "", Storage::deflated);
+  });
+}
+
 /// `contacts` holds truth.contacts by column; truth.contacts itself is not visited.
 template <class Archive, class Truth, class Contacts>
 void truth_fields(Archive& archive, Truth& truth, Contacts& contacts) {
@@ -167,6 +195,7 @@ void truth_fields(Archive& archive, Truth& truth, Contacts& contacts) {
   archive.group("contacts", contacts, [](auto& inner, auto& each) { contact_fields(inner, each); });
   archive.list("imus", truth.imus, [](auto& inner, auto& imu) { imu_truth_fields(inner, imu); });
   archive.list("lidars", truth.lidars, [](auto& inner, auto& lidar) { lidar_truth_fields(inner, lidar); });
+  archive.optional_list("series", truth.series, [](auto& inner, auto& series) { series_truth_fields(inner, series); });
 }
 
 ContactColumns to_columns(const std::vector<sim::ContactTruth>& contacts);

@@ -48,6 +48,10 @@ class SizeBound {
     bytes += kHead_bytes;
     for (const Record& record : records) group("", record, fields);
   }
+  template <class Record, class Fields>
+  void optional_list(const char* name, const std::vector<Record>& records, Fields&& fields) {
+    list(name, records, fields);
+  }
 };
 
 }  // namespace

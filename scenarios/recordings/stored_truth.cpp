@@ -21,6 +21,7 @@ sim::Truth StoredTruth::states(std::size_t first, std::size_t last) const {
     out.lidars.back().name = lidar.name;
     out.lidars.back().T_BL = lidar.T_BL;
   }
+  for (const sim::SeriesTruth& each : series) out.series.push_back({each.name, each.T_BX, {}});
   return out;
 }
 

@@ -44,7 +44,7 @@ struct StoredLidarTruth {
 
 /// A sim::Truth on the disk: its rows are columns of scratch files, the rest is as there.
 struct StoredTruth {
-  /// The body's state alone, rows [first, last), with the mountings and `p_BG_m`: of IMUs, lidars and contacts no rows.
+  /// The body's state alone, rows [first, last), with the mountings and `p_BG_m`: of sensors and contacts no rows.
   sim::Truth states(std::size_t first, std::size_t last) const;
   std::size_t size() const { return p_WB_m.size(); }
 
@@ -58,6 +58,7 @@ struct StoredTruth {
   std::vector<std::string> surfaces;
   std::vector<StoredImuTruth> imus;
   std::vector<StoredLidarTruth> lidars;
+  std::vector<sim::SeriesTruth> series;  ///< in memory: few numbers a second
 };
 
 }  // namespace tumble::scenarios

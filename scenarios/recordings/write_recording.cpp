@@ -62,6 +62,10 @@ class Writer {
       fields(inner, records[i]);
     }
   }
+  template <class Record, class Fields>
+  void optional_list(const char* name, const std::vector<Record>& records, Fields&& fields) {
+    if (!records.empty()) list(name, records, fields);
+  }
 
  private:
   hdf5::Group group_;

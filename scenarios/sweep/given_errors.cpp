@@ -37,6 +37,7 @@ void lever_arm(sim::Sensors& sensors, const sim::Truth& truth, const sim::Situat
       truth.imus.front().T_BI.translation() + size * direction(situation, "lever_arm") - given_m;
   for (sim::ImuRecord& imu : sensors.imus) imu.T_BI.translation() += shift_m;
   for (sim::LidarRecord& lidar : sensors.lidars) lidar.T_BL.translation() += shift_m;
+  for (sim::SeriesRecord& series : sensors.series) series.T_BX.translation() += shift_m;
 }
 
 /// Between primary IMU and lidar, in place of the scenario's own.

@@ -86,6 +86,10 @@ bool exact_mounting(sim::Sensors& sensors, const sim::Truth& truth) {
     changed = changed || sensors.lidars[i].T_BL.matrix() != truth.lidars[i].T_BL.matrix();
     sensors.lidars[i].T_BL = truth.lidars[i].T_BL;
   }
+  for (std::size_t i = 0; i < std::min(sensors.series.size(), truth.series.size()); ++i) {
+    changed = changed || sensors.series[i].T_BX.matrix() != truth.series[i].T_BX.matrix();
+    sensors.series[i].T_BX = truth.series[i].T_BX;
+  }
   return changed;
 }
 
@@ -151,10 +155,26 @@ bool unbent_sweeps(sim::Sensors& sensors, const sim::Truth& truth) {
   return !lidar.range_m.empty();
 }
 
+/// Each reading of a series its true mean over the window.
+bool exact_series(sim::Sensors& sensors, const sim::Truth& truth) {
+  bool changed = false;
+  for (std::size_t i = 0; i < std::min(sensors.series.size(), truth.series.size()); ++i) {
+    std::vector<sim::Quantity>& read = sensors.series[i].quantities;
+    const std::vector<sim::QuantityTruth>& exact = truth.series[i].quantities;
+    for (std::size_t q = 0; q < std::min(read.size(), exact.size()); ++q) {
+      if (read[q].values.size() != exact[q].values.size() || read[q].values == exact[q].values) continue;
+      read[q].values = exact[q].values;
+      changed = true;
+    }
+  }
+  return changed;
+}
+
 /// Errors of ranges first: they are undone at each point's own time, which unbending takes away.
 bool everything(sim::Sensors& sensors, const sim::Truth& truth) {
   bool changed = false;
-  for (const auto& replace : {exact_gyro, exact_accel, exact_mounting, exact_stamps, exact_ranges, unbent_sweeps}) {
+  for (const auto& replace :
+       {exact_gyro, exact_accel, exact_mounting, exact_stamps, exact_ranges, unbent_sweeps, exact_series}) {
     changed = replace(sensors, truth) || changed;
   }
   return changed;
@@ -168,10 +188,11 @@ std::span<const TrueInput> true_inputs() {
       TrueInput{"gyro_exact", "the true mean rate of each window", exact_gyro},
       TrueInput{"accel_unclipped", "accelerometers without their rail, all other errors kept", unclipped_accel},
       TrueInput{"accel_exact", "the true mean specific force of each window", exact_accel},
-      TrueInput{"mounting_exact", "true lever arms and orientations of IMUs and lidar", exact_mounting},
+      TrueInput{"mounting_exact", "true lever arms and orientations of all sensors", exact_mounting},
       TrueInput{"stamps_exact", "true times of the IMU samples", exact_stamps},
       TrueInput{"lidar_ranges_exact", "returns where the beams truly hit", exact_ranges},
       TrueInput{"lidar_unbent", "sweeps as if cast within a microsecond, ranges as measured", unbent_sweeps},
+      TrueInput{"series_exact", "readings of other sensors without any error", exact_series},
       TrueInput{"all", "all of these at once", everything},
   };
   return kInputs;

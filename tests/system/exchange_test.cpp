@@ -41,6 +41,32 @@ TEST(Exchange, EveryFormatLeavesItsFiles) {
   }
 }
 
+/// A user's scenario with a sensor that is neither IMU nor lidar, cut off as it falls.
+TEST(Exchange, AnotherSensorIsTakenAlongOrItIsSaid) {
+  const fs::path folder = test_folder();
+  const std::string scenario = (folder / "falls.yaml").string(), recording = (folder / "a.h5").string();
+  std::ofstream(scenario) << R"(name: falls
+doc: A rig dropped, and no time to land.
+duration_s: 1.5
+world: {type: floor}
+robot: {type: rig}
+motion: {type: drop, rest_s: 1.2, height_m: 2}
+sensors:
+  - {name: imu, kind: imu, device: mti30, site: mti30}
+  - {name: height, kind: barometer, device: bmp388, site: rs16}
+)";
+  const Ended recorded = run_program({"record", scenario, "--seed", "1", "-o", recording});
+  ASSERT_EQ(recorded.status, 0) << recorded.err;
+  EXPECT_THAT(recorded.out, testing::ContainsRegex("height +bmp388 +75"));
+  EXPECT_THAT(recorded.err, HasSubstr("the recording ends in motion, at "));
+  const Ended csv = run_program({"export", recording, "--format", "csv", "-o", (folder / "csv").string()});
+  ASSERT_EQ(csv.status, 0) << csv.err;
+  EXPECT_EQ(line_count(read_file(folder / "csv" / "height.csv")), 76u);
+  const Ended bag = run_program({"export", recording, "-o", (folder / "a.mcap").string()});
+  ASSERT_EQ(bag.status, 0) << bag.err;
+  EXPECT_THAT(bag.err, HasSubstr("'height', a barometer, is left out"));
+}
+
 TEST(Exchange, WhatIsExportedAsCsvComesBack) {
   const fs::path folder = test_folder();
   const std::string recording = (shared_run("roll") / "recording.h5").string();

@@ -29,6 +29,8 @@ Table contents(const sim::Sensors& sensors) {
     table.add_row(
         {lidar.name, lidar.device, std::to_string(lidar.sweep_start_ns.size()), std::to_string(lidar.range_m.size())});
   }
+  for (const sim::SeriesRecord& series : sensors.series)
+    table.add_row({series.name, series.device, std::to_string(series.time_ns.size())});
   return table;
 }
 
@@ -48,6 +50,7 @@ int record(const Session& session, const RecordOptions& options) {
       {contents(recording.sensors)},
       {{"scenario", info.scenario}, {"seed", seed}, {"digest", info.digest}, {"recording", options.file.string()}});
   session.note("digest " + info.digest);
+  if (const std::string moving = end_in_motion(recording.truth); !moving.empty()) session.note(moving);
   return kDone;
 }
 

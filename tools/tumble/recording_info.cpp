@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "tools/tumble/recording_info.hpp"
 
+#include <fmt/format.h>
+
 #include <string>
 
 #include "scenarios/draw/scenario.hpp"
@@ -8,6 +10,12 @@
 #include "tools/tumble/session.hpp"
 
 namespace tumble::tools {
+
+namespace {
+
+constexpr double kRest_m_s = 0.05, kRest_rad_s = 0.25;
+
+}  // namespace
 
 scenarios::RecordingInfo recording_versions() {
   scenarios::RecordingInfo info;
@@ -24,6 +32,17 @@ scenarios::RecordingInfo recording_info(const sim::ResolvedSituation& situation,
   info.digest = digest;
   info.has_truth = true;
   return info;
+}
+
+std::string end_in_motion(const sim::Truth& truth) {
+  if (truth.v_WB_m_s.empty()) return "";
+  const double speed_m_s = truth.v_WB_m_s.back().norm(), rate_rad_s = truth.w_WB_B_rad_s.back().norm();
+  if (speed_m_s <= kRest_m_s && rate_rad_s <= kRest_rad_s) return "";
+  const double duration_s =
+      1e-9 * static_cast<double>(truth.period_ns) * static_cast<double>(truth.v_WB_m_s.size() - 1);
+  return fmt::format(
+      "the recording ends in motion, at {:.1f} m/s and {:.1f} rad/s after {:g} s: duration_s cuts it off", speed_m_s,
+      rate_rad_s, duration_s);
 }
 
 sim::BuiltSituation built_from(const scenarios::RecordingInfo& info, const std::string& place,

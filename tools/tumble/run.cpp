@@ -187,6 +187,7 @@ int run(const Session& session, const RunOptions& given) {
   tables.push_back(std::move(closing));
   session.print(tables, document);
   say_troubles(session, result);
+  if (const std::string moving = end_in_motion(result.recording.truth); !moving.empty()) session.note(moving);
   if (first) say_what_next(session, options);
   return kDone;
 }

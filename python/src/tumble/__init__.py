@@ -60,16 +60,16 @@ from .estimates import Estimate, RateTable, Trajectory, read_estimate, read_tum,
 from .method import describe_method, serve
 from .placing import point_errors
 from .program import ProgramError, call, estimate, program, record, results, run, score, score_rows, sweep
-from .recordings import Imu, Lidar, Recording, read, write
+from .recordings import Imu, Lidar, Recording, Series, read, write
 from .replay import Tumble, rate, rolling, sheet_of, tumbling, tumbling_options
-from .truth import Contacts, ImuTruth, LidarTruth, Truth
+from .truth import Contacts, ImuTruth, LidarTruth, SeriesTruth, Truth
 
 __version__ = "0.1.0"
 __all__ = [
     "Attitudes", "CarriedReport", "CarriedSmoother", "CarriedStream", "Contacts", "Estimate", "Imu", "ImuSheet", "ImuTruth", "Lidar",
     "LidarInertialOdometry", "LidarSheet", "LidarTruth", "MapPoints", "Parameter", "Pose", "Poses", "ProgramError", "RailPlane", "Rails", "RateReport", "RateSmoother", "RateSource",
     "RateStream", "RateTable", "Rates", "Recording", "RegimeReport", "RegimeSmoother", "RegimeStream", "RigCalibration", "RollingFilter", "RollingMode", "RollingOdometry",
-    "RollingPoses", "RollingSmoother", "Saave", "Strapdown", "Sweep", "SweepCalibration", "SweepReport", "SweepVerdict", "Trajectory",
+    "RollingPoses", "RollingSmoother", "Saave", "Series", "SeriesTruth", "Strapdown", "Sweep", "SweepCalibration", "SweepReport", "SweepVerdict", "Trajectory",
     "Truth", "Tumble", "TumbleAttitude", "TumbleError", "TumblingOdometry", "Vqf", "call", "describe_method", "estimate",
     "find_rails", "plot", "point_errors", "program", "rails_parameters", "rate", "read", "read_estimate", "read_tum", "record", "results", "rolling", "run",
     "score", "score_rows", "serve", "sheet_of", "sheets", "sweep", "tumbling", "tumbling_options", "write", "write_tum",

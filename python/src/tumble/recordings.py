@@ -15,7 +15,7 @@ from .checks import having, number_from, path_of, refusal, rigid, rising, unmask
 from .errors import TumbleError
 from .files import beside, optional
 from .hdf5 import XYZ, Group, missing, put, same_length
-from .truth import Truth, read_truth, write_truth
+from .truth import Truth, read_truth, require_quantity, write_truth
 
 Array = npt.NDArray[Any]
 
@@ -119,11 +119,34 @@ class Lidar:
 
 
 @dataclass
+class Series:
+    """What any other sensor said: at each time one number for each of its quantities, `series["pressure_pa"]`. T_BX (4, 4) places it in
+    body axes."""
+
+    time_ns: Array  #: (N,) int64, end of each sample's window
+    values: dict[str, Array]  #: by quantity, whose name ends in its unit: (N,) float64
+    units: dict[str, str] = field(default_factory=dict)  #: by quantity: "Pa"
+    noise: dict[str, float] = field(default_factory=dict)  #: by quantity: standard deviation of a reading as stated; 0: not stated
+    T_BX: Array = field(default_factory=lambda: np.eye(4))
+    name: str = "series"
+    kind: str = ""  #: "barometer"
+    device: str = ""
+    period_ns: int = 0  #: 0: the median of the times
+
+    def __len__(self) -> int:
+        return len(self.time_ns)
+
+    def __getitem__(self, quantity: str) -> Array:
+        return self.values[quantity]
+
+
+@dataclass
 class Recording:
     """A recording: what the sensors said, and what truly happened where that is known."""
 
     imus: list[Imu] = field(default_factory=list)  #: the first is the primary one
     lidars: list[Lidar] = field(default_factory=list)
+    series: list[Series] = field(default_factory=list)  #: of sensors that are neither, a barometer for one
     robot: str = ""  #: "rig", "sphere", "pendulum", or ""
     sphere_radius_m: float = 0.0
     gravity_m_s2: float = 9.80665
@@ -197,6 +220,18 @@ def _read_lidar(group: Group) -> Lidar:
     return lidar
 
 
+def _read_series(group: Group) -> Series:
+    quantities = {each.attribute("name", str): each for each in group.members("quantities")}
+    series = Series(time_ns=group.rows("time_ns", "i8"), values={name: each.rows("values", "f8") for name, each in quantities.items()},
+                    units={name: each.attribute("unit", str) for name, each in quantities.items()},
+                    noise={name: each.attribute("noise", float) for name, each in quantities.items()},
+                    T_BX=group.rows("T_BX", "f8", (4,)), name=group.attribute("name", str), kind=group.attribute("kind", str),
+                    device=group.attribute("device", str), period_ns=group.attribute("period_ns", int))
+    for name, each in quantities.items():
+        same_length(each.place, series.time_ns, values=series.values[name])
+    return series
+
+
 def read(path: str | os.PathLike[str], truth: bool = True) -> Recording:
     """The recording of an HDF5 file, whole, in memory. truth=False: what an estimator may see alone.
 
@@ -219,7 +254,8 @@ def read(path: str | os.PathLike[str], truth: bool = True) -> Recording:
             seen = truth and bool(top.attribute("has_truth", int, 0))
             return Recording(
                 imus=[_read_imu(each) for each in sensors.members("imus")],
-                lidars=[_read_lidar(each) for each in sensors.members("lidars")], robot=sensors.attribute("robot", str),
+                lidars=[_read_lidar(each) for each in sensors.members("lidars")],
+                series=[_read_series(each) for each in sensors.members("series")], robot=sensors.attribute("robot", str),
                 sphere_radius_m=sensors.attribute("sphere_radius_m", float), gravity_m_s2=sensors.attribute("gravity_m_s2", float),
                 scenario=top.attribute("scenario", str), seed=top.attribute("seed", int) % 2**64,
                 situation_yaml=top.attribute("situation_yaml", str), attribution=top.attribute("attribution", str, ""),
@@ -240,7 +276,7 @@ def write(path: str | os.PathLike[str], recording: Recording, truth: bool = True
     `out_of_range` for what the program would refuse to read: a range below 0, a T_BI that is no pose, whole numbers that the file's type does not hold.
     """
     h5py = optional("h5py", "files")
-    having("recording", recording, "a Recording", "imus", "lidars", "truth")
+    having("recording", recording, "a Recording", "imus", "lidars", "series", "truth")
     _require_sound(recording)
     with beside(path_of("path", path)) as part, h5py.File(part, "w", libver=("v110", "v110")) as file:
         texts = {"format": "tumble recording", "scenario": recording.scenario, "situation_yaml": recording.situation_yaml,
@@ -262,9 +298,13 @@ def write(path: str | os.PathLike[str], recording: Recording, truth: bool = True
             _write_imu(imus.create_group(str(k)), imu)
         for k, lidar in enumerate(recording.lidars):
             _write_lidar(lidars.create_group(str(k)), lidar)
+        if recording.series:  # files of recordings without are as they were
+            others = sensors.create_group("series")
+            for k, series in enumerate(recording.series):
+                _write_series(others.create_group(str(k)), series)
         if known is not None:
             write_truth(file.create_group("truth"), known, [len(imu) for imu in recording.imus],
-                        [len(lidar.position) for lidar in recording.lidars])
+                        [len(lidar.position) for lidar in recording.lidars], [len(series) for series in recording.series])
 
 
 def _require_sound(recording: Recording) -> None:
@@ -287,6 +327,14 @@ def _require_sound(recording: Recording) -> None:
         whole(f"{place}.sweep_period_ns", lidar.sweep_period_ns, 1, 2**63 - 1)
         rigid(f"{place}.T_BL", lidar.T_BL)
         _require_times(f"{place}.sweep_start_ns", lidar.sweep_start_ns)
+    for k, series in enumerate(recording.series):
+        place = f"series[{k}]"
+        whole(f"{place}.period_ns", series.period_ns, 0, 2**63 - 1)
+        rigid(f"{place}.T_BX", series.T_BX)
+        _require_times(f"{place}.time_ns", series.time_ns)
+        for name in series.values:
+            require_quantity(f"{place}.values", name)
+            number_from(f"{place}.noise[{name}]", series.noise.get(name, 0.0), 0.0)
 
 
 def _require_times(field: str, given: Any) -> None:
@@ -330,3 +378,17 @@ def _write_lidar(group: Any, lidar: Lidar) -> None:
     put(group, "intensity", lidar.intensity, "<f4", "1", (points,))
     put(group, "offset_ns", lidar.offset_ns, "<u4", "ns", (points,))
     put(group, "ring", lidar.ring, "<u2", "1", (points,))
+
+
+def _write_series(group: Any, series: Series) -> None:
+    count = len(series.time_ns)
+    period = series.period_ns or (int(np.median(np.diff(series.time_ns))) if count > 1 else 1)
+    group.attrs["name"], group.attrs["kind"], group.attrs["device"] = series.name, series.kind, series.device
+    group.attrs["period_ns"] = np.int64(period)
+    put(group, "T_BX", series.T_BX, "<f8", "1, last column m", (4, 4), many=False)
+    put(group, "time_ns", series.time_ns, "<i8", "ns", (count,))
+    quantities = group.create_group("quantities")
+    for k, (name, values) in enumerate(series.values.items()):
+        own, unit = quantities.create_group(str(k)), series.units.get(name, "")
+        own.attrs["name"], own.attrs["unit"], own.attrs["noise"] = name, unit, float(series.noise.get(name, 0.0))
+        put(own, "values", values, "<f8", unit, (count,))

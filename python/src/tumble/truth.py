@@ -51,6 +51,19 @@ class LidarTruth:
 
 
 @dataclass
+class SeriesTruth:
+    """What a sensor of a Series would have said without any error."""
+
+    name: str = ""
+    T_BX: Array = field(default_factory=lambda: np.eye(4))  #: (4, 4), true mounting
+    values: dict[str, Array] = field(default_factory=dict)  #: by quantity: (N,), exact means; N as it has samples, or 0; {}: not known
+    units: dict[str, str] = field(default_factory=dict)  #: by quantity
+
+    def __getitem__(self, quantity: str) -> Array:
+        return self.values[quantity]
+
+
+@dataclass
 class Contacts:
     """Contacts in order of time, several or none per step of the physics."""
 
@@ -79,6 +92,7 @@ class Truth:
     p_BG_m: Array = field(default_factory=lambda: np.zeros(3))  #: (3,), geometric centre in the body
     imus: list[ImuTruth] = field(default_factory=list)  #: one for each IMU of the recording
     lidars: list[LidarTruth] = field(default_factory=list)  #: one for each lidar
+    series: list[SeriesTruth] = field(default_factory=list)  #: one for each series
     specific_force: Array = _none("f8", 3)  #: (N, 3), m/s^2, at the centre of mass, body axes; no row where it is not known
     contacts: Contacts = field(default_factory=Contacts)
     surfaces: list[str] = field(default_factory=list)  #: names by surface_id
@@ -174,6 +188,30 @@ def _write_rows(group: Any, listed: Sequence[_Rows], record: Any, sensor: int | 
         put(group, each.name, rows, each.dtype, each.unit, (count, *each.shape), each.columns, many=each.like not in ("one", "three"))
 
 
+def require_quantity(place: str, name: str) -> None:
+    """TumbleError `out_of_range` for what is no name of a quantity: letters, digits and _, at least one."""
+    if not (isinstance(name, str) and name.isascii() and name.replace("_", "a").isalnum()):
+        raise TumbleError(f"{place} has a quantity {name!r}, must be letters, digits and _, at least one", "out_of_range", place, name, "a-z A-Z 0-9 _")
+
+
+def _read_series(group: Group) -> SeriesTruth:
+    quantities = {each.attribute("name", str): each for each in group.members("quantities")}
+    return SeriesTruth(name=group.attribute("name", str), T_BX=group.rows("T_BX", "f8", (4,)),
+                       values={name: each.rows("values", "f8") for name, each in quantities.items()},
+                       units={name: each.attribute("unit", str) for name, each in quantities.items()})
+
+
+def _write_series(group: Any, series: SeriesTruth, samples: int, place: str) -> None:
+    group.attrs["name"] = series.name
+    put(group, "T_BX", series.T_BX, "<f8", "1, last column m", (4, 4), many=False)
+    quantities = group.create_group("quantities")
+    for k, (name, values) in enumerate(series.values.items()):
+        require_quantity(f"{place}.values", name)
+        own, unit = quantities.create_group(str(k)), series.units.get(name, "")
+        own.attrs["name"], own.attrs["unit"] = name, unit
+        put(own, "values", values, "<f8", unit, (samples if len(values) > 0 else 0,))
+
+
 def read_truth(group: Group) -> Truth:
     """Of the group `truth`."""
     imus = [_read_rows(each, _IMU, ImuTruth, name=each.attribute("name", str), T_BI=each.rows("T_BI", "f8", (4,)))
@@ -181,14 +219,15 @@ def read_truth(group: Group) -> Truth:
     lidars = [_read_rows(each, _LIDAR, LidarTruth, name=each.attribute("name", str), T_BL=each.rows("T_BL", "f8", (4,)))
               for each in group.members("lidars")]
     out: Truth = _read_rows(group, _BODY, Truth, period_ns=group.attribute("period_ns", int), imus=imus, lidars=lidars,
+                             series=[_read_series(each) for each in group.members("series")],
                              contacts=_read_rows(group.member("contacts"), _CONTACTS, Contacts), surfaces=group.texts("surfaces"))
     return out
 
 
-def write_truth(group: Any, truth: Truth, samples: Sequence[int], points: Sequence[int]) -> None:
-    """Into the group `truth`. samples, points: how many each IMU and each lidar of the recording has. TumbleError `shape`, `type`,
+def write_truth(group: Any, truth: Truth, samples: Sequence[int], points: Sequence[int], readings: Sequence[int] = ()) -> None:
+    """Into the group `truth`. samples, points, readings: how many each IMU, lidar and series of the recording has. TumbleError `shape`, `type`,
     `out_of_range` as of the sensors."""
-    for name, records, counts in (("imus", truth.imus, samples), ("lidars", truth.lidars, points)):
+    for name, records, counts in (("imus", truth.imus, samples), ("lidars", truth.lidars, points), ("series", truth.series, readings)):
         if len(records) != len(counts):
             raise TumbleError(f"truth.{name} is {len(records)}, must be {len(counts)}: one for each that the recording has", "shape",
                               f"truth.{name}", len(records), len(counts))
@@ -207,3 +246,7 @@ def write_truth(group: Any, truth: Truth, samples: Sequence[int], points: Sequen
         own.attrs["name"] = lidar.name
         put(own, "T_BL", lidar.T_BL, "<f8", "1, last column m", (4, 4), many=False)
         _write_rows(own, _LIDAR, lidar, points[k])
+    if truth.series:
+        others = group.create_group("series")
+        for k, series in enumerate(truth.series):
+            _write_series(others.create_group(str(k)), series, readings[k], f"truth.series[{k}]")

@@ -49,6 +49,20 @@ std::string imu_text(const sim::ImuRecord& imu, const std::string& frame) {
   return text;
 }
 
+std::string series_text(const sim::SeriesRecord& series, const std::string& frame) {
+  std::string text = "stamp_s,stamp_ns,frame_id";
+  for (const sim::Quantity& quantity : series.quantities) text += "," + quantity.name;
+  text += '\n';
+  for (std::size_t i = 0; i < series.time_ns.size(); ++i) {
+    append_number(text, series.time_ns[i] / 1000000000);
+    append_number(text += ',', series.time_ns[i] % 1000000000);
+    text += "," + frame;
+    for (const sim::Quantity& quantity : series.quantities) append_number(text += ',', quantity.values[i]);
+    text += '\n';
+  }
+  return text;
+}
+
 std::string truth_text(const sim::Truth& truth) {
   std::string text =
       "time_ns,x_W_m,y_W_m,z_W_m,qx,qy,qz,qw,vx_W_m_s,vy_W_m_s,vz_W_m_s,wx_B_rad_s,wy_B_rad_s,wz_B_rad_s,"
@@ -73,11 +87,15 @@ std::string truth_text(const sim::Truth& truth) {
 }  // namespace
 
 void export_csv(const sim::Sensors& sensors, const sim::Truth* truth, const std::filesystem::path& folder) {
-  const std::vector<std::string> stems = export_names(sensors).imus.names;
+  const ExportNames names = export_names(sensors);
   OutputFolder output(folder);
   for (std::size_t i = 0; i < sensors.imus.size(); ++i) {
-    const std::string& stem = stems[i];
+    const std::string& stem = names.imus.names[i];
     replace_file(folder / (stem + ".csv"), imu_text(sensors.imus[i], stem));
+  }
+  for (std::size_t i = 0; i < sensors.series.size(); ++i) {
+    const std::string& stem = names.series.names[i];
+    replace_file(folder / (stem + ".csv"), series_text(sensors.series[i], stem));
   }
   if (truth != nullptr) replace_file(folder / "truth.csv", truth_text(*truth));
   output.keep();

@@ -68,8 +68,11 @@ Eigen::Isometry3d true_mounting(const sim::Truth& truth, const std::string& fram
   const ExportNames names = export_names(truth);
   if (const auto T_BI = mounting_in(truth.imus, names.imus, &sim::ImuTruth::T_BI, frame)) return *T_BI;
   if (const auto T_BL = mounting_in(truth.lidars, names.lidars, &sim::LidarTruth::T_BL, frame)) return *T_BL;
-  throw BadInput(fmt::format("the truth has no frame '{}' (known: body centre {} {})", frame,
-                             fmt::join(names.imus.names, " "), fmt::join(names.lidars.names, " ")));
+  if (const auto T_BX = mounting_in(truth.series, names.series, &sim::SeriesTruth::T_BX, frame)) return *T_BX;
+  std::vector<std::string> known = {"body", "centre"};
+  for (const GivenNames* given : {&names.imus, &names.lidars, &names.series})
+    known.insert(known.end(), given->names.begin(), given->names.end());
+  throw BadInput(fmt::format("the truth has no frame '{}' (known: {})", frame, fmt::join(known, " ")));
 }
 
 void export_tum(const sim::Truth& truth, const std::filesystem::path& file, std::int64_t origin_ns,

@@ -77,6 +77,7 @@ void attach_poses(Imported& recording, std::vector<ReferencePose> poses, const E
     own.T_BI = imu.T_BI;
   }
   for (const sim::LidarRecord& lidar : sensors.lidars) truth.lidars.push_back({lidar.name, lidar.T_BL, {}, {}});
+  for (const sim::SeriesRecord& series : sensors.series) truth.series.push_back({series.name, series.T_BX, {}});
   recording.reference = std::move(truth);
 }
 

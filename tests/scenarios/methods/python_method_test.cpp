@@ -104,9 +104,31 @@ TEST_F(PythonMethod, PosesAttitudesAndMaps) {
 
 TEST_F(PythonMethod, SeesTheSensorsAloneAndCannotChangeThem) {
   EXPECT_THAT(no_answer(function("rate", "raise ValueError(sorted(vars(recording)))")).second,
-              HasSubstr("['gravity_m_s2', 'imus', 'lidars', 'robot', 'sphere_radius_m']"));
+              HasSubstr("['gravity_m_s2', 'imus', 'lidars', 'robot', 'series', 'sphere_radius_m']"));
   EXPECT_THAT(no_answer(function("rate", "recording.imus[0].gyro[0] = 0")).second, HasSubstr("read-only"));
   EXPECT_THAT(no_answer(function("rate", "os.pwrite(int(sys.argv[4]), b'x', 0)")).second, HasSubstr("PermissionError"));
+}
+
+TEST_F(PythonMethod, SeesTheSeriesOfOtherSensors) {
+  sim::Sensors sensors = recording().sensors;
+  const std::size_t samples = sensors.imus[0].time_ns.size();
+  // a quantity may have any name of letters, digits and _, that of an entry of the exchange too
+  sensors.series.push_back({"barometer", "barometer", "bmp388", 20000000, Eigen::Isometry3d::Identity(), {}, {}});
+  sim::SeriesRecord& series = sensors.series.back();
+  for (const char* name : {"pressure_pa", "offset"}) series.quantities.push_back({name, "Pa", 2.0, {}});
+  for (std::size_t k = 0; k < samples; ++k) {
+    series.time_ns.push_back(static_cast<std::int64_t>(k));
+    series.quantities[0].values.push_back(1e5 + static_cast<double>(k));
+    series.quantities[1].values.push_back(-static_cast<double>(k));
+  }
+  const Method method = external_method(function(
+      "rate",
+      "b, = recording.series; assert b.noise['offset'] == 2 and b.units['pressure_pa'] == 'Pa' and b.kind == "
+      "'barometer' and b.T_BX.shape == (4, 4)\n    return np.stack((b.values['pressure_pa'], b.values['offset'], "
+      "b.time_ns), 1)"));
+  const Estimate estimate = method.run(sensors, {}, {});
+  ASSERT_EQ(estimate.rates.size(), samples);
+  EXPECT_EQ(estimate.rates[3].w_WI_I_rad_s, Eigen::Vector3d(1e5 + 3.0, -3.0, 3.0));
 }
 
 TEST_F(PythonMethod, WhatItRaisesIsTheMessageWithPlace) {

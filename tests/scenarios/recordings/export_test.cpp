@@ -15,6 +15,7 @@ namespace {
 
 using testing::ElementsAre;
 using testing::HasSubstr;
+using testing::StartsWith;
 
 std::vector<std::vector<double>> rows_of(const std::filesystem::path& path) {
   std::ifstream stream(path);
@@ -68,6 +69,7 @@ TEST_F(Export, ATrajectoryIsOfTheFrameThatIsAskedFor) {
   expect("centre", Eigen::Isometry3d(Eigen::Translation3d(truth.p_BG_m)));
   expect(truth.imus[0].name, truth.imus[0].T_BI);
   expect(truth.lidars[0].name, truth.lidars[0].T_BL);
+  expect(truth.series[0].name, truth.series[0].T_BX);
   // from the file, a segment at a time, and with what it is of in its first line
   write_recording(folder_ / "a.h5", fixture::info(), recording_.sensors, &truth);
   ExportChoices choices;
@@ -103,6 +105,14 @@ TEST_F(Export, CsvHasAFilePerImuAndOneOfTheTruth) {
   export_csv(recording_.sensors, &recording_.truth, folder_ / "csv");
   EXPECT_TRUE(std::filesystem::exists(folder_ / "csv/imu.csv"));
   EXPECT_TRUE(std::filesystem::exists(folder_ / "csv/imu_reference.csv"));
+  const sim::SeriesRecord& barometer = recording_.sensors.series.at(0);
+  std::istringstream series(fixture::bytes_of(folder_ / "csv/barometer.csv"));
+  std::string line;
+  ASSERT_TRUE(std::getline(series, line));
+  EXPECT_EQ(line, "stamp_s,stamp_ns,frame_id,pressure_pa,temperature_k");
+  ASSERT_TRUE(std::getline(series, line));
+  ASSERT_THAT(line, StartsWith("0,20000000,barometer,"));
+  EXPECT_EQ(std::stod(line.substr(std::string("0,20000000,barometer,").size())), barometer.quantities[0].values[0]);
   const std::string truth = fixture::bytes_of(folder_ / "csv/truth.csv");
   EXPECT_EQ(std::count(truth.begin(), truth.end(), '\n'), 41);
   export_csv(recording_.sensors, nullptr, folder_ / "real");

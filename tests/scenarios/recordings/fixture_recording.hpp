@@ -89,7 +89,23 @@ inline void add_lidar(Numbers& numbers, sim::Recording& recording, const std::st
   recording.truth.lidars.push_back(truth);
 }
 
-/// A recording with two IMUs, a lidar, contacts and every field different from its default.
+inline void add_series(Numbers& numbers, sim::Recording& recording, const std::string& name, int samples) {
+  sim::SeriesRecord series{name, "barometer", "bmp388", 20000000, numbers.pose(), {}, {}};
+  sim::SeriesTruth truth{name, numbers.pose(), {}};
+  for (int i = 0; i < samples; ++i) series.time_ns.push_back(20000000 * (static_cast<std::int64_t>(i) + 1));
+  for (const auto& [quantity, unit] : {std::pair{"pressure_pa", "Pa"}, std::pair{"temperature_k", "K"}}) {
+    series.quantities.push_back({quantity, unit, 1.5, {}});
+    truth.quantities.push_back({quantity, unit, {}});
+    for (int i = 0; i < samples; ++i) {
+      series.quantities.back().values.push_back(1e5 + numbers.next());
+      truth.quantities.back().values.push_back(1e5 + numbers.next());
+    }
+  }
+  recording.sensors.series.push_back(series);
+  recording.truth.series.push_back(truth);
+}
+
+/// A recording with two IMUs, a lidar, a series, contacts and every field different from its default.
 inline sim::Recording recording() {
   Numbers numbers;
   sim::Recording out;
@@ -117,6 +133,7 @@ inline sim::Recording recording() {
                                 std::abs(numbers.next()), i % 2});
     }
   }
+  add_series(numbers, out, "barometer", 5);
   return out;
 }
 

@@ -71,7 +71,19 @@ TEST(RecordingCheck, NamesWhatContradicts) {
       {[](auto& s) { s.lidars[0].point_times = sim::PointTimes::unknown; },
        "offset_ns is 3125 at point 1, must be 0 where points have no times"},
       {[](auto& s) { s.lidars[0].point_times = static_cast<sim::PointTimes>(3); }, "point_times is none of"},
-      {[](auto& s) { s.lidars[0].sweep_start_ns[1] = 0; }, "sweep_start_ns does not rise"}};
+      {[](auto& s) { s.lidars[0].sweep_start_ns[1] = 0; }, "sweep_start_ns does not rise"},
+      {[](auto& s) { s.series[0].time_ns.pop_back(); },
+       "sensors/series/0: quantities/0: values has 5 rows, time_ns has 4"},
+      {[](auto& s) { s.series[0].quantities[1].values.pop_back(); }, "quantities/1: values has 4 rows"},
+      {[nan](auto& s) { s.series[0].quantities[1].noise = nan; }, "quantities/1: noise is nan"},
+      {[](auto& s) { s.series[0].quantities[1].name = "a,b"; }, "quantities/1: name must be letters, digits and _"},
+      {[](auto& s) { s.series[0].quantities[1].name = ""; }, "name must be letters, digits and _, at least one"},
+      {[](auto& s) { s.series[0].quantities[1].unit = "\x1b"; }, "unit is not plain text"},
+      {[](auto& s) { s.series[0].quantities[1].name = "pressure_pa"; }, "quantities/0: name is another's too"},
+      {[](auto& s) { s.series[0].kind = "\xff"; }, "sensors/series/0: kind is not plain text"},
+      {[](auto& s) { s.series[0].period_ns = 0; }, "sensors/series/0: period_ns is 0"},
+      {[](auto& s) { s.series[0].T_BX.linear() *= -1.0; }, "T_BX is not a rotation"},
+      {[](auto& s) { s.series[0].time_ns.back() = 1700000000000000000; }, "time_ns is 1700000000000000000 in row 4"}};
   for (const Case& each : cases) {
     sim::Sensors sensors = fixture::recording().sensors;
     each.spoil(sensors);
@@ -105,6 +117,8 @@ TEST(RecordingCheck, NamesWhatContradictsInTheTruth) {
       {[](auto& t) { t.imus[0].accel_element_offset_m_s2.y() = std::nan(""); },
        "truth/imus/0: accel_element_offset_m_s2 is not finite"},
       {[](auto& t) { t.imus[1].gyro_bias_rad_s.clear(); }, "truth/imus/1: gyro_bias_I_rad_s has 0 rows"},
+      {[](auto& t) { t.series[0].T_BX.linear() *= 1.001; }, "truth/series/0: T_BX is not a rotation"},
+      {[](auto& t) { t.series[0].quantities[1].name = " "; }, "truth/series/0: quantities/1: name must be letters"},
       {[](auto& t) { t.p_BG_m.x() = std::numeric_limits<double>::infinity(); }, "p_BG_m is not finite"}};
   for (const Case& each : cases) {
     sim::Truth truth = fixture::recording().truth;
@@ -127,6 +141,7 @@ TEST(RecordingCheck, AReferenceMayKnowPosesAlone) {
     imu = poses;
   }
   for (sim::LidarTruth& lidar : truth.lidars) lidar = {lidar.name, lidar.T_BL, {}, {}};
+  for (sim::SeriesTruth& series : truth.series) series.quantities.clear();
   EXPECT_EQ(find_problem(truth), "");
   EXPECT_EQ(find_mismatch(recording.sensors, truth), "");
 }
@@ -139,6 +154,15 @@ TEST(RecordingCheck, TruthMustRunParallelToTheSensors) {
   fixture::Numbers numbers;
   recording.truth.imus[1] = fixture::imu_truth(numbers, "imu_reference", 71);
   EXPECT_THAT(find_mismatch(recording.sensors, recording.truth), HasSubstr("imus/1: truth rate_I_rad_s has 71 rows"));
+  recording = fixture::recording();
+  recording.truth.series.pop_back();
+  EXPECT_THAT(find_mismatch(recording.sensors, recording.truth), HasSubstr("number of series"));
+  recording = fixture::recording();
+  recording.truth.series[0].quantities.pop_back();
+  EXPECT_THAT(find_mismatch(recording.sensors, recording.truth), HasSubstr("series/0: truth and sensor differ"));
+  recording = fixture::recording();
+  recording.truth.series[0].quantities[1].values.pop_back();
+  EXPECT_THAT(find_mismatch(recording.sensors, recording.truth), HasSubstr("quantities/1: truth values has 4 rows"));
 }
 
 }  // namespace

@@ -19,6 +19,7 @@ const SimulatedDraw& tumble() {
     Scenario scenario = load_scenario(tree_data(), "hill");
     scenario.duration_s.shape = Distribution::Shape::constant;
     scenario.duration_s.numbers = {5.0};
+    scenario.sensors.push_back({"barometer", "barometer", "bmp388", "rs16", {}, {}, 0});
     return simulate_draw(tree_data(), scenario, 1, 1);
   }();
   return kDraw;
@@ -45,6 +46,9 @@ TEST(TrueInputs, EachReplacesItsOwnAndDoingItTwiceChangesNothing) {
   EXPECT_FALSE(input_named("gyro_exact").replace(sensors, recording.truth));
   EXPECT_TRUE(input_named("mounting_exact").replace(sensors, recording.truth));
   EXPECT_FALSE(input_named("mounting_exact").replace(sensors, recording.truth));
+  EXPECT_EQ(sensors.series.at(0).T_BX.matrix(), recording.truth.series.at(0).T_BX.matrix());
+  EXPECT_TRUE(input_named("series_exact").replace(sensors, recording.truth));
+  EXPECT_EQ(sensors.series[0].quantities.at(0).values, recording.truth.series[0].quantities.at(0).values);
 }
 
 TEST(TrueInputs, ExactStampsTakeAnOffsetAway) {

@@ -1,0 +1,107 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// What parts the map from the world, against closed forms: docs/maths/mapping.md, section 8.
+#include "estimator/src/mapping/world_covariance.hpp"
+
+#include <gtest/gtest.h>
+
+#include <vector>
+
+#include "estimator/src/mapping/unknowns.hpp"
+#include "tumble/common/so3.hpp"
+
+namespace tumble::mapping {
+namespace {
+
+namespace u = unknowns;
+using Matrix = Registration::Matrix;
+using Pose = WorldCovariance::Pose;
+
+const Eigen::Vector3d kPlace_W_m(10.0, -4.0, 2.0);
+const Eigen::Vector3d kLever_m(0.02, -0.1, 0.05);
+const Eigen::Quaterniond kStart(Eigen::AngleAxisd(0.4, Eigen::Vector3d(1.0, 2.0, -1.0).normalized()));
+
+WorldCovarianceParams without_tilt() {
+  WorldCovarianceParams params;
+  params.tilt_sigma_rad = 0.0;
+  return params;
+}
+
+Pose in_world(const WorldCovariance& covariance, const Matrix& joint = Matrix::Zero()) {
+  return covariance.in_world(joint, kPlace_W_m);
+}
+
+TEST(WorldCovariance, ATiltOfTheStartTurnsThePathAboutIt) {
+  WorldCovarianceParams params;
+  params.tilt_sigma_rad = 0.01;
+  const Pose P = in_world(WorldCovariance(params, kStart, kLever_m));
+  // about x: y and z of the place move, about y: x and z
+  const double z = kPlace_W_m.z(), s2 = 1e-4;
+  EXPECT_NEAR(P(0, 0), s2 * z * z, 1e-15);
+  EXPECT_NEAR(P(1, 1), s2 * z * z, 1e-15);
+  EXPECT_NEAR(P(2, 2), s2 * kPlace_W_m.head<2>().squaredNorm(), 1e-15);
+  EXPECT_NEAR(P(3, 3), s2, 1e-15);
+  EXPECT_EQ(P(5, 5), 0.0);
+}
+
+/// An error of the mounting displaces the first pose in the map, and with it all that follows: at the start, and
+/// wherever the body stands and is turned as there, it is none against the world.
+TEST(WorldCovariance, AnErrorOfTheMountingIsNoneOfTheStart) {
+  const WorldCovariance covariance(without_tilt(), kStart, kLever_m);
+  Matrix joint = Matrix::Zero();
+  u::block(joint, u::mounting) = Eigen::Matrix<double, 6, 1>(1e-4, 2e-4, 3e-4, 1e-6, 2e-6, 3e-6).asDiagonal();
+  const Pose K = pose_by_mounting(kStart, kLever_m);
+  const Pose by_mounting = K * u::block(joint, u::mounting);
+  u::block(joint, u::pose) = by_mounting * K.transpose();
+  u::block(joint, u::pose, u::mounting) = by_mounting;
+  u::block(joint, u::mounting, u::pose) = by_mounting.transpose();
+  EXPECT_LT(covariance.in_world(joint, Eigen::Vector3d::Zero()).cwiseAbs().maxCoeff(), 1e-18);
+  EXPECT_GT((in_world(covariance, joint).topLeftCorner<3, 3>().trace()), 1e-3);
+}
+
+TEST(WorldCovariance, DriftGrowsAlongTheDirectionThatNothingHeld) {
+  WorldCovarianceParams params = without_tilt();
+  params.drift_share = 0.1;
+  params.drift_sigma_max_m = 3.0;
+  WorldCovariance covariance(params, kStart, kLever_m);
+  Eigen::Matrix<double, 6, 1> along = Eigen::Matrix<double, 6, 1>::Zero();
+  along[1] = 1.0;
+  covariance.add_drift(2.0, along);
+  Pose expected = Pose::Zero();
+  expected(1, 1) = 0.04;
+  EXPECT_LT((in_world(covariance) - expected).cwiseAbs().maxCoeff(), 1e-15);
+  along << 0.6, 0.0, 0.0, 0.8, 0.0, 0.0;  // of a direction that turns too, the translation alone
+  covariance.add_drift(100.0, along);     // no direction counts as held less surely than by 3 m
+  expected(0, 0) = 0.09 * 0.36;
+  EXPECT_LT((in_world(covariance) - expected).cwiseAbs().maxCoeff(), 1e-15);
+}
+
+/// A body that rests and sweeps, with no error of the mounting: a share d of the map is off as the pose was.
+TEST(WorldCovariance, WhatIsInsertedMovesTheMapByItsShare) {
+  std::vector<MotionSample> samples;
+  for (int k = 0; k < 10; ++k) {
+    MotionSample& sample = samples.emplace_back();
+    sample.from_ns = k * 10'000'000;
+    sample.time_ns = sample.from_ns + 10'000'000;
+    sample.f_I_m_s2 = {0.0, 0.0, 9.8};
+  }
+  SweepTrajectory trajectory;
+  const Registration::Estimate rest;
+  ASSERT_TRUE(trajectory.build(rest.state, samples, 100'000'000, {0.0, 0.0, -9.8}, rest.deficit_rad_s).ok());
+  Matrix errors = Matrix::Zero();
+  u::variances(errors, u::position).setConstant(0.01);
+  u::variances(errors, u::attitude).setConstant(0.0004);
+  u::variances(errors, u::velocity).setConstant(0.25);
+  WorldCovariance covariance(without_tilt(), kStart, kLever_m);
+  covariance.add_insertion(0.2, trajectory, errors, kLever_m);
+  covariance.add_insertion(0.1, trajectory, errors, kLever_m);
+  const Pose P = in_world(covariance);
+  const double d2 = 0.2 * 0.2 + 0.1 * 0.1;
+  // in the middle of the sweep, 50 ms after the errors: the velocity's part, and what a tilt makes of the force by then
+  const double by_tilt_m = 0.5 * 9.8 * 0.05 * 0.05;
+  EXPECT_NEAR(P(2, 2), d2 * (0.01 + 0.25 * 0.0025), 1e-12);
+  EXPECT_NEAR(P(0, 0), d2 * (0.01 + 0.25 * 0.0025 + 0.0004 * by_tilt_m * by_tilt_m), 1e-9);
+  EXPECT_NEAR(P(4, 4), d2 * 0.0004, 1e-15);
+}
+
+}  // namespace
+}  // namespace tumble::mapping

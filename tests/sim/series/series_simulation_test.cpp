@@ -1,0 +1,126 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "sim/series/series_simulation.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "fixed_series.hpp"
+#include "scenarios/draw/scenario.hpp"
+#include "scenarios/recordings/recording_check.hpp"
+#include "sim/engine/model.hpp"
+#include "sim/simulate.hpp"
+#include "tests/scenarios/tree_data.hpp"
+
+namespace tumble::sim {
+namespace {
+
+/// Readings of a quantity that is always 7, and of one that is twice that.
+Recording sevens(const std::map<std::string, double>& given, const ReadingErrors& errors, double duration_s = 10.0,
+                 std::uint64_t seed = 1) {
+  Recording recording;
+  recording.truth = rising(duration_s);
+  const SensorSpec spec = sensor("barometer", given);
+  const Eigen::Isometry3d T_BX(Eigen::Translation3d(1.0, 2.0, 3.0)), given_T_BX(Eigen::Translation3d(1.0, 2.0, 3.5));
+  const engine::World world{};
+  const auto seven = [](std::size_t) { return 7.0; };
+  const auto fourteen = [](std::size_t) { return 14.0; };
+  simulate_series({world, spec, T_BX, given_T_BX, 9.8, seed, 1},
+                  {{"a_m", "m", errors, seven}, {"b_m", "m", errors, fourteen}}, recording);
+  return recording;
+}
+
+double deviation(const std::vector<double>& values, double about) {
+  double squares = 0.0;
+  for (const double value : values) squares += (value - about) * (value - about);
+  return std::sqrt(squares / static_cast<double>(values.size()));
+}
+
+TEST(Series, WithoutErrorsIsTheTruth) {
+  const Recording recording = sevens({}, {});
+  const SeriesRecord& series = recording.sensors.series.at(0);
+  ASSERT_EQ(series.time_ns.size(), 500u);
+  EXPECT_EQ(series.period_ns, 20'000'000);
+  EXPECT_EQ(series.time_ns.front(), 20'000'000);
+  EXPECT_EQ(series.quantities[1].values, std::vector<double>(500, 14.0));
+  EXPECT_EQ(series.quantities[0].values, recording.truth.series.at(0).quantities[0].values);
+  EXPECT_EQ(series.T_BX.translation().z(), 3.5);
+  EXPECT_EQ(recording.truth.series[0].T_BX.translation().z(), 3.0);
+  EXPECT_EQ(scenarios::find_mismatch(recording.sensors, recording.truth), "");
+}
+
+TEST(Series, EachQuantityHasNoiseAndABiasOfItsOwn) {
+  ReadingErrors noisy;
+  noisy.noise = 3.0;
+  const Recording recording = sevens({}, noisy, 100.0);
+  const std::vector<Quantity>& read = recording.sensors.series.at(0).quantities;
+  // of 5000 samples the deviation is known to 1 %: 4 of them
+  EXPECT_NEAR(deviation(read[0].values, 7.0), 3.0, 0.12);
+  EXPECT_NE(read[0].values[0] - 7.0, read[1].values[0] - 14.0);
+  EXPECT_EQ(read[0].noise, 3.0);
+  ReadingErrors biased;
+  biased.bias = 50.0;
+  const std::vector<double> one = sevens({}, biased).sensors.series.at(0).quantities[0].values;
+  EXPECT_NE(one[0], 7.0);
+  EXPECT_EQ(one.front(), one.back());
+  EXPECT_NE(sevens({}, biased, 1.0, 2).sensors.series.at(0).quantities[0].values[0], one[0]);
+}
+
+TEST(Series, StopsAtItsRangeAndHasAStep) {
+  ReadingErrors short_of;
+  short_of.high = 8.0;
+  EXPECT_EQ(sevens({}, short_of).sensors.series.at(0).quantities[1].values.back(), 8.0);
+  ReadingErrors coarse;
+  coarse.quantum = 4.0;
+  EXPECT_EQ(sevens({}, coarse).sensors.series.at(0).quantities[0].values.back(), 8.0);
+}
+
+TEST(Series, WhatIsLostIsLostFromTheTruthToo) {
+  ReadingErrors noisy;
+  noisy.noise = 3.0;
+  const Recording all = sevens({}, noisy), some = sevens({{"dropout_share", 0.3}}, noisy);
+  const SeriesRecord& series = some.sensors.series.at(0);
+  EXPECT_LT(series.time_ns.size(), 450u);
+  EXPECT_GT(series.time_ns.size(), 250u);
+  EXPECT_EQ(scenarios::find_mismatch(some.sensors, some.truth), "");
+  // those that arrive are the same readings as without losses
+  const std::size_t row = static_cast<std::size_t>(series.time_ns.back() / 20'000'000) - 1;
+  EXPECT_EQ(series.quantities[0].values.back(), all.sensors.series.at(0).quantities[0].values.at(row));
+}
+
+TEST(Series, ARateThatDoesNotDivideIsRefused) {
+  EXPECT_THROW(sevens({{"output_rate_hz", 30.0}}, {}), InvalidSituation);
+  EXPECT_NO_THROW(sevens({{"output_rate_hz", 40.0}}, {}));
+}
+
+TEST(Series, AScenarioCarriesOneAndNoOtherSensorChanges) {
+  const scenarios::DataRoot data = scenarios::tree_data();
+  scenarios::Scenario scenario = scenarios::load_scenario(data, "bare");
+  scenario.duration_s.shape = scenarios::Distribution::Shape::constant;
+  scenario.duration_s.numbers = {3.0};
+  scenario.sensors.resize(1);  // the primary IMU
+  const auto simulated = [&] {
+    return simulate(BuiltSituation(scenarios::draw(data, scenario, 1001), data.models()), 1);
+  };
+  const Recording without = simulated();
+  scenario.sensors.push_back({"barometer", "barometer", "bmp388", "rs16", {}, {}, 0});
+  const Recording with = simulated();
+  EXPECT_EQ(with.sensors.imus.at(0).gyro_rad_s, without.sensors.imus.at(0).gyro_rad_s);
+  ASSERT_TRUE(without.sensors.series.empty());
+  EXPECT_EQ(scenarios::find_mismatch(with.sensors, with.truth), "");
+  const Quantity& pressure = with.sensors.series.at(0).quantities.at(0);
+  const std::vector<double>& exact_pa = with.truth.series.at(0).quantities.at(0).values;
+  ASSERT_EQ(pressure.values.size(), 150u);
+  double mean_pa = 0.0;
+  for (std::size_t k = 0; k < pressure.values.size(); ++k) mean_pa += (pressure.values[k] - exact_pa[k]) / 150.0;
+  // 50 Pa drawn once, within 4 of them, and 2 Pa of each reading about it
+  EXPECT_LT(std::abs(mean_pa), 200.0);
+  for (std::size_t k = 0; k < pressure.values.size(); ++k)
+    EXPECT_NEAR(pressure.values[k] - exact_pa[k], mean_pa, 10.0) << k;
+  // it rolls down some metres, 11.8 Pa each
+  EXPECT_GT(exact_pa.back() - exact_pa.front(), 5.0);
+}
+
+}  // namespace
+}  // namespace tumble::sim
