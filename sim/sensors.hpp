@@ -61,6 +61,12 @@ struct Quantity {
   std::vector<double> values;  ///< one for each of the sensor's times
 };
 
+/// A number that is known of a sensor and does not change, as where a beacon stands.
+struct Constant {
+  std::string name;  ///< ends in its unit
+  double value = 0.0;
+};
+
 /// Readings of any other sensor, a barometer for one: at each of its times one number for each of its quantities.
 struct SeriesRecord {
   std::string name;
@@ -70,6 +76,7 @@ struct SeriesRecord {
   Eigen::Isometry3d T_BX = Eigen::Isometry3d::Identity();  ///< calibration given, errors included
   std::vector<std::int64_t> time_ns;                       ///< end of each sample's window
   std::vector<Quantity> quantities;
+  std::vector<Constant> constants;  ///< what readings are understood by
 };
 
 /// Everything that an estimator may see.

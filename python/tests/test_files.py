@@ -29,8 +29,8 @@ def small():
                                 magnetic_field_t=rows(count, 3))
     lidar_truth = tumble.LidarTruth("lidar", pose, rows(7, 3).astype(np.float32), np.array([-2, -1, 0, 1, 0, 1, 0], np.int32))
     units = {"pressure_pa": "Pa", "temperature_k": "K"}
-    series = tumble.Series(np.array([5, 7, 11]), {name: rows(3) for name in units}, units, {"pressure_pa": 2.0, "temperature_k": 0.0}, pose,
-                           "barometer", "barometer", "bmp388", 20_000_000)
+    series = tumble.Series(np.array([5, 7, 11]), {name: rows(3) for name in units}, units, {"pressure_pa": 2.0, "temperature_k": 0.0},
+                           {"ground_pressure_pa": 101325.0}, pose, "barometer", "barometer", "bmp388", 20_000_000)
     series_truth = tumble.SeriesTruth("barometer", pose, {name: rows(3) for name in units}, units)
     contacts = tumble.Contacts(np.array([0, 5, 5], np.int64), rows(3, 3), rows(3, 3), rows(3, 3), rows(3), np.array([0, 1, -1], np.int32))
     quaternion = rows(9, 4)
@@ -108,7 +108,8 @@ def test_a_series(tmp_path):
         assert "series" not in file["sensors"] and "series" not in file["truth"]
     assert tumble.read(tmp_path / "none.h5").series == []
     for wrong, about in (({"values": {"a,b": np.zeros(3)}}, "a,b"), ({"values": {"a_m": np.zeros(2)}}, r"\(2,\)"), ({"T_BX": np.zeros((4, 4))}, "T_BX"),
-                         ({"noise": {"pressure_pa": -1.0}}, "noise"), ({"time_ns": np.array([3, 2, 1])}, "time_ns")):
+                         ({"noise": {"pressure_pa": -1.0}}, "noise"), ({"constants": {"a_m": np.nan}}, "a_m"),
+                         ({"constants": {"a m": 1.0}}, "a m"), ({"time_ns": np.array([3, 2, 1])}, "time_ns")):
         with pytest.raises(tumble.TumbleError, match=about):
             tumble.write(tmp_path / "wrong.h5", dataclasses.replace(recording, series=[dataclasses.replace(barometer, **wrong)], truth=None))
     recording.truth.series = []

@@ -121,12 +121,13 @@ json of_lidar(const sim::LidarRecord& lidar, Arrays& arrays) {
 }
 
 json of_series(const sim::SeriesRecord& series, Arrays& arrays) {
-  json values = json::object(), units = json::object(), noise = json::object();
+  json values = json::object(), units = json::object(), noise = json::object(), constants = json::object();
   for (const sim::Quantity& quantity : series.quantities) {
     values[quantity.name] = arrays.add("<f8", quantity.values);
     units[quantity.name] = quantity.unit;
     noise[quantity.name] = quantity.noise;
   }
+  for (const sim::Constant& constant : series.constants) constants[constant.name] = constant.value;
   return {{"name", series.name},
           {"kind", series.kind},
           {"device", series.device},
@@ -135,7 +136,8 @@ json of_series(const sim::SeriesRecord& series, Arrays& arrays) {
           {"time_ns", arrays.add("<i8", series.time_ns)},
           {"values", std::move(values)},
           {"units", std::move(units)},
-          {"noise", std::move(noise)}};
+          {"noise", std::move(noise)},
+          {"constants", std::move(constants)}};
 }
 
 /// The memory of an answer: its text, and arrays that are where the text says.

@@ -39,12 +39,15 @@ json series(const sim::SeriesRecord& record) {
   json quantities = json::array();
   for (const sim::Quantity& quantity : record.quantities)
     quantities.push_back({{"name", quantity.name}, {"unit", quantity.unit}, {"noise", quantity.noise}});
+  json constants = json::object();
+  for (const sim::Constant& constant : record.constants) constants[constant.name] = constant.value;
   return {{"name", record.name},
           {"kind", record.kind},
           {"device", record.device},
           {"period_ns", record.period_ns},
           {"samples", record.time_ns.size()},
           {"quantities", quantities},
+          {"constants", constants},
           {"T_BX", mounting(record.T_BX)}};
 }
 

@@ -195,6 +195,11 @@ std::string series_problem(const sim::SeriesRecord& series) {
                                   text_problem("device", series.device), times_problem("time_ns", series.time_ns),
                                   positive("period_ns", series.period_ns), pose_problem("T_BX", series.T_BX),
                                   quantities_problem(series.quantities)});
+  for (std::size_t i = 0; i < series.constants.size() && problem.empty(); ++i) {
+    const sim::Constant& constant = series.constants[i];
+    problem = in("constants/" + std::to_string(i),
+                 first_of({column_problem(constant.name), std::isfinite(constant.value) ? "" : "value is not finite"}));
+  }
   for (std::size_t i = 0; i < series.quantities.size() && problem.empty(); ++i) {
     const sim::Quantity& quantity = series.quantities[i];
     problem = in("quantities/" + std::to_string(i),

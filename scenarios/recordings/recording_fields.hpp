@@ -116,6 +116,10 @@ void series_fields(Archive& archive, Series& series) {
     inner.value("noise", quantity.noise);
     inner.rows("values", quantity.values, quantity.unit.c_str(), "", Storage::deflated);
   });
+  archive.optional_list("constants", series.constants, [](auto& inner, auto& constant) {
+    inner.value("name", constant.name);
+    inner.value("value", constant.value);
+  });
 }
 
 /// `lidars`: sensors.lidars, or what stands for them.

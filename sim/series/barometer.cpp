@@ -11,7 +11,7 @@ namespace {
 
 constexpr double kMolarMass_kg_mol = 0.0289644, kGasConstant_j_mol_k = 8.31432;
 
-constexpr auto kParameters = joined(
+constexpr auto kBarometerParameters = joined(
     kSeriesParameters,
     std::array{
         Parameter{"pressure_min_pa", 3e4, 0.0, 1e6, "Pa", "where the output stops below"},
@@ -35,10 +35,11 @@ void add_barometer(const SensorContext& context, Recording& recording) {
   const ReadingErrors errors{values.at("pressure_noise_pa"), values.at("pressure_bias_pa"),
                              values.at("pressure_min_pa"), values.at("pressure_max_pa"),
                              values.at("pressure_quantum_pa")};
-  simulate_series(context, {{"pressure_pa", "Pa", errors, pressure_pa}}, recording);
+  simulate_series(context, {{"pressure_pa", "Pa", errors, pressure_pa}}, {"ground_pressure_pa", "air_temperature_k"},
+                  recording);
 }
 
-void check_range(const Values& values, const std::string& place) {
+void check_pressure_range(const Values& values, const std::string& place) {
   if (values.at("pressure_min_pa") < values.at("pressure_max_pa")) return;
   throw InvalidSituation(place + ".pressure_min_pa must be below pressure_max_pa");
 }
@@ -51,8 +52,9 @@ double air_pressure_pa(double ground_pressure_pa, double temperature_k, double g
 }
 
 const SensorType& barometer_sensor() {
-  static const SensorType kType{
-      {"barometer", "pressure of the air, which falls with height", kParameters}, add_barometer, check_range};
+  static const SensorType kType{{"barometer", "pressure of the air, which falls with height", kBarometerParameters},
+                                add_barometer,
+                                check_pressure_range};
   return kType;
 }
 

@@ -40,8 +40,10 @@ class Reader {
   double reading(double exact) {
     const ReadingErrors& errors = measured_->errors;
     const double noise = errors.noise > 0.0 ? errors.noise * noise_.normal() : 0.0;
-    const double within = std::clamp(exact + bias_ + noise, errors.low, errors.high);
-    return errors.quantum > 0.0 ? errors.quantum * std::round(within / errors.quantum) : within;
+    const double read = exact + bias_ + noise;
+    // the step before the range: no reading lies beyond
+    const double step = errors.quantum > 0.0 ? errors.quantum * std::round(read / errors.quantum) : read;
+    return std::clamp(step, errors.low, errors.high);
   }
 
  private:
@@ -52,13 +54,15 @@ class Reader {
 
 }  // namespace
 
-void simulate_series(const SensorContext& context, const std::vector<Measured>& quantities, Recording& recording) {
+void simulate_series(const SensorContext& context, const std::vector<Measured>& quantities,
+                     const std::vector<std::string>& constants, Recording& recording) {
   const SensorSpec& sensor = context.sensor;
   const std::int64_t step_ns = recording.truth.period_ns;
   const std::size_t steps = steps_in_window(sensor, step_ns);
   const std::int64_t period_ns = static_cast<std::int64_t>(steps) * step_ns;
-  SeriesRecord record{sensor.name, sensor.kind, sensor.device, period_ns, context.given_T_BX, {}, {}};
+  SeriesRecord record{sensor.name, sensor.kind, sensor.device, period_ns, context.given_T_BX, {}, {}, {}};
   SeriesTruth truth{sensor.name, context.T_BX, {}};
+  for (const std::string& name : constants) record.constants.push_back({name, sensor.values.at(name)});
   std::vector<Reader> readers;
   for (const Measured& measured : quantities) {
     record.quantities.push_back({measured.name, measured.unit, measured.errors.noise, {}});

@@ -47,6 +47,8 @@ struct Measured {
 /// 0 a reading is the true mean, bit for bit. A lost sample is lost from the truth too. Throws InvalidSituation when
 /// the output period is no whole number of physics steps. What it does not model: errors that follow temperature,
 /// bandwidth other than the window's, drift.
-void simulate_series(const SensorContext& context, const std::vector<Measured>& quantities, Recording& recording);
+/// `constants`: numbers of the sensor that whoever reads it is told.
+void simulate_series(const SensorContext& context, const std::vector<Measured>& quantities,
+                     const std::vector<std::string>& constants, Recording& recording);
 
 }  // namespace tumble::sim

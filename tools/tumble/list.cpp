@@ -192,10 +192,36 @@ Listing list_methods(const std::string& only) {
   return out;
 }
 
+/// Kinds of sensors: each with its meaning, or all numbers of one.
+void add_sensor_kinds(const std::string& only, Listing& out) {
+  Table kinds("kinds", {"kind", "meaning"});
+  for (const sim::ComponentType& kind : sim::sensor_types()) {
+    const std::string name(kind.name);
+    if (only.empty()) kinds.add_row({name, std::string(kind.doc)});
+    if (only != name) continue;
+    Table numbers(name + ": " + std::string(kind.doc), {"number", "default", "bound", "unit", "meaning"});
+    json entry = {{"kind", name}, {"doc", kind.doc}, {"numbers", json::array()}};
+    for (const sim::Parameter& p : kind.parameters) {
+      numbers.add_row({std::string(p.name), number_text(p.default_value), bounds_of_parameter(p), std::string(p.unit),
+                       std::string(p.doc)});
+      entry["numbers"].push_back(parameter_json(p));
+    }
+    out.tables.push_back(std::move(numbers));
+    out.document.push_back(std::move(entry));
+  }
+  if (only.empty()) out.tables.push_back(std::move(kinds));
+}
+
 Listing list_sensors(const scenarios::DataRoot& data, const std::string& only) {
   Listing out;
   const std::vector<std::string> names = scenarios::device_names(data);
-  if (!only.empty()) require_known("sensor", only, names);
+  std::vector<std::string> known_names = names;
+  for (const sim::ComponentType& kind : sim::sensor_types()) known_names.emplace_back(kind.name);
+  if (!only.empty()) require_known("sensor", only, known_names);
+  if (std::find(names.begin(), names.end(), only) == names.end() && !only.empty()) {
+    add_sensor_kinds(only, out);
+    return out;
+  }
   Table table("", {"device", "kind", "title"});
   std::vector<Table> sheets;
   for (const std::string& name : names) {
@@ -219,6 +245,7 @@ Listing list_sensors(const scenarios::DataRoot& data, const std::string& only) {
     out.document.push_back(std::move(entry));
   }
   out.tables.push_back(std::move(table));
+  if (only.empty()) add_sensor_kinds("", out);
   for (Table& sheet : sheets) out.tables.push_back(std::move(sheet));
   return out;
 }

@@ -55,13 +55,13 @@ def whole(field: str, given: Any, low: int, high: int) -> int:
     return number
 
 
-def number_from(field: str, given: Any, low: float) -> float:
+def number_from(field: str, given: Any, low: float = -math.inf) -> float:
     """A finite number of at least `low`."""
     if not isinstance(given, kinds.Real) or isinstance(given, bool):
         raise refusal("type", field, repr(given), "a number")
     number = float(given)
     if not (math.isfinite(number) and number >= low):
-        raise refusal("out_of_range", field, number, f"finite and at least {low:g}")
+        raise refusal("out_of_range", field, number, "finite" + (f" and at least {low:g}" if math.isfinite(low) else ""))
     return number
 
 

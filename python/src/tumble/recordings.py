@@ -127,6 +127,7 @@ class Series:
     values: dict[str, Array]  #: by quantity, whose name ends in its unit: (N,) float64
     units: dict[str, str] = field(default_factory=dict)  #: by quantity: "Pa"
     noise: dict[str, float] = field(default_factory=dict)  #: by quantity: standard deviation of a reading as stated; 0: not stated
+    constants: dict[str, float] = field(default_factory=dict)  #: known of the sensor, by names that end in their units
     T_BX: Array = field(default_factory=lambda: np.eye(4))
     name: str = "series"
     kind: str = ""  #: "barometer"
@@ -225,6 +226,7 @@ def _read_series(group: Group) -> Series:
     series = Series(time_ns=group.rows("time_ns", "i8"), values={name: each.rows("values", "f8") for name, each in quantities.items()},
                     units={name: each.attribute("unit", str) for name, each in quantities.items()},
                     noise={name: each.attribute("noise", float) for name, each in quantities.items()},
+                    constants={each.attribute("name", str): each.attribute("value", float) for each in group.members("constants")},
                     T_BX=group.rows("T_BX", "f8", (4,)), name=group.attribute("name", str), kind=group.attribute("kind", str),
                     device=group.attribute("device", str), period_ns=group.attribute("period_ns", int))
     for name, each in quantities.items():
@@ -335,6 +337,9 @@ def _require_sound(recording: Recording) -> None:
         for name in series.values:
             require_quantity(f"{place}.values", name)
             number_from(f"{place}.noise[{name}]", series.noise.get(name, 0.0), 0.0)
+        for name, number in series.constants.items():
+            require_quantity(f"{place}.constants", name)
+            number_from(f"{place}.constants[{name}]", number)
 
 
 def _require_times(field: str, given: Any) -> None:
@@ -392,3 +397,8 @@ def _write_series(group: Any, series: Series) -> None:
         own, unit = quantities.create_group(str(k)), series.units.get(name, "")
         own.attrs["name"], own.attrs["unit"], own.attrs["noise"] = name, unit, float(series.noise.get(name, 0.0))
         put(own, "values", values, "<f8", unit, (count,))
+    if series.constants:
+        constants = group.create_group("constants")
+        for k, (name, number) in enumerate(series.constants.items()):
+            own = constants.create_group(str(k))
+            own.attrs["name"], own.attrs["value"] = name, float(number)

@@ -113,7 +113,8 @@ TEST_F(PythonMethod, SeesTheSeriesOfOtherSensors) {
   sim::Sensors sensors = recording().sensors;
   const std::size_t samples = sensors.imus[0].time_ns.size();
   // a quantity may have any name of letters, digits and _, that of an entry of the exchange too
-  sensors.series.push_back({"barometer", "barometer", "bmp388", 20000000, Eigen::Isometry3d::Identity(), {}, {}});
+  sensors.series.push_back(
+      {"barometer", "barometer", "bmp388", 20000000, Eigen::Isometry3d::Identity(), {}, {}, {{"air_k", 288.0}}});
   sim::SeriesRecord& series = sensors.series.back();
   for (const char* name : {"pressure_pa", "offset"}) series.quantities.push_back({name, "Pa", 2.0, {}});
   for (std::size_t k = 0; k < samples; ++k) {
@@ -123,7 +124,8 @@ TEST_F(PythonMethod, SeesTheSeriesOfOtherSensors) {
   }
   const Method method = external_method(function(
       "rate",
-      "b, = recording.series; assert b.noise['offset'] == 2 and b.units['pressure_pa'] == 'Pa' and b.kind == "
+      "b, = recording.series; assert b.noise['offset'] == 2 and b.units['pressure_pa'] == 'Pa' and b.constants == "
+      "{'air_k': 288} and b.kind == "
       "'barometer' and b.T_BX.shape == (4, 4)\n    return np.stack((b.values['pressure_pa'], b.values['offset'], "
       "b.time_ns), 1)"));
   const Estimate estimate = method.run(sensors, {}, {});

@@ -90,7 +90,8 @@ inline void add_lidar(Numbers& numbers, sim::Recording& recording, const std::st
 }
 
 inline void add_series(Numbers& numbers, sim::Recording& recording, const std::string& name, int samples) {
-  sim::SeriesRecord series{name, "barometer", "bmp388", 20000000, numbers.pose(), {}, {}};
+  sim::SeriesRecord series{name,           "barometer", "bmp388", 20000000,
+                           numbers.pose(), {},          {},       {{"ground_pressure_pa", 101325.0}}};
   sim::SeriesTruth truth{name, numbers.pose(), {}};
   for (int i = 0; i < samples; ++i) series.time_ns.push_back(20000000 * (static_cast<std::int64_t>(i) + 1));
   for (const auto& [quantity, unit] : {std::pair{"pressure_pa", "Pa"}, std::pair{"temperature_k", "K"}}) {

@@ -80,6 +80,8 @@ TEST(RecordingCheck, NamesWhatContradicts) {
       {[](auto& s) { s.series[0].quantities[1].name = ""; }, "name must be letters, digits and _, at least one"},
       {[](auto& s) { s.series[0].quantities[1].unit = "\x1b"; }, "unit is not plain text"},
       {[](auto& s) { s.series[0].quantities[1].name = "pressure_pa"; }, "quantities/0: name is another's too"},
+      {[](auto& s) { s.series[0].constants[0].name = "a b"; }, "constants/0: name must be letters, digits and _"},
+      {[nan](auto& s) { s.series[0].constants[0].value = nan; }, "constants/0: value is not finite"},
       {[](auto& s) { s.series[0].kind = "\xff"; }, "sensors/series/0: kind is not plain text"},
       {[](auto& s) { s.series[0].period_ns = 0; }, "sensors/series/0: period_ns is 0"},
       {[](auto& s) { s.series[0].T_BX.linear() *= -1.0; }, "T_BX is not a rotation"},

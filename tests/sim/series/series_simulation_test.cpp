@@ -27,7 +27,7 @@ Recording sevens(const std::map<std::string, double>& given, const ReadingErrors
   const auto seven = [](std::size_t) { return 7.0; };
   const auto fourteen = [](std::size_t) { return 14.0; };
   simulate_series({world, spec, T_BX, given_T_BX, 9.8, seed, 1},
-                  {{"a_m", "m", errors, seven}, {"b_m", "m", errors, fourteen}}, recording);
+                  {{"a_m", "m", errors, seven}, {"b_m", "m", errors, fourteen}}, {"air_temperature_k"}, recording);
   return recording;
 }
 
@@ -45,6 +45,9 @@ TEST(Series, WithoutErrorsIsTheTruth) {
   EXPECT_EQ(series.time_ns.front(), 20'000'000);
   EXPECT_EQ(series.quantities[1].values, std::vector<double>(500, 14.0));
   EXPECT_EQ(series.quantities[0].values, recording.truth.series.at(0).quantities[0].values);
+  ASSERT_EQ(series.constants.size(), 1u);
+  EXPECT_EQ(series.constants[0].name, "air_temperature_k");
+  EXPECT_EQ(series.constants[0].value, 288.15);
   EXPECT_EQ(series.T_BX.translation().z(), 3.5);
   EXPECT_EQ(recording.truth.series[0].T_BX.translation().z(), 3.0);
   EXPECT_EQ(scenarios::find_mismatch(recording.sensors, recording.truth), "");
@@ -74,6 +77,8 @@ TEST(Series, StopsAtItsRangeAndHasAStep) {
   ReadingErrors coarse;
   coarse.quantum = 4.0;
   EXPECT_EQ(sevens({}, coarse).sensors.series.at(0).quantities[0].values.back(), 8.0);
+  coarse.high = 7.5;  // 7 is nearest to 8, which is beyond
+  EXPECT_EQ(sevens({}, coarse).sensors.series.at(0).quantities[0].values.back(), 7.5);
 }
 
 TEST(Series, WhatIsLostIsLostFromTheTruthToo) {
