@@ -36,9 +36,9 @@ def small():
     quaternion = rows(9, 4)
     quaternion /= np.linalg.norm(quaternion, axis=1, keepdims=True)
     truth = tumble.Truth(500_000, rows(9, 3), quaternion, rows(9, 3), rows(9, 3), (np.arange(9) % 4).astype(np.uint8), rows(3), [imu_truth],
-                         [lidar_truth], [series_truth], rows(9, 3), contacts, ["terrain", "Fels_Ä"])
-    return tumble.Recording([imu], [lidar], [series], robot="rig", gravity_m_s2=9.8, scenario="hill", seed=2**64 - 1, situation_yaml="a: 1",
-                            attribution="nobody", origin_ns=1_234_567_890_123_456_789, tumble_version="0.1", engine_version="3", truth=truth)
+                         [lidar_truth], rows(9, 3), contacts, ["terrain", "Fels_Ä"], [series_truth])
+    return tumble.Recording([imu], [lidar], robot="rig", gravity_m_s2=9.8, scenario="hill", seed=2**64 - 1, situation_yaml="a: 1",
+                            attribution="nobody", origin_ns=1_234_567_890_123_456_789, tumble_version="0.1", engine_version="3", truth=truth, series=[series])
 
 
 def same(a, b, place="recording"):

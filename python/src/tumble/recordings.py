@@ -147,7 +147,6 @@ class Recording:
 
     imus: list[Imu] = field(default_factory=list)  #: the first is the primary one
     lidars: list[Lidar] = field(default_factory=list)
-    series: list[Series] = field(default_factory=list)  #: of sensors that are neither, a barometer for one
     robot: str = ""  #: "rig", "sphere", "pendulum", or ""
     sphere_radius_m: float = 0.0
     gravity_m_s2: float = 9.80665
@@ -159,6 +158,7 @@ class Recording:
     tumble_version: str = ""  #: of the program that made it
     engine_version: str = ""  #: of MuJoCo
     truth: Truth | None = None  #: where it is known and was read
+    series: list[Series] = field(default_factory=list)  #: of sensors that are neither, a barometer for one
 
     @property
     def sweeps(self) -> Lidar:

@@ -92,10 +92,10 @@ class Truth:
     p_BG_m: Array = field(default_factory=lambda: np.zeros(3))  #: (3,), geometric centre in the body
     imus: list[ImuTruth] = field(default_factory=list)  #: one for each IMU of the recording
     lidars: list[LidarTruth] = field(default_factory=list)  #: one for each lidar
-    series: list[SeriesTruth] = field(default_factory=list)  #: one for each series
     specific_force: Array = _none("f8", 3)  #: (N, 3), m/s^2, at the centre of mass, body axes; no row where it is not known
     contacts: Contacts = field(default_factory=Contacts)
     surfaces: list[str] = field(default_factory=list)  #: names by surface_id
+    series: list[SeriesTruth] = field(default_factory=list)  #: one for each series
 
     @property
     def time_ns(self) -> Array:
