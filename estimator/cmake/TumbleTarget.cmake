@@ -14,9 +14,9 @@ function(tumble_accelerate target)
   endif()
 endfunction()
 
-# tumble_target(TARGET [LIGHT]): the language level, warnings and instrumentation that every target of the project is
+# tumble_target(TARGET [LIGHT|COMPUTES]): the language level, warnings and instrumentation that every target of the project is
 # built with. LIGHT: optimised lightly, for what spends no time itself (command line, pages, tests): it compiles in two
-# thirds of the time, and gives the same bits.
+# thirds of the time, and gives the same bits. COMPUTES: what tests wait for; optimised fully with TUMBLE_LIGHT too.
 # Nothing is set globally, so that a project which embeds this one keeps its own flags.
 include_guard()
 
@@ -24,14 +24,14 @@ option(TUMBLE_EIGEN_NAN "Initialise Eigen matrices to NaN, so that use before as
 option(TUMBLE_WARNINGS "Ask the compiler for its warnings: who builds what others have read does without" ON)
 option(TUMBLE_WARNINGS_AS_ERRORS "Warnings fail the build" OFF)
 option(TUMBLE_PRECOMPILE "Parse the headers that nearly every file includes once per library, and once for all tests" OFF)
-option(TUMBLE_LIGHT "Every target as LIGHT: fast to compile" OFF)
+option(TUMBLE_LIGHT "Every target as LIGHT, fast to compile, but those that say COMPUTES" OFF)
 option(TUMBLE_UNITY "Compile the sources of a target some at a time" OFF)
 option(TUMBLE_ACCELERATE "Compile through ccache and link with mold, where they are there" OFF)
 set(TUMBLE_SANITIZE "" CACHE STRING "Sanitizers, comma separated: address,undefined,fuzzer-no-link (Clang alone) or thread")
 
 function(tumble_target target)
-  cmake_parse_arguments(arg "LIGHT" "" "" ${ARGN})
-  if(TUMBLE_LIGHT)
+  cmake_parse_arguments(arg "LIGHT;COMPUTES" "" "" ${ARGN})
+  if(TUMBLE_LIGHT AND NOT arg_COMPUTES)
     set(arg_LIGHT ON)
   endif()
   target_compile_features(${target} PUBLIC cxx_std_20)

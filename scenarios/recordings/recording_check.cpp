@@ -5,6 +5,7 @@
 #include <cctype>
 #include <cmath>
 #include <initializer_list>
+#include <set>
 #include <span>
 #include <utility>
 
@@ -176,17 +177,25 @@ std::string column_problem(const std::string& name) {
   return "name must be letters, digits and _, at least one";
 }
 
-/// Of readings or of their truth, whose quantities have names and units that can be told apart.
+/// Of quantities or constants of a sensor, whose names are told apart.
+template <class Record>
+std::string names_problem(const std::string& list, const std::vector<Record>& records) {
+  std::set<std::string> names;
+  std::string problem;
+  for (std::size_t i = 0; i < records.size() && problem.empty(); ++i) {
+    const std::string& name = records[i].name;
+    problem = in(list + "/" + std::to_string(i),
+                 first_of({column_problem(name), names.insert(name).second ? "" : "name is another's too"}));
+  }
+  return problem;
+}
+
+/// Of readings or of their truth.
 template <class Quantity>
 std::string quantities_problem(const std::vector<Quantity>& quantities) {
-  std::string problem;
-  for (std::size_t i = 0; i < quantities.size() && problem.empty(); ++i) {
-    const std::string& name = quantities[i].name;
-    const auto same = [&](const Quantity& other) { return other.name == name; };
-    problem = first_of({column_problem(name), text_problem("unit", quantities[i].unit),
-                        std::count_if(quantities.begin(), quantities.end(), same) > 1 ? "name is another's too" : ""});
-    problem = in("quantities/" + std::to_string(i), problem);
-  }
+  std::string problem = names_problem("quantities", quantities);
+  for (std::size_t i = 0; i < quantities.size() && problem.empty(); ++i)
+    problem = in("quantities/" + std::to_string(i), text_problem("unit", quantities[i].unit));
   return problem;
 }
 
@@ -194,11 +203,10 @@ std::string series_problem(const sim::SeriesRecord& series) {
   std::string problem = first_of({text_problem("name", series.name), text_problem("kind", series.kind),
                                   text_problem("device", series.device), times_problem("time_ns", series.time_ns),
                                   positive("period_ns", series.period_ns), pose_problem("T_BX", series.T_BX),
-                                  quantities_problem(series.quantities)});
+                                  quantities_problem(series.quantities), names_problem("constants", series.constants)});
   for (std::size_t i = 0; i < series.constants.size() && problem.empty(); ++i) {
-    const sim::Constant& constant = series.constants[i];
-    problem = in("constants/" + std::to_string(i),
-                 first_of({column_problem(constant.name), std::isfinite(constant.value) ? "" : "value is not finite"}));
+    if (!std::isfinite(series.constants[i].value))
+      problem = in("constants/" + std::to_string(i), "value is not finite");
   }
   for (std::size_t i = 0; i < series.quantities.size() && problem.empty(); ++i) {
     const sim::Quantity& quantity = series.quantities[i];

@@ -79,7 +79,11 @@ TEST(RecordingCheck, NamesWhatContradicts) {
       {[](auto& s) { s.series[0].quantities[1].name = "a,b"; }, "quantities/1: name must be letters, digits and _"},
       {[](auto& s) { s.series[0].quantities[1].name = ""; }, "name must be letters, digits and _, at least one"},
       {[](auto& s) { s.series[0].quantities[1].unit = "\x1b"; }, "unit is not plain text"},
-      {[](auto& s) { s.series[0].quantities[1].name = "pressure_pa"; }, "quantities/0: name is another's too"},
+      {[](auto& s) { s.series[0].quantities[1].name = "pressure_pa"; }, "quantities/1: name is another's too"},
+      {[](auto& s) {
+         s.series[0].constants.push_back({"ground_pressure_pa", 1.0});
+       },
+       "sensors/series/0: constants/1: name is another's too"},
       {[](auto& s) { s.series[0].constants[0].name = "a b"; }, "constants/0: name must be letters, digits and _"},
       {[nan](auto& s) { s.series[0].constants[0].value = nan; }, "constants/0: value is not finite"},
       {[](auto& s) { s.series[0].kind = "\xff"; }, "sensors/series/0: kind is not plain text"},
