@@ -26,11 +26,10 @@ constexpr auto kBarometerParameters = joined(
 /// What it does not model: wind, the pressure of the robot's own way through the air, lag of the housing.
 void add_barometer(const SensorContext& context, Recording& recording) {
   const Values& values = context.sensor.values;
-  const auto pressure_pa = [&](std::size_t k) {
-    const Truth& truth = recording.truth;
+  const auto pressure_pa = [&truth = recording.truth, &context, ground_pa = values.at("ground_pressure_pa"),
+                            temperature_k = values.at("air_temperature_k")](std::size_t k) {
     const double height_m = (truth.p_WB_m[k] + truth.q_WB[k] * context.T_BX.translation()).z();
-    return air_pressure_pa(values.at("ground_pressure_pa"), values.at("air_temperature_k"), context.gravity_m_s2,
-                           height_m);
+    return air_pressure_pa(ground_pa, temperature_k, context.gravity_m_s2, height_m);
   };
   const ReadingErrors errors{values.at("pressure_noise_pa"), values.at("pressure_bias_pa"),
                              values.at("pressure_min_pa"), values.at("pressure_max_pa"),
