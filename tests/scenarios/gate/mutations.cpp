@@ -11,6 +11,10 @@ namespace {
 constexpr double kShift_ns = 1e6;
 constexpr double kBumpLeast_m = 0.004;  // above its height at the start, the sphere stands on something
 constexpr double kMapRotation_rad = 0.02;
+constexpr double kBorder_m_s = 0.02;
+constexpr double kTilt_rad = 0.05;
+constexpr double kTurn_rad_s = 0.005;
+constexpr double kSink_m_s = 0.005;
 
 /// Every IMU on the other side of the body's origin.
 void flip_lever_arms(sim::Sensors& sensors) {
@@ -63,6 +67,78 @@ void lose_a_bump(const sim::Recording& recording, Estimate& estimate) {
     if (pose.time_ns <= begin_ns) met = pose.p_WA_m;
     if (pose.time_ns > begin_ns && pose.time_ns <= end_ns) lost = pose.p_WA_m - met;
     if (pose.time_ns > begin_ns) pose.p_WA_m -= pose.time_ns <= end_ns ? Eigen::Vector3d(pose.p_WA_m - met) : lost;
+  }
+}
+
+/// No pose is said to slip or slide.
+void lose_slips(const sim::Recording&, Estimate& estimate) {
+  for (sim::ContactLabel& contact : estimate.contacts) contact = sim::ContactLabel::grip;
+}
+
+/// Every second event is said to begin half a second before it does.
+void claim_slips_early(const sim::Recording&, Estimate& estimate) {
+  constexpr std::int64_t kEarly_ns = 500'000'000;
+  bool early = false;
+  for (std::size_t k = estimate.contacts.size(); k-- > 1;) {
+    const sim::ContactLabel now = estimate.contacts[k];
+    if (now != sim::ContactLabel::slip && now != sim::ContactLabel::slide) continue;
+    if (estimate.contacts[k - 1] != sim::ContactLabel::grip) continue;
+    early = !early;
+    for (std::size_t j = k; early && j-- > 0;) {
+      if (estimate.poses[k].time_ns - estimate.poses[j].time_ns > kEarly_ns) break;
+      estimate.contacts[j] = now;
+    }
+  }
+}
+
+/// What lies beyond the middle of its points is not kept.
+void lose_half_the_map(const sim::Recording&, Estimate& estimate) {
+  if (estimate.map.empty()) return;
+  const std::size_t half = estimate.map.size() / 2;
+  std::nth_element(estimate.map.begin(), estimate.map.begin() + static_cast<std::ptrdiff_t>(half), estimate.map.end(),
+                   [](const MapPoint& a, const MapPoint& b) { return a.position_W_m.x() < b.position_W_m.x(); });
+  estimate.map.resize(half);
+}
+
+/// The velocity of every second sweep is a little off: it jumps where two of them meet.
+void break_sweep_borders(const sim::Recording&, Estimate& estimate) {
+  for (std::size_t k = 0; k < estimate.sweeps.size(); k += 2) {
+    for (PoseState& pose : estimate.sweeps[k].trajectory) pose.v_WA_m_s.x() += kBorder_m_s;
+  }
+}
+
+/// The last sweeps are turned by a degree.
+void turn_the_end(const sim::Recording&, Estimate& estimate) {
+  constexpr std::size_t kLast = 5;
+  const Eigen::Quaterniond turn(Eigen::AngleAxisd(kMapRotation_rad, Eigen::Vector3d::UnitZ()));
+  for (std::size_t k = 0; k < std::min(kLast, estimate.sweeps.size()); ++k) {
+    PoseState& pose = estimate.sweeps[estimate.sweeps.size() - 1 - k].pose;
+    pose.q_WA = turn * pose.q_WA;
+  }
+}
+
+/// The map stands where the run did not.
+void move_the_map(const sim::Recording&, Estimate& estimate) {
+  for (MapPoint& point : estimate.map) point.position_W_m += Eigen::Vector3f(0.7f, 0.7f, 1.5f);
+}
+
+void tilt_attitudes(const sim::Recording&, Estimate& estimate) {
+  const Eigen::Quaterniond tilt(Eigen::AngleAxisd(kTilt_rad, Eigen::Vector3d::UnitX()));
+  for (AttitudeState& attitude : estimate.attitudes) attitude.q_WA = tilt * attitude.q_WA;
+}
+
+/// About the vertical, the further the later.
+void turn_attitudes(const sim::Recording&, Estimate& estimate) {
+  for (AttitudeState& attitude : estimate.attitudes) {
+    const double since_s = 1e-9 * static_cast<double>(attitude.time_ns - estimate.attitudes.front().time_ns);
+    attitude.q_WA = Eigen::AngleAxisd(kTurn_rad_s * since_s, Eigen::Vector3d::UnitZ()) * attitude.q_WA;
+  }
+}
+
+/// Below the ground, the further the later.
+void sink_poses(const sim::Recording&, Estimate& estimate) {
+  for (PoseState& pose : estimate.poses) {
+    pose.p_WA_m.z() -= kSink_m_s * 1e-9 * static_cast<double>(pose.time_ns - estimate.poses.front().time_ns);
   }
 }
 
@@ -121,39 +197,136 @@ void draw_map_twice_turned(const sim::Recording&, Estimate& estimate) {
 
 std::span<const Mutation> mutations() {
   static const std::array all = {
-      Mutation{"lever_arm_sign_given", "hill", "rate/tumble", flip_lever_arms, nullptr},
-      Mutation{"lever_arm_sign_of_poses", "hill", "slam/tumble", nullptr, flip_lever_arm_of_poses},
-      Mutation{"covariance_halved_rate", "hill", "rate/tumble", nullptr, halve_covariances},
-      Mutation{"covariance_halved_slam", "hill", "slam/tumble", nullptr, halve_covariances},
-      Mutation{"covariance_halved_position", "bump", "position/tumble", nullptr, halve_covariances},
-      Mutation{"covariance_doubled_rate", "hill", "rate/tumble", nullptr, double_covariances},
-      Mutation{"covariance_doubled_slam", "hill", "slam/tumble", nullptr, double_covariances},
-      Mutation{"covariance_doubled_position", "bump", "position/tumble", nullptr, double_covariances},
-      Mutation{"lost_bump", "bump", "position/tumble", nullptr, lose_a_bump},
-      Mutation{"shift_1_ms", "hill", "rate/tumble", nullptr, shift_by_1_ms},
-      Mutation{"shift_1_ms_live", "hill", "rate/tumble_lag", nullptr, shift_by_1_ms},
-      Mutation{"shift_1_ms_poses", "hill", "slam/tumble", nullptr, shift_by_1_ms},
-      Mutation{"lever_arm_sign_given_live", "hill", "rate/tumble_lag", flip_lever_arms, nullptr},
-      Mutation{"covariance_halved_live", "hill", "rate/tumble_lag", nullptr, halve_covariances},
-      Mutation{"covariance_doubled_live", "hill", "rate/tumble_lag", nullptr, double_covariances},
-      Mutation{"shift_1_ms_position", "bump", "position/tumble", nullptr, shift_by_1_ms},
-      Mutation{"shift_1_ms_position_live", "bump", "position/tumble_live", nullptr, shift_by_1_ms},
-      Mutation{"covariance_halved_position_live", "bump", "position/tumble_live", nullptr, halve_covariances},
-      Mutation{"lost_bump_live", "bump", "position/tumble_live", nullptr, lose_a_bump},
-      Mutation{"covariance_halved_sphere_attitude", "bump", "attitude/tumble", nullptr, halve_covariances},
-      Mutation{"shift_1_ms_carried", "swing", "rate/tumble", nullptr, shift_by_1_ms},
-      Mutation{"covariance_halved_carried", "swing", "rate/tumble", nullptr, halve_covariances},
-      Mutation{"covariance_doubled_carried", "swing", "rate/tumble", nullptr, double_covariances},
-      Mutation{"shift_1_ms_held", "swing", "rate/carried", nullptr, shift_by_1_ms},
-      Mutation{"covariance_halved_held", "swing", "rate/carried", nullptr, halve_covariances},
-      Mutation{"covariance_doubled_held", "swing", "rate/carried", nullptr, double_covariances},
-      Mutation{"shift_1_ms_position_lag", "bump", "position/tumble_lag", nullptr, shift_by_1_ms},
-      Mutation{"covariance_halved_position_lag", "bump", "position/tumble_lag", nullptr, halve_covariances},
-      Mutation{"shift_1_ms_attitude", "swing", "attitude/tumble", nullptr, shift_by_1_ms},
-      Mutation{"covariance_halved_attitude", "swing", "attitude/tumble", nullptr, halve_covariances},
-      Mutation{"covariance_doubled_attitude", "swing", "attitude/tumble", nullptr, double_covariances},
-      Mutation{"map_twice", "hill", "slam/tumble", nullptr, draw_map_twice},
-      Mutation{"map_twice_turned", "hill", "slam/tumble", nullptr, draw_map_twice_turned},
+      Mutation{"lever_arm_sign_given",
+               "hill",
+               "rate/tumble",
+               {"rate_error_clipped_median_rad_s", "rate_error_free_median_rad_s", "rate_error_clipped_p99_rad_s",
+                "rate_coverage_3sigma"},
+               flip_lever_arms,
+               nullptr},
+      Mutation{"lever_arm_sign_of_poses",
+               "hill",
+               "slam/tumble",
+               {"ate_m", "translation_error_end_m", "rpe_1m_m", "map_error_mean_m", "map_overlap"},
+               nullptr,
+               flip_lever_arm_of_poses},
+      Mutation{"covariance_halved_rate", "hill", "rate/tumble", {"rate_nees_flight"}, nullptr, halve_covariances},
+      Mutation{"covariance_halved_slam", "hill", "slam/tumble", {"pose_nees"}, nullptr, halve_covariances},
+      Mutation{"covariance_halved_position",
+               "bump",
+               "position/tumble",
+               {"position_nees_median"},
+               nullptr,
+               halve_covariances},
+      Mutation{"covariance_doubled_rate",
+               "hill",
+               "rate/tumble",
+               {"rate_nees_flight", "rate_nees_impact"},
+               nullptr,
+               double_covariances},
+      Mutation{"covariance_doubled_slam", "hill", "slam/tumble", {"pose_nees"}, nullptr, double_covariances},
+      Mutation{"covariance_doubled_position",
+               "bump",
+               "position/tumble",
+               {"position_nees_median"},
+               nullptr,
+               double_covariances},
+      Mutation{"lost_bump",
+               "bump",
+               "position/tumble",
+               {"position_end_error_share", "position_coverage_3sigma"},
+               nullptr,
+               lose_a_bump},
+      Mutation{"shift_1_ms", "hill", "rate/tumble", {"rate_time_offset_s"}, nullptr, shift_by_1_ms},
+      Mutation{"shift_1_ms_live", "hill", "rate/tumble_lag", {"rate_time_offset_s"}, nullptr, shift_by_1_ms},
+      Mutation{"shift_1_ms_poses", "hill", "slam/tumble", {"pose_time_offset_s"}, nullptr, shift_by_1_ms},
+      Mutation{"lever_arm_sign_given_live",
+               "hill",
+               "rate/tumble_lag",
+               {"rate_error_clipped_median_rad_s"},
+               flip_lever_arms,
+               nullptr},
+      Mutation{"covariance_halved_live", "hill", "rate/tumble_lag", {"rate_nees_flight"}, nullptr, halve_covariances},
+      Mutation{"covariance_doubled_live", "hill", "rate/tumble_lag", {"rate_nees_flight"}, nullptr, double_covariances},
+      Mutation{"shift_1_ms_position",
+               "bump",
+               "position/tumble",
+               {"pose_time_offset_s", "ate_rad", "rpe_1m_rad"},
+               nullptr,
+               shift_by_1_ms},
+      Mutation{
+          "shift_1_ms_position_live", "bump", "position/tumble_live", {"pose_time_offset_s"}, nullptr, shift_by_1_ms},
+      Mutation{"covariance_halved_position_live",
+               "bump",
+               "position/tumble_live",
+               {"position_nees_median"},
+               nullptr,
+               halve_covariances},
+      Mutation{"lost_bump_live", "bump", "position/tumble_live", {"position_end_error_share"}, nullptr, lose_a_bump},
+      Mutation{"covariance_halved_sphere_attitude",
+               "bump",
+               "attitude/tumble",
+               {"inclination_nees_median"},
+               nullptr,
+               halve_covariances},
+      Mutation{"shift_1_ms_carried", "swing", "rate/tumble", {"rate_time_offset_s"}, nullptr, shift_by_1_ms},
+      Mutation{"covariance_halved_carried", "swing", "rate/tumble", {"rate_nees_flight"}, nullptr, halve_covariances},
+      Mutation{"covariance_doubled_carried", "swing", "rate/tumble", {"rate_nees_flight"}, nullptr, double_covariances},
+      Mutation{"shift_1_ms_held", "swing", "rate/carried", {"rate_time_offset_s"}, nullptr, shift_by_1_ms},
+      Mutation{"covariance_halved_held", "swing", "rate/carried", {"rate_nees_flight"}, nullptr, halve_covariances},
+      Mutation{"covariance_doubled_held", "swing", "rate/carried", {"rate_nees_flight"}, nullptr, double_covariances},
+      Mutation{
+          "shift_1_ms_position_lag", "bump", "position/tumble_lag", {"pose_time_offset_s"}, nullptr, shift_by_1_ms},
+      Mutation{"covariance_halved_position_lag",
+               "bump",
+               "position/tumble_lag",
+               {"position_nees_median"},
+               nullptr,
+               halve_covariances},
+      Mutation{"shift_1_ms_attitude", "swing", "attitude/tumble", {"attitude_time_offset_s"}, nullptr, shift_by_1_ms},
+      Mutation{"covariance_halved_attitude",
+               "swing",
+               "attitude/tumble",
+               {"inclination_nees_median"},
+               nullptr,
+               halve_covariances},
+      Mutation{"covariance_doubled_attitude",
+               "swing",
+               "attitude/tumble",
+               {"inclination_nees_median"},
+               nullptr,
+               double_covariances},
+      Mutation{"covariance_halved_door_lag", "hill", "slam/tumble_lag", {"pose_nees"}, nullptr, halve_covariances},
+      Mutation{"covariance_doubled_door_lag", "hill", "slam/tumble_lag", {"pose_nees"}, nullptr, double_covariances},
+      Mutation{"shift_1_ms_door_lag", "hill", "slam/tumble_lag", {"pose_time_offset_s"}, nullptr, shift_by_1_ms},
+      Mutation{"map_twice_door_lag", "hill", "slam/tumble_lag", {"map_unique_share"}, nullptr, draw_map_twice},
+      Mutation{"covariance_halved_door_live", "hill", "slam/tumble_live", {"pose_nees"}, nullptr, halve_covariances},
+      Mutation{"covariance_doubled_door_live", "hill", "slam/tumble_live", {"pose_nees"}, nullptr, double_covariances},
+      Mutation{"shift_1_ms_door_live", "hill", "slam/tumble_live", {"pose_time_offset_s"}, nullptr, shift_by_1_ms},
+      Mutation{"lost_slip", "slip", "position/tumble", {"slip_recall"}, nullptr, lose_slips},
+      Mutation{"early_slip", "slip", "position/tumble", {"slip_precision"}, nullptr, claim_slips_early},
+      Mutation{"lost_slip_lag", "slip", "position/tumble_lag", {"slip_recall"}, nullptr, lose_slips},
+      Mutation{"lost_slip_live", "slip", "position/tumble_live", {"slip_recall"}, nullptr, lose_slips},
+      Mutation{"early_slip_live", "slip", "position/tumble_live", {"slip_precision"}, nullptr, claim_slips_early},
+      Mutation{"shift_1_ms_roll", "roll", "position/tumble", {"pose_time_offset_s"}, nullptr, shift_by_1_ms},
+      Mutation{
+          "covariance_halved_roll", "roll", "position/tumble", {"position_nees_median"}, nullptr, halve_covariances},
+      Mutation{
+          "covariance_doubled_roll", "roll", "position/tumble", {"position_nees_median"}, nullptr, double_covariances},
+      Mutation{"half_map", "hill", "slam/tumble", {"map_coverage"}, nullptr, lose_half_the_map},
+      Mutation{"broken_border", "hill", "slam/tumble", {"sweep_jump_m_s"}, nullptr, break_sweep_borders},
+      Mutation{"turned_end", "hill", "slam/tumble", {"rotation_error_end_rad"}, nullptr, turn_the_end},
+      Mutation{"map_elsewhere", "hill", "slam/tumble", {"map_failed"}, nullptr, move_the_map},
+      Mutation{"tilted",
+               "bump",
+               "attitude/tumble",
+               {"inclination_rmse_rad", "inclination_coverage_3sigma"},
+               nullptr,
+               tilt_attitudes},
+      Mutation{"turning", "bump", "attitude/tumble", {"heading_rmse_rad"}, nullptr, turn_attitudes},
+      Mutation{"sunk", "bump", "position/tumble", {"position_height_error_max_m"}, nullptr, sink_poses},
+      Mutation{"map_twice", "hill", "slam/tumble", {"map_unique_share"}, nullptr, draw_map_twice},
+      Mutation{"map_twice_turned", "hill", "slam/tumble", {"map_overlap_0_10"}, nullptr, draw_map_twice_turned},
   };
   return all;
 }

@@ -2,6 +2,8 @@
 #pragma once
 
 #include <span>
+#include <string>
+#include <vector>
 
 #include "scenarios/methods/method.hpp"
 
@@ -14,6 +16,7 @@ struct Mutation {
   const char* name;
   const char* scenario;
   const char* method;                                           ///< "slam/tumble"
+  std::vector<std::string> metrics;                             ///< each of whose rows has to refuse it
   void (*given)(sim::Sensors& sensors);                         ///< null: as it is
   void (*returned)(const sim::Recording&, Estimate& estimate);  ///< null: as it is
 };
