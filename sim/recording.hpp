@@ -9,9 +9,9 @@
 
 #include "sim/sensors.hpp"
 
-/// What a simulation leaves, the truth beside the sensors: data types only. Frames and units as in DESIGN: W world (z
-/// up), B body at the centre of mass, I an IMU, L the lidar, X any other sensor, G the sphere's geometric centre; SI;
-/// int64 nanoseconds from the start.
+/// What a simulation leaves, the truth beside the sensors: data types only. Frames and units as in docs/design.md: W
+/// world (z up), B body at the centre of mass, I an IMU, L the lidar, X any other sensor, G the sphere's geometric
+/// centre; SI; int64 nanoseconds from the start.
 namespace tumble::sim {
 
 /// State of contact, over a window that bridges chatter.

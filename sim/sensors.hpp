@@ -7,8 +7,8 @@
 #include <string>
 #include <vector>
 
-/// What sensors say, all that an estimator may see: data types only. Frames and units as in DESIGN: B body at the
-/// centre of mass, I an IMU, L the lidar, X any other sensor; SI; int64 nanoseconds from the start.
+/// What sensors say, all that an estimator may see: data types only. Frames and units as in docs/design.md: B body at
+/// the centre of mass, I an IMU, L the lidar, X any other sensor; SI; int64 nanoseconds from the start.
 namespace tumble::sim {
 
 /// Readings of one IMU, as the device delivers them.

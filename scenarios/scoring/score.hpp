@@ -12,7 +12,7 @@
 
 namespace tumble::scenarios {
 
-/// One number of an outcome; the metric's name ends in its unit (DESIGN.md, "Scores").
+/// One number of an outcome; the metric's name ends in its unit (docs/design.md, "Scores").
 struct Score {
   std::string metric;
   double value;

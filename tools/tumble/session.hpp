@@ -12,7 +12,7 @@
 
 namespace tumble::tools {
 
-/// The program's exit statuses (DESIGN.md, "The program").
+/// The program's exit statuses (docs/design.md, "The program").
 enum ExitStatus { kDone = 0, kCheckFailed = 1, kBadInput = 2, kDefect = 3 };
 
 /// How tables are written: for the terminal, or for documents and other programs.
