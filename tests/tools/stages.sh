@@ -11,6 +11,7 @@ cp "$1/tools/test" "$scratch/tools/test"
 stand_in() { printf '#!/bin/sh\necho "%s $*" >> "%s/called"\n%s\n' "$1" "$scratch" "$2" > "$scratch/$1"; chmod +x "$scratch/$1"; }
 stand_in tools/setup 'exit 0'
 stand_in tools/lint '[ "${FAILING:-}" != lint ]'
+stand_in tools/docs '[ "${FAILING:-}" != docs ]'
 stand_in bin/ctest '[ "${FAILING:-}" != ctest ]'
 # fails to build what FAILING names
 stand_in bin/cmake 'case "$*" in *"--build --preset ${FAILING:-none} "*) exit 1 ;; esac'
@@ -48,9 +49,10 @@ expect 'two stages as one' "$(outcome none --all --from 'tests long')" 'exit 2'
 expect 'a test that fails' "$(outcome ctest --all --from long)" "$(lines 'long FAILED' 'cluster FAILED' 'sanitize FAILED' 'threads FAILED' 'fuzz FAILED' \
   'lint passed' 'bench FAILED' 'failed : long cluster sanitize threads fuzz bench' 'exit 1')"
 expect 'a finding of the linter' "$(outcome lint --all --from lint)" "$(lines 'lint FAILED' 'bench passed' 'failed : lint' 'exit 1')"
+expect 'a warning of Doxygen' "$(outcome docs --all --from lint)" "$(lines 'lint FAILED' 'bench passed' 'failed : lint' 'exit 1')"
 outcome none --all > /dev/null
 jobs=$(nproc)
-expect 'what was asked of CTest and the linter' "$(grep -E '^(bin/ctest|tools/lint)' "$scratch/called")" "$(lines \
+expect 'what was asked of CTest and the linter' "$(grep -E '^(bin/ctest|tools/lint|tools/docs)' "$scratch/called")" "$(lines \
   "bin/ctest --preset release -j $jobs -LE bench|browser|soak|peers|python|cluster|threads|fuzz" "bin/ctest --preset release -j $jobs -L ^(browser|soak|peers|python)\$" "bin/ctest --preset release -j $jobs -L cluster -j 1" \
   "bin/ctest --preset sanitize -j $jobs -L ^(fast|sim|methods)\$" "bin/ctest --preset threads -j $jobs -L threads" \
-  "bin/ctest --preset sanitize -j $jobs -L fuzz" 'tools/lint --all' "bin/ctest --preset release -j $jobs -L bench -j 1")"
+  "bin/ctest --preset sanitize -j $jobs -L fuzz" 'tools/lint --all' 'tools/docs ' "bin/ctest --preset release -j $jobs -L bench -j 1")"
