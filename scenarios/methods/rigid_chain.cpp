@@ -7,6 +7,7 @@
 #include <optional>
 
 #include "scenarios/methods/bridge.hpp"
+#include "scenarios/methods/rate_baseline.hpp"
 #include "scenarios/methods/registry.hpp"
 #include "scenarios/methods/slam_registry.hpp"
 #include "scenarios/methods/sweep_log.hpp"

@@ -3,6 +3,7 @@
 
 #include "scenarios/baselines/mapping/pointwise_filter.hpp"
 #include "scenarios/methods/bridge.hpp"
+#include "scenarios/methods/rate_baseline.hpp"
 #include "scenarios/methods/registry.hpp"
 #include "scenarios/methods/rigid_chain.hpp"
 #include "scenarios/methods/settings.hpp"
