@@ -6,6 +6,7 @@
 #include "scenarios/methods/imu_check.hpp"
 #include "scenarios/methods/rate_baseline.hpp"
 #include "scenarios/methods/registry.hpp"
+#include "scenarios/methods/robot_presets.hpp"
 #include "scenarios/methods/slam_conclusion.hpp"
 #include "scenarios/methods/slam_registry.hpp"
 #include "scenarios/methods/slam_settings.hpp"
@@ -259,13 +260,9 @@ Estimate begin_with_rates(const sim::Sensors& sensors, std::vector<ImuSample>& s
   return estimate;
 }
 
-Eigen::AlignedBox3d rig_body_L() {
-  return {Eigen::Vector3d(-0.5, -0.4, -0.27), Eigen::Vector3d(0.5, 0.4, 0.23)};
-}
-
 LidarInertialOdometry::Params SlamParams::on_the_rig() {
   LidarInertialOdometry::Params params;
-  params.own_body_L = rig_body_L();
+  params.own_body_L = presets::rig_body_L();
   params.expert.matching.agreeing_least = RegistrationParams().expert.agreeing_min;  // none: with_few_matches
   return params;
 }

@@ -8,6 +8,7 @@
 #include "scenarios/methods/bridge.hpp"
 #include "scenarios/methods/imu_check.hpp"
 #include "scenarios/methods/registry.hpp"
+#include "scenarios/methods/robot_presets.hpp"
 #include "scenarios/methods/settings.hpp"
 #include "scenarios/methods/slam_conclusion.hpp"
 #include "scenarios/methods/slam_registry.hpp"
@@ -51,7 +52,7 @@ TumblingOdometry::Params stated_params(const sim::Sensors& sensors, const sim::V
   if (imu.accel_noise_m_s2_sqrt_hz > 0.0) sheet.accel_noise_m_s2_sqrt_hz = imu.accel_noise_m_s2_sqrt_hz;
   params.lever_arm_I_m = bridge::lever_arm_I_m(imu);
   params.T_IL = bridge::T_IL(imu, sensors.lidars.front());
-  params.own_body_L = rig_body_L();
+  params.own_body_L = presets::rig_body_L();
   params.expert.gravity_m_s2 = sensors.gravity_m_s2;
   slam_tumble_lag_settings().apply(parameters, params);
   return params;
