@@ -19,6 +19,7 @@
 #include "scenarios/sweep/message.hpp"
 #include "scenarios/sweep/motion_values.hpp"
 #include "scenarios/sweep/variation.hpp"
+#include "scenarios/text.hpp"
 #include "sim/lidar/surface.hpp"
 #include "sim/simulate.hpp"
 

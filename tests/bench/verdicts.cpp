@@ -46,12 +46,6 @@ constexpr double kWrongDeviations = 5.0;
 constexpr double kWrongShare = 0.2, kWrongTilt_rad = 0.5;
 constexpr std::string_view kPeople = "people";  // about the start: what they hide depends on the truth
 
-double value_of(const std::vector<scenarios::Score>& scores, const std::string& metric) {
-  const auto found =
-      std::find_if(scores.begin(), scores.end(), [&](const auto& score) { return score.metric == metric; });
-  return found == scores.end() ? std::nan("") : found->value;
-}
-
 bool told(const scenarios::Outcome& outcome, const scenarios::Estimate& estimate) {
   if (outcome.status != scenarios::OutcomeStatus::ok) return true;
   using About = scenarios::Doubt::About;
