@@ -20,10 +20,8 @@ std::string four_digits(double value) {
 
 /// A finite number of the metric; none, where there is not.
 std::optional<double> finite_value_of(const Outcome& outcome, const std::string& metric) {
-  for (const Score& score : outcome.scores) {
-    if (score.metric == metric && std::isfinite(score.value)) return score.value;
-  }
-  return std::nullopt;
+  const double value = value_of(outcome.scores, metric);
+  return std::isfinite(value) ? std::optional(value) : std::nullopt;
 }
 
 /// What a reader wants to know of a shrunk draw, in a line.

@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <optional>
 #include <sstream>
 
 #include "scenarios/errors.hpp"
@@ -13,18 +12,11 @@ namespace tumble::scenarios {
 
 namespace {
 
-std::optional<double> value_of(const Outcome& outcome, const std::string& metric) {
-  for (const Score& score : outcome.scores) {
-    if (score.metric == metric) return score.value;
-  }
-  return std::nullopt;
-}
-
 /// Beyond a limit of a metric; NaN is not.
 bool is_beyond(const Outcome& outcome, const std::string& metric, double limit) {
-  const std::optional<double> value = value_of(outcome, metric);
-  if (!value) return false;
-  return metric_info(metric).sense == Sense::higher ? *value < limit : *value > limit;
+  const double value = value_of(outcome.scores, metric);
+  if (std::isnan(value)) return false;
+  return metric_info(metric).sense == Sense::higher ? value < limit : value > limit;
 }
 
 }  // namespace
@@ -48,10 +40,10 @@ SameFailure::SameFailure(const Failure& failure, const Outcome& outcome) : statu
   std::ostringstream text;
   text << "the run does not fail: its status is ok, no verdict is against it";
   if (!failure.metric.empty()) {
-    const std::optional<double> value = value_of(outcome, failure.metric);
+    const Score* const score = find_score(outcome.scores, failure.metric);
     text << ", " << failure.metric << " is ";
-    if (value) {
-      text << *value << ", not worse than " << failure.limit;
+    if (score != nullptr) {
+      text << score->value << ", not worse than " << failure.limit;
     } else {
       text << "not there";
     }

@@ -15,6 +15,7 @@
 #include "scenarios/draw/fixed_scenario.hpp"
 #include "scenarios/errors.hpp"
 #include "scenarios/sweep/draw_process.hpp"
+#include "scenarios/text.hpp"
 #include "sim/lidar/surface.hpp"
 #include "sim/simulate.hpp"
 

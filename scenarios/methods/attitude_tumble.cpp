@@ -26,10 +26,10 @@ Estimate run_sphere(const sim::Sensors& sensors, const sim::Values& parameters) 
   estimate.frame = Frame::body;
   MergedImus imus;
   estimate.status = merge_imus(sensors, imus);
-  for (const MergedImus::LeftOut& unit : imus.out) estimate.health[to_string(unit)] = unit.since_s;
+  for (const Doubt& unit : imus.out) add_doubt(unit, estimate);
   if (!estimate.status.ok()) return estimate;
   (void)check_imus(sensors, imus, estimate);
-  if (imus.beyond_range > 0.0) estimate.health["imu_readings_beyond_range"] = imus.beyond_range;
+  if (imus.beyond_range > 0.0) add_doubt({Doubt::About::beyond_range, imus.beyond_range}, estimate);
   TumbleAttitude::Params params = stated(sensors);
   params.radius_m = sensors.sphere_radius_m;
   params.lever_arm_m = imus.lever_arm_m;

@@ -26,12 +26,6 @@ std::uint8_t clip_flags(std::uint8_t sim_bits) {
   return flags;
 }
 
-void require_length(const std::string& place, const char* field, std::size_t found, std::size_t expected) {
-  if (found == expected) return;
-  throw BadInput(place + "." + field + " has " + std::to_string(found) + " entries, must have " +
-                 std::to_string(expected));
-}
-
 // Stamps of another unit are a thousand times off; a device that is read more seldom than it says is not.
 constexpr double kPeriodsMax = 20.0;
 

@@ -310,6 +310,7 @@ void read_header(const std::filesystem::path& path, Kind& kind, std::string& met
     if (!estimate.status.ok()) estimate.status.field = "estimate.json";
     for (const auto& [name, value] : header.at("health").items())
       estimate.health[name] = value.is_number() ? value.get<double>() : std::nan("");
+    estimate.doubts = doubts_in(estimate.health);
     if (header.contains("parameters"))
       estimate.parameters = header.at("parameters").get<std::map<std::string, double>>();
   } catch (const json::exception& error) {

@@ -25,7 +25,7 @@ constexpr double kArmShareMin = 0.5;  // 1: as the places say; 0: no relation; -
 constexpr double kArmShareOff = 0.06;
 
 Status told(Status status, Estimate& estimate) {
-  if (!status.ok()) estimate.health["imu_implausible"] = 1.0;
+  if (!status.ok()) add_doubt({Doubt::About::readings}, estimate);
   return status;
 }
 
@@ -42,25 +42,29 @@ double fastest_rad_s(std::span<const ImuSample> samples) {
   return fastest;
 }
 
-/// Whether the rates of a run are doubted as a whole; the covariance of each holds its square then.
-constexpr const char* kRatesDoubted = "imu_rates_doubted";
-
-/// What a doubt about a rate adds to its covariance: of such rates the size alone is known: one of the other sense is
-/// off by twice itself, one of half the scale by half.
-Eigen::Matrix3d square_of_rate(const RateState& rate) {
-  return rate.w_WI_I_rad_s.squaredNorm() * Eigen::Matrix3d::Identity();
+/// Adds to the covariance of the `k`-th rate.
+void doubt_rate(std::size_t k, const Eigen::Matrix3d& by_rad2_s2, Estimate& estimate) {
+  estimate.doubted_rad2_s2.resize(estimate.rates.size(), Eigen::Matrix3d::Zero());
+  estimate.doubted_rad2_s2[k] += by_rad2_s2;
+  estimate.rates[k].covariance_rad2_s2 += by_rad2_s2;
 }
 
-std::string key_of(const sim::Sensors& sensors, const FrozenAxis& frozen) {
-  return sensors.imus.front().name + "_" + to_string(frozen) + "_frozen_since_s";
+/// Of rates that are doubted as a whole the size alone is known: one of the other sense is off by twice itself, one of
+/// half the scale by half.
+void doubt_rates(Estimate& estimate) {
+  for (std::size_t k = 0; k < estimate.rates.size(); ++k)
+    doubt_rate(k, estimate.rates[k].w_WI_I_rad_s.squaredNorm() * Eigen::Matrix3d::Identity(), estimate);
+  add_doubt({Doubt::About::rates}, estimate);
 }
 
-/// Of a gyro's axis that froze: `share` of its variance.
-void add_frozen(const FrozenAxis& frozen, double sigma_rad_s, double share, std::vector<RateState>& rates) {
+/// Of a gyro's axis that froze.
+void doubt_frozen_rates(const FrozenAxis& frozen, double sigma_rad_s, Estimate& estimate) {
   if (frozen.triad != Triad::gyro) return;
-  for (RateState& rate : rates) {
-    if (rate.time_ns < frozen.from_ns || rate.time_ns > frozen.to_ns) continue;
-    rate.covariance_rad2_s2(frozen.axis, frozen.axis) += share * sigma_rad_s * sigma_rad_s;
+  Eigen::Matrix3d by_rad2_s2 = Eigen::Matrix3d::Zero();
+  by_rad2_s2(frozen.axis, frozen.axis) = sigma_rad_s * sigma_rad_s;
+  for (std::size_t k = 0; k < estimate.rates.size(); ++k) {
+    const TimeNs time_ns = estimate.rates[k].time_ns;
+    if (time_ns >= frozen.from_ns && time_ns <= frozen.to_ns) doubt_rate(k, by_rad2_s2, estimate);
   }
 }
 
@@ -83,8 +87,8 @@ Status check_rest_force(const sim::Sensors& sensors, std::span<const ImuSample> 
 
 Status check_imu(const sim::Sensors& sensors, std::span<const ImuSample> samples, Estimate& estimate) {
   const Status of_rest = check_rest_force(sensors, samples, estimate);
-  if (unit_suspect(samples)) estimate.health["rate_unit_suspect"] = 1.0;
-  if (are_rounded(sensors.imus.front().time_ns)) estimate.health["imu_stamps_rounded_s"] = 1e-3;
+  if (unit_suspect(samples)) add_doubt({Doubt::About::rate_unit}, estimate);
+  if (are_rounded(sensors.imus.front().time_ns)) add_doubt({Doubt::About::stamps, 1e-3}, estimate);
   ImuPlausibility::Params params;
   params.gravity_m_s2 = sensors.gravity_m_s2;
   // a sphere's units are merged, with rates beyond any range told
@@ -111,7 +115,7 @@ Status check_imus(const sim::Sensors& sensors, const MergedImus& imus, Estimate&
   const Status own = check_imu(sensors, imus.samples, estimate);
   if (!imus.arm_share) return own;
   estimate.health["imu_arm_share"] = *imus.arm_share;
-  if (std::abs(*imus.arm_share - 1.0) > kArmShareOff) estimate.health["imu_implausible"] = 1.0;
+  if (std::abs(*imus.arm_share - 1.0) > kArmShareOff) add_doubt({Doubt::About::readings}, estimate);
   if (!own.ok() || *imus.arm_share >= kArmShareMin) return own;
   return told(
       {Trouble::out_of_range, "differences of the IMUs' forces as a share of what the turning makes of their places",
@@ -128,7 +132,7 @@ Status check_flights(const sim::Sensors& sensors, std::span<const ImuSample> sam
   FlightSense::State state;
   for (const ImuSample& sample : samples) sense.step(sample, state);
   const Status status = told(sense.verdict(state), estimate);
-  if (!status.ok()) estimate.health["imu_flight_against_s"] = status.value;
+  if (!status.ok()) add_doubt({Doubt::About::flights, status.value}, estimate);
   return status;
 }
 
@@ -166,28 +170,17 @@ void check_rates(const sim::Sensors& sensors, std::span<const ImuSample> samples
   const Status of_rates = check_rotation_between_rests(sensors, samples, estimate.rates, estimate);
   const Status of_pivots = check_rotation_about_pivots(sensors, samples, estimate.rates, estimate);
   if (of_flights.ok() && of_readings.ok() && of_rates.ok() && of_pivots.ok()) return;
-  for (RateState& rate : estimate.rates) rate.covariance_rad2_s2 += square_of_rate(rate);
-  estimate.health[kRatesDoubted] = 1.0;
+  doubt_rates(estimate);
 }
 
 void tell_frozen_axes(const sim::Sensors& sensors, std::span<const ImuSample> samples, Estimate& estimate) {
   for (const FrozenAxis& frozen : find_frozen_axes(sensors.imus.front(), samples)) {
-    estimate.health.try_emplace(key_of(sensors, frozen), seconds(frozen.from_ns - samples.front().time_ns));
-    estimate.health["imu_implausible"] = 1.0;
-    add_frozen(frozen, fastest_rad_s(samples), 1.0, estimate.rates);
+    const Doubt doubt{Doubt::About::unit_frozen, seconds(frozen.from_ns - samples.front().time_ns),
+                      sensors.imus.front().name + "_" + to_string(frozen)};
+    if (!has_doubt(doubt, estimate)) add_doubt(doubt, estimate);  // since it first did
+    add_doubt({Doubt::About::readings}, estimate);
+    doubt_frozen_rates(frozen, fastest_rad_s(samples), estimate);
   }
-}
-
-std::vector<RateState> rates_before_doubt(const sim::Sensors& sensors, std::span<const ImuSample> samples,
-                                          const Estimate& estimate) {
-  std::vector<RateState> rates = estimate.rates;
-  if (estimate.health.contains(kRatesDoubted)) {
-    for (RateState& rate : rates) rate.covariance_rad2_s2 -= square_of_rate(rate);
-  }
-  for (const FrozenAxis& frozen : find_frozen_axes(sensors.imus.front(), samples)) {
-    if (estimate.health.contains(key_of(sensors, frozen))) add_frozen(frozen, fastest_rad_s(samples), -1.0, rates);
-  }
-  return rates;
 }
 
 }  // namespace tumble::scenarios

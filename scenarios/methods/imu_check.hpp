@@ -2,7 +2,6 @@
 #pragma once
 
 #include <span>
-#include <vector>
 
 #include "scenarios/methods/method.hpp"
 #include "scenarios/methods/sphere_imus.hpp"
@@ -11,7 +10,7 @@
 /// Whether readings can be what they claim to be: units, axes, signs, alive, by physics alone.
 namespace tumble::scenarios {
 
-/// Puts what was found into the estimate's health (`imu_force_share`, `imu_rest_force_share`,
+/// Puts what was found into the estimate's health and doubts (`imu_force_share`, `imu_rest_force_share`,
 /// `imu_rotation_unexplained`, `imu_rotation_slope`, `imu_rotation_agreement`, `imu_frozen_s`, `imu_stamps_rounded_s`,
 /// `imu_implausible`, `rate_unit_suspect`) and returns the verdict: `out_of_range` with what was seen, where the
 /// readings contradict each other or gravity. O(N).
@@ -47,11 +46,5 @@ Status check_flights(const sim::Sensors& sensors, std::span<const ImuSample> sam
 /// `imu_gyro_z_frozen_since_s`. Of a gyro's axis nothing is known meanwhile but that it turns no faster than any
 /// reading of the run: so much is added to the variance of the rates that the estimate holds. O(N).
 void tell_frozen_axes(const sim::Sensors& sensors, std::span<const ImuSample> samples, Estimate& estimate);
-
-/// The rates of an estimate with the covariances that they had before check_rates and tell_frozen_axes spoke against
-/// its readings: by them a run is wrong or right, whatever is said of it then. `samples`: those that the two were
-/// given. Exact to rounding beside the square of the rate. O(N).
-std::vector<RateState> rates_before_doubt(const sim::Sensors& sensors, std::span<const ImuSample> samples,
-                                          const Estimate& estimate);
 
 }  // namespace tumble::scenarios

@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "scenarios/methods/doubts.hpp"
 #include "sim/parameters.hpp"
 #include "sim/recording.hpp"
 #include "tumble/angular_velocity/rate_state.hpp"
@@ -46,9 +47,12 @@ struct Estimate {
   std::vector<LidarInertialOdometry::SweepReport> sweeps;  ///< kind slam, one per sweep
   std::vector<std::int64_t> sweep_end_ns;                  ///< parallel to `sweeps`
   std::vector<MapPoint> map;                               ///< kind slam
-  std::map<std::string, double> health;                    ///< named counters: "rejected_samples", "sweeps_rejected"
-  std::map<std::string, double> parameters;                ///< those of the method that somebody gave by name
-  std::string transcript;                                  ///< what somebody else's program said; of no score
+  std::vector<Doubt> doubts;                               ///< what it says against itself (add_doubt)
+  /// What a doubt has added to the covariance of each of `rates`; empty: nothing (imu_check.hpp).
+  std::vector<Eigen::Matrix3d> doubted_rad2_s2;
+  std::map<std::string, double> health;      ///< named counters: "rejected_samples", "sweeps_rejected"
+  std::map<std::string, double> parameters;  ///< those of the method that somebody gave by name
+  std::string transcript;                    ///< what somebody else's program said; of no score
 };
 
 /// What an oracle is given beyond the sensors: the unclipped readings and the true state. Built from the truth by the

@@ -137,7 +137,7 @@ void add_contact(RollingMode mode, bool at_rest, bool uncertain, double radius_m
 bool merged(const char* method, const sim::Sensors& sensors, MergedImus& imus, Estimate& estimate) {
   estimate.frame = Frame::centre;
   estimate.status = merge_imus(sensors, imus);
-  for (const MergedImus::LeftOut& unit : imus.out) estimate.health[to_string(unit)] = unit.since_s;
+  for (const Doubt& unit : imus.out) add_doubt(unit, estimate);
   if (!estimate.status.ok()) return false;
   require_sphere(method, sensors);
   estimate.status = check_imus(sensors, imus, estimate);
@@ -146,7 +146,7 @@ bool merged(const char* method, const sim::Sensors& sensors, MergedImus& imus, E
   estimate.health["imu_readings_left_out"] = imus.left_out;
   estimate.health["imu_offset_max_s"] = imus.offset_max_s;
   estimate.health["imus_at_other_times"] = imus.resampled;
-  if (imus.beyond_range > 0.0) estimate.health["imu_readings_beyond_range"] = imus.beyond_range;
+  if (imus.beyond_range > 0.0) add_doubt({Doubt::About::beyond_range, imus.beyond_range}, estimate);
   for (const MergedImus::Unit& unit : imus.each) {
     estimate.health[unit.name + "_time_offset_s"] = unit.time_offset_s;
     estimate.health[unit.name + "_time_offset_sigma_s"] = unit.time_offset_sigma_s;

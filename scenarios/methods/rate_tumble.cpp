@@ -64,7 +64,13 @@ Status auxiliary_readings(const sim::Sensors& sensors, std::span<const ImuSample
 
 namespace {
 
-void report_health(const RateReport& report, std::map<std::string, double>& health) {
+/// What the smoother says of a unit of its readings, either way.
+void report_unit(Doubt::About unit, bool suspect, Estimate& told) {
+  suspect ? add_doubt({unit}, told) : tell_undoubted(unit, told);
+}
+
+void report_health(const RateReport& report, Estimate& told) {
+  std::map<std::string, double>& health = told.health;
   health["iterations"] = report.iterations;
   health["converged"] = report.converged ? 1.0 : 0.0;
   health["restarts"] = report.restarts;
@@ -83,8 +89,8 @@ void report_health(const RateReport& report, std::map<std::string, double>& heal
   health["gyro_update_s"] = report.gyro_update_s;
   health["accel_update_s"] = report.accel_update_s;
   health["rails_upright"] = report.rails_upright ? 1.0 : 0.0;
-  health["rate_unit_suspect"] = report.rate_unit_suspect ? 1.0 : 0.0;
-  health["force_unit_suspect"] = report.force_unit_suspect ? 1.0 : 0.0;
+  report_unit(Doubt::About::rate_unit, report.rate_unit_suspect, told);
+  report_unit(Doubt::About::force_unit, report.force_unit_suspect, told);
   const char* const names[] = {"x", "y", "z"};
   for (int j = 0; j < 3; ++j) {
     const std::string axis = names[j];
@@ -168,16 +174,17 @@ Method learning_method(const Method& method, Learning& learning) {
 }
 
 Status tumble_rates(const sim::Sensors& sensors, std::span<const ImuSample> samples, RateSmoother::Params params,
-                    SmoothedRates& out, std::map<std::string, double>& health) {
+                    SmoothedRates& out, Estimate& told) {
   out = {};
   std::vector<std::vector<AuxiliaryReading>> auxiliary_imus;
   Status status = auxiliary_readings(sensors, samples, params.model, auxiliary_imus);
   out.auxiliary_imus = auxiliary_imus.size();
   if (status.ok()) status = RateSmoother(params).estimate(samples, auxiliary_imus, out.rates, out.report);
   if (status.ok()) {
-    report_health(out.report, health);
+    report_health(out.report, told);
     // further IMUs tell the rate whoever holds the body; the other smoother does not know them
-    if (auxiliary_imus.empty()) out.carried_clipped_max = join_regimes(sensors, samples, out.report, out.rates, health);
+    if (auxiliary_imus.empty())
+      out.carried_clipped_max = join_regimes(sensors, samples, out.report, out.rates, told.health);
   }
   return status;
 }
@@ -191,7 +198,7 @@ Estimate run_rate_tumble(const sim::Sensors& sensors, const sim::Values& paramet
     RateSmoother::Params params = smoother_params(sensors.imus.front(), rate_tumble_settings(), parameters);
     if (given != nullptr) start_from_learnt(*given, params);
     SmoothedRates smoothed;
-    estimate.status = tumble_rates(sensors, samples, params, smoothed, estimate.health);
+    estimate.status = tumble_rates(sensors, samples, params, smoothed, estimate);
     estimate.rates = std::move(smoothed.rates);
     if (estimate.status.ok()) {
       check_rates(sensors, samples, estimate);

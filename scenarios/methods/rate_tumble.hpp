@@ -38,10 +38,10 @@ struct SmoothedRates {
   std::size_t auxiliary_imus = 0;
 };
 
-/// Rates of `samples`, which may have other readings than the recording. Adds what the smoother tells of its run to
-/// `health`.
+/// Rates of `samples`, which may have other readings than the recording. Adds what the smoother tells of its run to the
+/// health and the doubts of `told`.
 Status tumble_rates(const sim::Sensors& sensors, std::span<const ImuSample> samples, RateSmoother::Params params,
-                    SmoothedRates& out, std::map<std::string, double>& health);
+                    SmoothedRates& out, Estimate& told);
 
 /// The other IMUs of a recording on the same body, at the stamps of `samples`: those of its first further IMUs that are
 /// not `imu_reference`, at most kAuxiliaryImusMax. Adds their mountings, as calibrated, to `model`. Trouble: that of a

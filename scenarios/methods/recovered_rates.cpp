@@ -58,7 +58,7 @@ Recovery recovery_of(const sim::Sensors& sensors, const std::vector<ImuSample>& 
   const auto clips = [](const ClipSigns& sign) { return sign.gyro != std::array<std::int8_t, 3>{}; };
   if (std::none_of(signs.begin(), signs.end(), clips)) return out;
   const RateSmoother::Params params = stated_params(sensors.imus.front(), rate_tumble_settings().defaults());
-  std::map<std::string, double> of_rates;
+  Estimate of_rates;
   SmoothedRates smoothed;
   if (!tumble_rates(sensors, samples, params, smoothed, of_rates).ok()) return out;
   out.carried = smoothed.carried_clipped_max;

@@ -7,7 +7,9 @@
 #include <optional>
 
 #include "scenarios/methods/bridge.hpp"
+#include "scenarios/methods/rate_baseline.hpp"
 #include "scenarios/methods/registry.hpp"
+#include "scenarios/methods/robot_presets.hpp"
 #include "scenarios/methods/slam_registry.hpp"
 #include "scenarios/methods/sweep_log.hpp"
 #include "tumble/angular_velocity/rest_detector.hpp"
@@ -136,6 +138,7 @@ void run_rigid_chain(const sim::Sensors& sensors, std::span<const ImuSample> sam
 const Settings<baselines::RigidOdometry::Params>& rigid_settings() {
   static const Settings<baselines::RigidOdometry::Params> all = [] {
     baselines::RigidOdometry::Params params;
+    params.own_body_L = presets::rig_body_L();
     params.registration.neighbours = 12;  // as in LidarInertialOdometry
     params.registration.skew_sigma_m_s = 0.0;
     return Settings<baselines::RigidOdometry::Params>(params, {});

@@ -6,6 +6,8 @@
 #include "scenarios/methods/imu_check.hpp"
 #include "scenarios/methods/rate_baseline.hpp"
 #include "scenarios/methods/registry.hpp"
+#include "scenarios/methods/robot_presets.hpp"
+#include "scenarios/methods/slam_conclusion.hpp"
 #include "scenarios/methods/slam_registry.hpp"
 #include "scenarios/methods/slam_settings.hpp"
 #include "scenarios/methods/sweep_log.hpp"
@@ -20,7 +22,6 @@ namespace tumble::scenarios {
 
 namespace {
 
-constexpr double kRests_m = 0.01, kRests_rad = 0.01;  // from one end of a sweep to the other
 constexpr double kBelieved = GivenCalibration::kBelieved;
 constexpr int kSearches = 3;  // runs more for one that moves further
 
@@ -40,10 +41,6 @@ LidarInertialOdometry::Params odometry_params(const sim::Sensors& sensors, const
   stage.settings.apply(stage.parameters, params);
   if (params.flight_arc) odometry.expert.flight.body.emplace().p_IB_I_m = -bridge::lever_arm_I_m(sensors.imus.front());
   return odometry;
-}
-
-void gather_poses(Estimate& estimate) {
-  for (const SweepReport& sweep : estimate.sweeps) append_poses(sweep.trajectory, estimate);
 }
 
 /// Cuts a sweep where the IMU ends, if that leaves most of it: clocks that disagree must not cost the last sweep.
@@ -69,112 +66,86 @@ KnownMotion::Velocity velocity_at(std::int64_t time_ns, std::span<const ImuSampl
   return {a.v_WI_I_m_s + share * (b.v_WI_I_m_s - a.v_WI_I_m_s), std::max(a.sigma_m_s, b.sigma_m_s)};
 }
 
-/// Feeds the whole recording; `estimate` gets what came of it but the map.
-void run_sweeps(const sim::LidarRecord& lidar, std::span<const ImuSample> samples, LidarInertialOdometry& odometry,
-                double time_offset_s, const KnownMotion* along, Estimate& estimate) {
-  const auto offset_ns = static_cast<std::int64_t>(std::llround(time_offset_s * 1e9));
-  const std::size_t sweeps = bridge::sweep_count(lidar);
-  std::size_t next = 0, settled = 0;
-  for (std::size_t k = 0; k < sweeps; ++k) {
-    bridge::Sweep sweep = bridge::sweep(lidar, k);
-    const std::int64_t needed_ns = sweep.end_ns + offset_ns;
-    // the IMU up to the first sample at or after the sweep's end
-    while (next < samples.size() && (next == 0 || samples[next - 1].time_ns < needed_ns)) {
-      estimate.status = odometry.add_imu(samples[next], estimate.rates[next]);
-      if (!estimate.status.ok()) return;
-      ++next;
+/// The mapper on its way over a recording; `estimate` gets its sweeps.
+class SweepFeed {
+ public:
+  SweepFeed(std::span<const ImuSample> samples, TimeNs offset_ns, const KnownMotion* along,
+            LidarInertialOdometry& odometry, Estimate& estimate)
+      : samples_(samples), offset_ns_(offset_ns), along_(along), odometry_(odometry), estimate_(estimate) {}
+
+  /// Feeds the next sweep, and what the IMU read by then; false when the estimate's status tells why not.
+  bool add(bridge::Sweep sweep) {
+    if (!add_samples(sweep.end_ns + offset_ns_)) return false;
+    if (!shorten(samples_.back().time_ns - offset_ns_, sweep)) {
+      leave_out_unfinished(estimate_);
+      return true;
     }
-    if (!shorten(samples.back().time_ns - offset_ns, sweep)) {
-      leave_out_unfinished(estimate);
-      continue;
+    return add_velocity() && add_points(sweep);
+  }
+
+  /// The recording has ended.
+  void finish() {
+    for (std::vector<PoseState>& open : odometry_.open_trajectories()) apply_next(std::move(open));
+  }
+
+ private:
+  /// The IMU up to the first sample at or after `to_ns`.
+  bool add_samples(TimeNs to_ns) {
+    while (next_ < samples_.size() && (next_ == 0 || samples_[next_ - 1].time_ns < to_ns)) {
+      estimate_.status = odometry_.add_imu(samples_[next_], estimate_.rates[next_]);
+      if (!estimate_.status.ok()) return false;
+      ++next_;
     }
-    if (along && !estimate.sweeps.empty()) {
-      const KnownMotion::Velocity velocity = velocity_at(estimate.sweeps.back().pose.time_ns, samples, *along, next);
-      estimate.status = odometry.add_velocity(velocity.v_WI_I_m_s, velocity.sigma_m_s);
-      if (!estimate.status.ok()) return;
-    }
+    return true;
+  }
+
+  /// The known one where the last sweep ended, if there is one.
+  bool add_velocity() {
+    if (!along_ || estimate_.sweeps.empty()) return true;
+    const KnownMotion::Velocity velocity = velocity_at(estimate_.sweeps.back().pose.time_ns, samples_, *along_, next_);
+    estimate_.status = odometry_.add_velocity(velocity.v_WI_I_m_s, velocity.sigma_m_s);
+    return estimate_.status.ok();
+  }
+
+  bool add_points(const bridge::Sweep& sweep) {
     SweepReport report;
-    const Status status = odometry.add_sweep(sweep.start_ns, sweep.end_ns, sweep.points, report);
+    const Status status = odometry_.add_sweep(sweep.start_ns, sweep.end_ns, sweep.points, report);
     // the IMU begins after the sweep: nothing to place it by
     if (status.trouble == Trouble::too_few && report.trajectory.empty()) {
-      leave_out_unfinished(estimate);
-      continue;
+      leave_out_unfinished(estimate_);
+      return true;
     }
     const bool left_the_window = !report.smoothed.empty();
-    std::vector<PoseState> last_word = std::move(report.smoothed);
+    std::vector<PoseState> smoothed = std::move(report.smoothed);
     const TimeNs end_ns = report.pose.time_ns;
-    if (!append_sweep(status, end_ns, std::move(report), estimate)) return;
-    if (left_the_window) settle(std::move(last_word), estimate.sweeps[settled++]);
+    if (!append_sweep(status, end_ns, std::move(report), estimate_)) return false;
+    if (left_the_window) apply_next(std::move(smoothed));
+    return true;
   }
-  for (std::vector<PoseState>& open : odometry.open_trajectories()) {
-    settle(std::move(open), estimate.sweeps[settled++]);
+
+  void apply_next(std::vector<PoseState> smoothed) {
+    apply_smoothed(std::move(smoothed), estimate_.sweeps[smoothed_++]);
   }
-  gather_poses(estimate);
-}
 
-/// How far sweeps moved from where the IMU put them, in standard deviations: its median and what a tenth exceeds.
-void report_innovations(Estimate& estimate) {
-  std::vector<double> all;
-  for (const auto& sweep : estimate.sweeps) {
-    if (sweep.innovation > 0.0) all.push_back(sweep.innovation);
-  }
-  if (all.empty()) return;
-  std::sort(all.begin(), all.end());
-  estimate.health["innovation_median"] = all[all.size() / 2];
-  estimate.health["innovation_90"] = all[all.size() * 9 / 10];
-}
-
-/// A sweep in which the rig stands: a lidar draws rings then, that hold it no worse for being degenerate.
-bool rests(const SweepReport& sweep) {
-  if (sweep.trajectory.size() < 2) return false;
-  const PoseState &first = sweep.trajectory.front(), &last = sweep.trajectory.back();
-  return (last.p_WA_m - first.p_WA_m).norm() < kRests_m && first.q_WA.angularDistance(last.q_WA) < kRests_rad;
-}
-
-/// What the passes over a recording found of the calibration.
-struct CalibrationVerdict {
-  double moved = 0.0;  ///< from what was given, in its standard deviations
-  bool converged = true;
+  std::span<const ImuSample> samples_;
+  TimeNs offset_ns_;
+  const KnownMotion* along_;
+  LidarInertialOdometry& odometry_;
+  Estimate& estimate_;
+  std::size_t next_ = 0;      ///< sample
+  std::size_t smoothed_ = 0;  ///< sweeps
 };
 
-/// How sure the chain is of where it ended; a world that does not hold it shows here. Returns whether it is localised.
-bool report_end(const CalibrationVerdict& calibration, const Localisation& localisation, Estimate& estimate) {
-  if (estimate.sweeps.empty()) return false;
-  const Eigen::Matrix<double, 6, 6>& P = estimate.sweeps.back().pose.covariance;
-  estimate.health["end_sigma_m"] = std::sqrt(P.topLeftCorner<3, 3>().trace());
-  estimate.health["end_sigma_rad"] = std::sqrt(P.bottomRightCorner<3, 3>().trace());
-  std::size_t held = 0, moving = 0;
-  for (const auto& sweep : estimate.sweeps) {
-    if (rests(sweep)) continue;
-    ++moving;
-    held += sweep.verdict == SweepVerdict::registered;
+/// Feeds the whole recording; `estimate` gets its sweeps.
+void run_sweeps(const sim::LidarRecord& lidar, std::span<const ImuSample> samples, LidarInertialOdometry& odometry,
+                double time_offset_s, const KnownMotion* along, Estimate& estimate) {
+  const auto offset_ns = static_cast<TimeNs>(std::llround(time_offset_s * 1e9));
+  SweepFeed feed(samples, offset_ns, along, odometry, estimate);
+  const std::size_t sweeps = bridge::sweep_count(lidar);
+  for (std::size_t k = 0; k < sweeps; ++k) {
+    if (!feed.add(bridge::sweep(lidar, k))) return;
   }
-  const double share = moving > 0 ? static_cast<double>(held) / static_cast<double>(moving) : 1.0;
-  estimate.health["well_constrained_share"] = share;
-  estimate.health["sigma_largest_m"] = localisation.largest_sigma_m();
-  estimate.health["innovation_second"] = localisation.second_innovation();
-  const bool elsewhere = !calibration.converged && calibration.moved > kBelieved;
-  const bool localised = localisation.verdict().ok() && !elsewhere;
-  estimate.health["localised"] = localised ? 1.0 : 0.0;
-  return localised;
-}
-
-/// Ranges that the motion contradicts make a map of another size, however well its sweeps agree.
-void report_scale(const SweepScale& scale, Estimate& estimate) {
-  estimate.health["lidar_scale_changes"] = static_cast<double>(scale.changes);
-  if (!std::isfinite(scale.sigma)) return;
-  estimate.health["lidar_scale"] = scale.scale;
-  estimate.health["lidar_scale_sigma"] = scale.sigma;
-  if (!scale.is_off()) return;
-  estimate.health["lidar_scale_implausible"] = 1.0;
-  estimate.health["localised"] = 0.0;
-}
-
-void draw_map(const LidarInertialOdometry& odometry, Estimate& estimate) {
-  estimate.map = odometry.map();
-  const bool any = std::any_of(estimate.sweeps.begin(), estimate.sweeps.end(),
-                               [](const auto& sweep) { return sweep.verdict != SweepVerdict::rejected; });
-  if (!any) estimate.status = {Trouble::too_few, "lidar.sweeps_registered", 0.0, 1.0};
+  feed.finish();
 }
 
 /// How far the calibration moved from what was given.
@@ -289,13 +260,9 @@ Estimate begin_with_rates(const sim::Sensors& sensors, std::vector<ImuSample>& s
   return estimate;
 }
 
-Eigen::AlignedBox3d rig_body_L() {
-  return {Eigen::Vector3d(-0.5, -0.4, -0.27), Eigen::Vector3d(0.5, 0.4, 0.23)};
-}
-
 LidarInertialOdometry::Params SlamParams::on_the_rig() {
   LidarInertialOdometry::Params params;
-  params.own_body_L = rig_body_L();
+  params.own_body_L = presets::rig_body_L();
   params.expert.matching.agreeing_least = RegistrationParams().expert.agreeing_min;  // none: with_few_matches
   return params;
 }
@@ -347,32 +314,9 @@ bool run_slam_chain(const sim::Sensors& sensors, std::span<const ImuSample> samp
   if (chain.calibration) report_calibration(odometry, sensors, estimate.health);
   Localisation localisation(params.expert.matching.distance_m);
   for (const SweepReport& sweep : estimate.sweeps) localisation.add(sweep);
-  report_innovations(estimate);
-  bool localised = report_end(calibration, localisation, estimate);
-  if (chain.calibration) {
-    const SweepScale scale = find_sweep_scale(samples, estimate.sweeps, sensors.gravity_m_s2);
-    report_scale(scale, estimate);
-    localised = localised && !scale.is_off();
-  }
-  draw_map(odometry, estimate);
-  return localised && estimate.status.ok();
-}
-
-void settle(std::vector<PoseState> last_word, SweepReport& sweep) {
-  if (last_word.empty()) return;
-  sweep.trajectory = std::move(last_word);
-  sweep.pose = sweep.trajectory.back();
-}
-
-void conclude_sweeps(const LidarInertialOdometry& odometry, const GivenCalibration& given, const SweepScale& scale,
-                     const Localisation& localisation, Estimate& estimate) {
-  gather_poses(estimate);
-  report_innovations(estimate);
-  const CalibrationVerdict calibration{given.moved(odometry.calibration()), false};
-  estimate.health["lidar_calibration_mahalanobis"] = calibration.moved;
-  report_end(calibration, localisation, estimate);
-  report_scale(scale, estimate);
-  draw_map(odometry, estimate);
+  if (!chain.calibration) return conclude(odometry, calibration, localisation, nullptr, estimate);
+  const SweepScale scale = find_sweep_scale(samples, estimate.sweeps, sensors.gravity_m_s2);
+  return conclude(odometry, calibration, localisation, &scale, estimate);
 }
 
 }  // namespace tumble::scenarios

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "scenarios/methods/bridge.hpp"
+#include "scenarios/methods/published_stage.hpp"
 #include "scenarios/methods/registry.hpp"
-#include "scenarios/methods/seed_chain.hpp"
 #include "scenarios/methods/slam_registry.hpp"
 
 namespace tumble::scenarios {
@@ -12,7 +12,7 @@ Estimate run_slam_icp_raw(const sim::Sensors& sensors, const sim::Values& parame
   std::vector<ImuSample> samples;
   Estimate estimate =
       begin_with_rates(sensors, samples, [&](Estimate& out) { return raw_rates(sensors, samples, out.rates); });
-  if (estimate.status.ok()) run_seed_chain(sensors, samples, parameters, estimate);
+  if (estimate.status.ok()) run_published_chain(sensors, samples, parameters, estimate);
   return estimate;
 }
 
@@ -22,7 +22,7 @@ Method slam_icp_raw() {
   return rig_slam({.name = "icp_raw",
                    .doc = "The chain of icp with the gyro as it is, clipped where it clips.",
                    .source = "baseline of Deschenes et al., ICRA 2024",
-                   .settings = {&seed_settings()},
+                   .settings = {&published_settings()},
                    .baseline = true},
                   run_slam_icp_raw);
 }

@@ -3,8 +3,10 @@
 
 #include "scenarios/baselines/mapping/pointwise_filter.hpp"
 #include "scenarios/methods/bridge.hpp"
+#include "scenarios/methods/rate_baseline.hpp"
 #include "scenarios/methods/registry.hpp"
 #include "scenarios/methods/rigid_chain.hpp"
+#include "scenarios/methods/robot_presets.hpp"
 #include "scenarios/methods/settings.hpp"
 #include "scenarios/methods/slam_registry.hpp"
 #include "scenarios/methods/sweep_log.hpp"
@@ -15,8 +17,11 @@ namespace tumble::scenarios {
 namespace {
 
 const Settings<baselines::PointwiseFilter::Params>& slam_pointwise_reject_settings() {
-  static const Settings<baselines::PointwiseFilter::Params> all(baselines::PointwiseFilter::Params{},
-                                                                {.stated = {"gravity_m_s2"}});
+  static const Settings<baselines::PointwiseFilter::Params> all = [] {
+    baselines::PointwiseFilter::Params params;
+    params.own_body_L = presets::rig_body_L();
+    return Settings<baselines::PointwiseFilter::Params>(params, {.stated = {"gravity_m_s2"}});
+  }();
   return all;
 }
 
@@ -60,7 +65,7 @@ Estimate run_slam_pointwise_reject(const sim::Sensors& sensors, const sim::Value
   }
   for (RateState& rate : estimate.rates) rate.w_WI_I_rad_s -= start.gyro_bias_rad_s;
 
-  baselines::PointwiseFilter::Params params;
+  baselines::PointwiseFilter::Params params = slam_pointwise_reject_settings().defaults();
   params.T_IL = bridge::T_IL(sensors.imus.front(), sensors.lidars.front());
   params.gravity_m_s2 = sensors.gravity_m_s2;
   slam_pointwise_reject_settings().apply(parameters, params);

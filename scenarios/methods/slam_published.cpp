@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "scenarios/methods/bridge.hpp"
+#include "scenarios/methods/published_stage.hpp"
 #include "scenarios/methods/rate_saave.hpp"
 #include "scenarios/methods/registry.hpp"
-#include "scenarios/methods/seed_chain.hpp"
 #include "scenarios/methods/slam_registry.hpp"
 
 namespace tumble::scenarios {
@@ -10,7 +10,7 @@ namespace tumble::scenarios {
 namespace {
 
 const Settings<Saave::Params>& slam_published_rate_settings() {
-  static const Settings<Saave::Params> all = saave_settings_beside(seed_settings().rows());
+  static const Settings<Saave::Params> all = saave_settings_beside(published_settings().rows());
   return all;
 }
 
@@ -19,7 +19,7 @@ Estimate run_slam_published(const sim::Sensors& sensors, const sim::Values& para
   Estimate estimate = begin_with_rates(sensors, samples, [&](Estimate& out) {
     return saave_rates(sensors, samples, slam_published_rate_settings(), parameters, out.rates);
   });
-  if (estimate.status.ok()) run_seed_chain(sensors, samples, parameters, estimate);
+  if (estimate.status.ok()) run_published_chain(sensors, samples, parameters, estimate);
   return estimate;
 }
 
@@ -32,7 +32,7 @@ Method slam_published() {
               "odometry fed back by the registration, time weighting, trimmed point to plane; its errors are "
               "parameters. Map in memory whole.",
        .source = "Deschenes et al., ICRA 2024, and the authors' launch files",
-       .settings = {&seed_settings(), &slam_published_rate_settings()}},
+       .settings = {&published_settings(), &slam_published_rate_settings()}},
       run_slam_published);
 }
 

@@ -9,9 +9,6 @@
 #include "scenarios/methods/method.hpp"
 #include "scenarios/methods/registry.hpp"
 #include "tumble/common/imu.hpp"
-#include "tumble/mapping/detail/localisation.hpp"
-#include "tumble/mapping/detail/sweep_scale.hpp"
-#include "tumble/mapping/lidar_inertial_odometry.hpp"
 
 /// Slam methods beside those of registry.hpp, and what several of them share.
 namespace tumble::scenarios {
@@ -40,17 +37,5 @@ Method rig_slam(RigSlam what, RunCore run);
 /// An estimate that holds what `rates` made of the primary IMU's `samples`, or the trouble on the way.
 Estimate begin_with_rates(const sim::Sensors& sensors, std::vector<ImuSample>& samples,
                           const std::function<Status(Estimate&)>& rates);
-
-/// A sweep's last word takes the place of its first.
-void settle(std::vector<PoseState> last_word, LidarInertialOdometry::SweepReport& sweep);
-
-/// Poses, map and verdict of a run whose sweeps and their ends the estimate holds; `too_few` when none was registered.
-/// `localisation`: of the sweeps as the mapper first told of them. A calibration that has moved by more than five of
-/// the deviations with which it was given was given wrong (health `lidar_calibration_mahalanobis`).
-void conclude_sweeps(const LidarInertialOdometry& odometry, const GivenCalibration& given, const SweepScale& scale,
-                     const Localisation& localisation, Estimate& estimate);
-
-/// The gyro as it is, with the axes named that are at their rail. One RateState per sample.
-Status railed_rates(const sim::Sensors& sensors, std::span<const ImuSample> samples, std::vector<RateState>& out);
 
 }  // namespace tumble::scenarios

@@ -80,7 +80,7 @@ const Settings<AlongParams>& along_settings() {
 }
 
 /// Whose poses the registration follows.
-const Method& rolling() {
+const Method& followed() {
   static const Method method = position_tumble();
   return method;
 }
@@ -168,9 +168,9 @@ Estimate roll(const sim::Sensors& sensors, const sim::Values& parameters, double
   own.gravity_m_s2 = sensors.gravity_m_s2;
   own.imus = sensors.imus;
   own.sphere_radius_m = radius_m;
-  sim::Values values = values_of(rolling(), parameters);
+  sim::Values values = values_of(followed(), parameters);
   values.set(kRadius, radius_m);
-  return rolling().run(own, values, {});
+  return followed().run(own, values, {});
 }
 
 /// What the poses say of the velocity of the primary IMU. `loosely`: of a radius that may be another.
@@ -255,7 +255,7 @@ Method slam_rolling_prior() {
   info.kind = Kind::slam;
   info.doc = "The registration of the rig, with the poses of our position method as its prior between two sweeps.";
   info.ours = true;
-  info.settings = stages_after({&prior_settings(), &along_settings()}, rolling());
+  info.settings = stages_after({&prior_settings(), &along_settings()}, followed());
   info.robots = {"sphere"};
   return make_method(std::move(info), run_rolling_prior);
 }

@@ -10,9 +10,6 @@
 /// Parameters of the lidar-inertial chain (run_slam_chain).
 namespace tumble::scenarios {
 
-/// Of the published rig, lidar axes: returns within are its own.
-Eigen::AlignedBox3d rig_body_L();
-
 /// Those of the library, on the rig, and what the chain makes of the calibration.
 struct SlamParams {
   LidarInertialOdometry::Params odometry = on_the_rig();

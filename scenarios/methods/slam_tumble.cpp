@@ -30,7 +30,7 @@ Estimate run_slam_tumble(const sim::Sensors& sensors, const sim::Values& paramet
   Estimate estimate = begin_with_rates(sensors, samples, [&](Estimate& out) {
     const RateSmoother::Params params = smoother_params(sensors.imus.front(), slam_tumble_rate_settings(), parameters);
     SmoothedRates smoothed;
-    const Status status = tumble_rates(sensors, samples, params, smoothed, out.health);
+    const Status status = tumble_rates(sensors, samples, params, smoothed, out);
     out.rates = std::move(smoothed.rates);
     if (status.ok()) check_rates(sensors, samples, out);
     return status;

@@ -6,7 +6,6 @@
 #include "scenarios/methods/registry.hpp"
 #include "scenarios/methods/slam_registry.hpp"
 #include "scenarios/methods/slam_settings.hpp"
-#include "tumble/angular_velocity/clipping_finder.hpp"
 
 namespace tumble::scenarios {
 
@@ -77,19 +76,6 @@ Estimate run_slam_tumble_gyro_only(const sim::Sensors& sensors, const sim::Value
 }
 
 }  // namespace
-
-Status railed_rates(const sim::Sensors& sensors, std::span<const ImuSample> samples, std::vector<RateState>& out) {
-  ClippingFinder::Params params;
-  params.upright_rails = stated_rails(sensors.imus.front());
-  const std::vector<Clipping> clipping = ClippingFinder(params).find(samples).clippings;
-
-  if (const Status status = raw_rates(sensors, samples, out); !status.ok()) return status;
-  for (std::size_t k = 0; k < out.size(); ++k) {
-    out[k].clipped_axes = clipping[k].gyro;
-    out[k].source = clipping[k].gyro ? RateSource::bounded_only : RateSource::measured;
-  }
-  return {};
-}
 
 Method slam_tumble_gyro_only() {
   return rig_slam(

@@ -8,7 +8,9 @@
 #include "scenarios/methods/bridge.hpp"
 #include "scenarios/methods/imu_check.hpp"
 #include "scenarios/methods/registry.hpp"
+#include "scenarios/methods/robot_presets.hpp"
 #include "scenarios/methods/settings.hpp"
+#include "scenarios/methods/slam_conclusion.hpp"
 #include "scenarios/methods/slam_registry.hpp"
 #include "scenarios/methods/slam_settings.hpp"
 #include "scenarios/methods/sweep_log.hpp"
@@ -50,7 +52,7 @@ TumblingOdometry::Params stated_params(const sim::Sensors& sensors, const sim::V
   if (imu.accel_noise_m_s2_sqrt_hz > 0.0) sheet.accel_noise_m_s2_sqrt_hz = imu.accel_noise_m_s2_sqrt_hz;
   params.lever_arm_I_m = bridge::lever_arm_I_m(imu);
   params.T_IL = bridge::T_IL(imu, sensors.lidars.front());
-  params.own_body_L = rig_body_L();
+  params.own_body_L = presets::rig_body_L();
   params.expert.gravity_m_s2 = sensors.gravity_m_s2;
   slam_tumble_lag_settings().apply(parameters, params);
   return params;
@@ -82,24 +84,24 @@ class Listener {
         count_trouble(sweep->status, estimate_);
         continue;
       }
-      std::vector<PoseState> last_word = std::move(sweep->report.smoothed);
+      std::vector<PoseState> smoothed = std::move(sweep->report.smoothed);
       const TimeNs end_ns = sweep->report.pose.time_ns;
       localisation_.add(sweep->report);
       append_sweep(sweep->status, end_ns, std::move(sweep->report), estimate_);
-      settle_next(std::move(last_word));
+      apply_next(std::move(smoothed));
     }
   }
   /// The run has ended.
   void conclude(const TumblingOdometry& odometry) {
-    for (std::vector<PoseState>& open : odometry.mapper().open_trajectories()) settle_next(std::move(open));
+    for (std::vector<PoseState>& open : odometry.mapper().open_trajectories()) apply_next(std::move(open));
     if (word_ == Word::live) speak_live();
     conclude_sweeps(odometry.mapper(), given_, odometry.sweep_scale(), localisation_, estimate_);
   }
 
  private:
-  void settle_next(std::vector<PoseState> last_word) {
-    if (last_word.empty() || settled_ == estimate_.sweeps.size()) return;
-    settle(std::move(last_word), estimate_.sweeps[settled_++]);
+  void apply_next(std::vector<PoseState> smoothed) {
+    if (smoothed.empty() || smoothed_ == estimate_.sweeps.size()) return;
+    apply_smoothed(std::move(smoothed), estimate_.sweeps[smoothed_++]);
   }
 
   /// Of each sweep what was said while it lasted takes the place of what is known of it since. One that had ended
@@ -120,7 +122,7 @@ class Listener {
   GivenCalibration given_;
   Localisation localisation_;
   Estimate& estimate_;
-  std::size_t settled_ = 0;
+  std::size_t smoothed_ = 0;
   std::vector<PoseState> live_;
 };
 

@@ -222,14 +222,14 @@ Status frozen_in_all(const FrozenAxis& axis) {
 }
 
 /// Takes away what units read while one of their axes was frozen, and tells of it; trouble where that leaves nothing.
-Status leave_out_frozen(Units& units, std::vector<MergedImus::LeftOut>& out) {
+Status leave_out_frozen(Units& units, std::vector<Doubt>& out) {
   const TimeNs start_ns = units.samples[0].front().time_ns;
   std::optional<FrozenAxis> any;
   for (std::size_t unit = 0; unit < units.names.size(); ++unit) {
     for (const FrozenAxis& axis : units.frozen[unit]) {
       silence(units.samples[unit], axis.from_ns, axis.to_ns);
       out.push_back(
-          {units.names[unit], MergedImus::LeftOut::Why::frozen, seconds(axis.from_ns - start_ns), to_string(axis)});
+          {Doubt::About::unit_frozen, seconds(axis.from_ns - start_ns), units.names[unit] + "_" + to_string(axis)});
       any = axis;
     }
   }
@@ -250,12 +250,12 @@ void give_ranges(const sim::ImuRecord& primary, MergedImus& out, ImuMerge::Param
   params.accel_range_m_s2 = out.accel_range_m_s2;
 }
 
-void tell_silent(const Units& units, std::vector<MergedImus::LeftOut>& out) {
+void tell_silent(const Units& units, std::vector<Doubt>& out) {
   const TimeNs start_ns = units.samples[0].front().time_ns;
   for (std::size_t k = 0; k < units.names.size(); ++k) {
     const std::optional<TimeNs> since_ns = silent_since(units.samples[k]);
     if (!since_ns) continue;
-    out.push_back({units.names[k], MergedImus::LeftOut::Why::silent, seconds(*since_ns - start_ns), {}});
+    out.push_back({Doubt::About::unit_silent, seconds(*since_ns - start_ns), units.names[k]});
   }
 }
 
@@ -269,7 +269,7 @@ void erase_unit(Units& units, std::size_t unit) {
 }
 
 /// Takes away what the merge has found out, from the beginning of it: whether there was anything.
-bool leave_out_found(const ImuMerge::State& state, Units& units, std::vector<MergedImus::LeftOut>& out) {
+bool leave_out_found(const ImuMerge::State& state, Units& units, std::vector<Doubt>& out) {
   const TimeNs start_ns = units.samples[0].front().time_ns;
   bool any = false;
   for (std::size_t k = units.names.size(); k-- > 0;) {
@@ -277,11 +277,10 @@ bool leave_out_found(const ImuMerge::State& state, Units& units, std::vector<Mer
     if (unit.frozen) {
       any = true;
       silence(units.samples[k], unit.frozen_since_ns);
-      out.push_back({units.names[k], MergedImus::LeftOut::Why::frozen, seconds(unit.frozen_since_ns - start_ns), {}});
+      out.push_back({Doubt::About::unit_frozen, seconds(unit.frozen_since_ns - start_ns), units.names[k]});
     } else if (unit.disagrees) {
       any = true;
-      out.push_back(
-          {units.names[k], MergedImus::LeftOut::Why::disagrees, seconds(unit.disagrees_since_ns - start_ns), {}});
+      out.push_back({Doubt::About::unit_disagrees, seconds(unit.disagrees_since_ns - start_ns), units.names[k]});
       erase_unit(units, k);
     }
   }
@@ -305,18 +304,6 @@ void tell_units(const ImuMerge& merge, const ImuMerge::State& state, const Units
 }
 
 }  // namespace
-
-std::string to_string(const MergedImus::LeftOut& unit) {
-  switch (unit.why) {
-    case MergedImus::LeftOut::Why::frozen:
-      return unit.name + (unit.axis.empty() ? "" : "_" + unit.axis) + "_frozen_since_s";
-    case MergedImus::LeftOut::Why::disagrees:
-      return unit.name + "_disagrees_since_s";
-    case MergedImus::LeftOut::Why::silent:
-      break;
-  }
-  return unit.name + "_silent_since_s";
-}
 
 Status merge_imus(const sim::Sensors& sensors, MergedImus& out) {
   out = {};

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "scenarios/methods/doubts.hpp"
 #include "sim/recording.hpp"
 #include "tumble/common/imu.hpp"
 #include "tumble/common/status.hpp"
@@ -21,14 +22,6 @@ struct MergedImus {
     double rate_bias_rad_s = 0.0;                           ///< length
   };
 
-  /// A unit that is not in use, or not all the time.
-  struct LeftOut {
-    std::string name;
-    enum class Why { frozen, disagrees, silent } why = Why::frozen;
-    double since_s = 0.0;  ///< from the first sample
-    std::string axis;      ///< "gyro_z" where that one froze; empty: a triad or all of it
-  };
-
   std::vector<ImuSample> samples;                         ///< body axes
   Eigen::Vector3d lever_arm_m = Eigen::Vector3d::Zero();  ///< from the centre of mass, body axes
   double gyro_range_rad_s = 1e3, accel_range_m_s2 = 1e5;  ///< readings from here on are taken to be at the rail
@@ -39,11 +32,8 @@ struct MergedImus {
   double offset_max_s = 0.0;        ///< largest time offset of a unit about the mean
   std::vector<Unit> each;           ///< those in use
   std::optional<double> arm_share;  ///< ImuMerge::arm_share
-  std::vector<LeftOut> out;         ///< those that froze, went silent (NaN, no readings), or are off from the others
+  std::vector<Doubt> out;  ///< units not in use, or not all the time: frozen, silent (NaN, no readings), or disagreeing
 };
-
-/// "imu_2_frozen_since_s", "imu_2_gyro_z_frozen_since_s" and the like, as a row of an estimate's health.
-std::string to_string(const MergedImus::LeftOut& unit);
 
 /// Merges the primary IMU with the others; `imu_reference` is not one of them. The stamps are those of the first unit
 /// whose own are without trouble; readings with other stamps are interpolated at them. A unit that is silent for a

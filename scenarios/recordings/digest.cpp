@@ -4,6 +4,7 @@
 #include "scenarios/provenance/hasher.hpp"
 #include "scenarios/recordings/recording_fields.hpp"
 #include "scenarios/recordings/recording_file.hpp"
+#include "scenarios/recordings/truth_fields.hpp"
 
 namespace tumble::scenarios {
 

@@ -5,6 +5,7 @@
 #include "scenarios/recordings/recording_check.hpp"
 #include "scenarios/recordings/recording_fields.hpp"
 #include "scenarios/recordings/recording_file.hpp"
+#include "scenarios/recordings/truth_fields.hpp"
 
 namespace tumble::scenarios {
 

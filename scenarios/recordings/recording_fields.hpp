@@ -9,8 +9,9 @@
 #include "scenarios/recordings/point_store.hpp"
 #include "sim/recording.hpp"
 
-/// The one list of what a recording holds: names, units and columns of FORMAT.md. The writer, the reader and the digest
-/// are archives that visit it, so none of them can forget a field. Private to scenarios/recordings.
+/// The one list of what a recording holds, its truth apart (truth_fields.hpp): names, units and columns of FORMAT.md.
+/// The writer, the reader and the digest are archives that visit it, so none of them can forget a field. Private to
+/// scenarios/recordings.
 ///
 /// An archive has: value(name, text | double | int64), pose(name, isometry), point(name, vector, unit),
 /// rows(name, vector, unit, columns, storage), texts(name, strings), list(name, records, fields), group(name, record,
@@ -18,11 +19,6 @@
 /// absent when empty, zero or measured, and then not hashed either, so that older files keep their digests. rows are a
 /// std::vector, or a ColumnFile of the same rows where points are set aside on the disk.
 namespace tumble::scenarios {
-
-namespace hdf5 {
-template <>
-struct RowLayout<sim::ContactLabel> : Layout<Scalar::uint8, 1> {};
-}  // namespace hdf5
 
 /// How rows are stored: deflated where measured to pay, plain for the noise-like floats of a lidar (FORMAT.md).
 enum class Storage { plain, deflated };
@@ -38,14 +34,6 @@ struct StoredLidarView {
 };
 /// Of the lidars of `sensors` and what is set aside of them, in the same order.
 std::vector<StoredLidarView> views_of(const sim::Sensors& sensors, const std::vector<PointStore>& points);
-
-/// Contacts by column.
-struct ContactColumns {
-  std::vector<std::int64_t> time_ns;
-  std::vector<Eigen::Vector3d> point_W_m, normal_W, slip_velocity_W_m_s;
-  std::vector<double> normal_force_n;
-  std::vector<std::int32_t> surface_id;
-};
 
 inline constexpr const char* kXyz = "x y z";
 
@@ -137,71 +125,5 @@ template <class Archive, class Sensors>
 void sensors_fields(Archive& archive, Sensors& sensors) {
   sensors_fields(archive, sensors, sensors.lidars);
 }
-
-template <class Archive, class Contacts>
-void contact_fields(Archive& archive, Contacts& contacts) {
-  archive.rows("time_ns", contacts.time_ns, "ns", "", Storage::deflated);
-  archive.rows("point_W_m", contacts.point_W_m, "m", kXyz, Storage::deflated);
-  archive.rows("normal_W", contacts.normal_W, "1", kXyz, Storage::deflated);
-  archive.rows("slip_velocity_W_m_s", contacts.slip_velocity_W_m_s, "m/s", kXyz, Storage::deflated);
-  archive.rows("normal_force_n", contacts.normal_force_n, "N", "", Storage::deflated);
-  archive.rows("surface_id", contacts.surface_id, "1", "", Storage::deflated);
-}
-
-template <class Archive, class Imu>
-void imu_truth_fields(Archive& archive, Imu& imu) {
-  archive.value("name", imu.name);
-  archive.pose("T_BI", imu.T_BI);
-  archive.rows("rate_I_rad_s", imu.rate_rad_s, "rad/s", kXyz, Storage::deflated);
-  archive.rows("specific_force_I_m_s2", imu.specific_force_m_s2, "m/s^2", kXyz, Storage::deflated);
-  archive.rows("gyro_unclipped_I_rad_s", imu.gyro_unclipped_rad_s, "rad/s", kXyz, Storage::deflated);
-  archive.rows("accel_unclipped_I_m_s2", imu.accel_unclipped_m_s2, "m/s^2", kXyz, Storage::deflated);
-  archive.rows("gyro_bias_I_rad_s", imu.gyro_bias_rad_s, "rad/s", kXyz, Storage::deflated);
-  archive.rows("accel_bias_I_m_s2", imu.accel_bias_m_s2, "m/s^2", kXyz, Storage::deflated);
-  archive.optional_rows("gyro_elements_I", imu.gyro_elements, "1", kXyz, Storage::plain);
-  archive.optional_point("gyro_element_offset_rad_s", imu.gyro_element_offset_rad_s, "rad/s");
-  archive.optional_rows("accel_elements_I", imu.accel_elements, "1", kXyz, Storage::plain);
-  archive.optional_point("accel_element_offset_m_s2", imu.accel_element_offset_m_s2, "m/s^2");
-  archive.optional_rows("magnetic_field_I_t", imu.magnetic_field_t, "T", kXyz, Storage::deflated);
-}
-
-template <class Archive, class Lidar>
-void lidar_truth_fields(Archive& archive, Lidar& lidar) {
-  archive.value("name", lidar.name);
-  archive.pose("T_BL", lidar.T_BL);
-  archive.rows("hit_W_m", lidar.hit_W_m, "m", kXyz, Storage::plain);
-  archive.rows("surface_id", lidar.surface_id, "1", "", Storage::deflated);
-}
-
-template <class Archive, class Series>
-void series_truth_fields(Archive& archive, Series& series) {
-  archive.value("name", series.name);
-  archive.pose("T_BX", series.T_BX);
-  archive.list("quantities", series.quantities, [](auto& inner, auto& quantity) {
-    inner.value("name", quantity.name);
-    inner.value("unit", quantity.unit);
-    inner.rows("values", quantity.values, quantity.unit.c_str(), "", Storage::deflated);
-  });
-}
-
-/// `contacts` holds truth.contacts by column; truth.contacts itself is not visited.
-template <class Archive, class Truth, class Contacts>
-void truth_fields(Archive& archive, Truth& truth, Contacts& contacts) {
-  archive.value("period_ns", truth.period_ns);
-  archive.rows("p_WB_m", truth.p_WB_m, "m", kXyz, Storage::deflated);
-  archive.rows("q_WB", truth.q_WB, "1", "x y z w", Storage::deflated);
-  archive.rows("v_WB_m_s", truth.v_WB_m_s, "m/s", kXyz, Storage::deflated);
-  archive.rows("w_WB_B_rad_s", truth.w_WB_B_rad_s, "rad/s", kXyz, Storage::deflated);
-  archive.rows("f_B_m_s2", truth.f_B_m_s2, "m/s^2", kXyz, Storage::deflated);
-  archive.rows("label", truth.label, "1", "", Storage::deflated);
-  archive.point("p_BG_m", truth.p_BG_m, "m");
-  archive.texts("surfaces", truth.surfaces);
-  archive.group("contacts", contacts, [](auto& inner, auto& each) { contact_fields(inner, each); });
-  archive.list("imus", truth.imus, [](auto& inner, auto& imu) { imu_truth_fields(inner, imu); });
-  archive.list("lidars", truth.lidars, [](auto& inner, auto& lidar) { lidar_truth_fields(inner, lidar); });
-  archive.optional_list("series", truth.series, [](auto& inner, auto& series) { series_truth_fields(inner, series); });
-}
-
-ContactColumns to_columns(const std::vector<sim::ContactTruth>& contacts);
 
 }  // namespace tumble::scenarios

@@ -2,6 +2,7 @@
 #include "scenarios/recordings/recording_size.hpp"
 
 #include "scenarios/recordings/recording_fields.hpp"
+#include "scenarios/recordings/truth_fields.hpp"
 
 namespace tumble::scenarios {
 

@@ -6,6 +6,7 @@
 #include "scenarios/recordings/recording_file.hpp"
 #include "scenarios/recordings/recording_size.hpp"
 #include "scenarios/recordings/replace_file.hpp"
+#include "scenarios/recordings/truth_fields.hpp"
 
 namespace tumble::scenarios {
 

@@ -1,19 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "scenarios/scoring/binned_metric.hpp"
 
-#include <charconv>
 #include <sstream>
 
+#include "scenarios/text.hpp"
+
 namespace tumble::scenarios {
-
-namespace {
-
-bool read_number(const std::string& text, double& value) {
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-  return error == std::errc() && end == text.data() + text.size();
-}
-
-}  // namespace
 
 std::string BinnedMetric::name() const {
   std::ostringstream text;

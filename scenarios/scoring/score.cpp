@@ -6,11 +6,23 @@
 #include <limits>
 
 #include "scenarios/errors.hpp"
+#include "scenarios/not_finite.hpp"
 #include "scenarios/scoring/beside_truth.hpp"
 #include "scenarios/scoring/families.hpp"
 #include "scenarios/scoring/registered_sweeps.hpp"
 
 namespace tumble::scenarios {
+
+const Score* find_score(std::span<const Score> scores, const std::string& metric) {
+  const auto found =
+      std::find_if(scores.begin(), scores.end(), [&](const Score& score) { return score.metric == metric; });
+  return found == scores.end() ? nullptr : &*found;
+}
+
+double value_of(std::span<const Score> scores, const std::string& metric) {
+  const Score* const score = find_score(scores, metric);
+  return score == nullptr ? kNaN : score->value;
+}
 
 namespace {
 

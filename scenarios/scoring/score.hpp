@@ -18,6 +18,11 @@ struct Score {
   double value;
 };
 
+/// That of a metric; null where there is none.
+const Score* find_score(std::span<const Score> scores, const std::string& metric);
+/// Its value; NaN where there is none.
+double value_of(std::span<const Score> scores, const std::string& metric);
+
 /// A metric, self-describing; one line of registration each, in its family's file.
 struct Metric {
   MetricInfo info;

@@ -11,12 +11,6 @@ namespace tumble::scenarios {
 
 namespace {
 
-void require_length(const char* field, std::size_t found, std::size_t expected) {
-  if (found == expected) return;
-  throw BadInput(std::string("truth.") + field + " has " + std::to_string(found) + " entries, must have " +
-                 std::to_string(expected));
-}
-
 Eigen::Isometry3d mounting(const sim::Truth& truth, Frame frame) {
   switch (frame) {
     case Frame::imu:
@@ -61,9 +55,9 @@ TruthTrack::TruthTrack(const sim::Truth& truth, Frame frame) : truth_(&truth), T
   const std::size_t count = truth.p_WB_m.size();
   if (count == 0) throw BadInput("the truth holds no motion");
   if (truth.period_ns <= 0) throw BadInput("truth.period_ns is " + std::to_string(truth.period_ns) + ", must be > 0");
-  require_length("q_WB", truth.q_WB.size(), count);
-  require_length("v_WB_m_s", truth.v_WB_m_s.size(), count);
-  require_length("w_WB_B_rad_s", truth.w_WB_B_rad_s.size(), count);
+  require_length("truth", "q_WB", truth.q_WB.size(), count);
+  require_length("truth", "v_WB_m_s", truth.v_WB_m_s.size(), count);
+  require_length("truth", "w_WB_B_rad_s", truth.w_WB_B_rad_s.size(), count);
   last_ns_ = static_cast<std::int64_t>(count - 1) * truth.period_ns;
   path_m_.resize(count, 0.0);
   for (std::size_t k = 1; k < count; ++k) {

@@ -19,10 +19,8 @@ namespace {
 
 double badness(const MetricInfo& info, const Outcome& outcome) {
   if (outcome.status != OutcomeStatus::ok) return how_bad(info, worst_value(info));
-  for (const Score& score : outcome.scores) {
-    if (score.metric == info.name) return how_bad(info, score.value);
-  }
-  return kNaN;
+  const Score* const score = find_score(outcome.scores, info.name);
+  return score != nullptr ? how_bad(info, score->value) : kNaN;
 }
 
 /// By how much `now` is less bad; two that are the worst are equal.

@@ -30,13 +30,6 @@ struct GridAxis {
   double centre(std::size_t cell) const { return std::pow(10.0, low + (static_cast<double>(cell) + 0.5) * step); }
 };
 
-double value_of(const DrawValues& draw, const char* metric) {
-  for (const Score& score : draw.values) {
-    if (score.metric == metric) return score.value;
-  }
-  return std::nan("");
-}
-
 GridAxis axis_over(const std::vector<Decades>& points, double Decades::*member) {
   double low = std::numeric_limits<double>::infinity(), high = -low, sum = 0.0, square = 0.0;
   for (const Decades& point : points) {
@@ -108,7 +101,8 @@ MotionMap motion_map(std::span<const DrawValues> draws) {
   std::map<std::string, std::size_t> place;
   std::vector<Decades> all;
   for (const DrawValues& draw : draws) {
-    const MotionPoint point{value_of(draw, "motion_peak_rate_rad_s"), value_of(draw, "motion_peak_accel_m_s2")};
+    const MotionPoint point{value_of(draw.values, "motion_peak_rate_rad_s"),
+                            value_of(draw.values, "motion_peak_accel_m_s2")};
     if (!(point.rate_rad_s > 0.0 && point.force_m_s2 > 0.0) || !std::isfinite(point.rate_rad_s + point.force_m_s2))
       continue;
     const auto [at, is_new] = place.emplace(draw.scenario, map.clouds.size());

@@ -46,20 +46,13 @@ constexpr std::array kQuantities = {
     Quantity{"motion_clips", "draws that clip the gyro", "%", 100.0, "aim: 90", kNone, kNone, Over::share_of_draws},
 };
 
-double value_of(const DrawValues& draw, const std::string& metric) {
-  for (const Score& score : draw.values) {
-    if (score.metric == metric) return score.value;
-  }
-  return std::nan("");
-}
-
 /// Mean weighted by each draw's clipped samples, with its 95 % interval: the ratio estimator of a cluster sample
 /// (Cochran, Sampling Techniques, 1977, section 9A.2), since samples of one draw belong together.
 Interval pooled(std::span<const DrawValues* const> draws, const std::string& metric) {
   std::vector<std::pair<double, double>> weighted;  // number of samples, share of them
   double samples = 0.0, hits = 0.0, square = 0.0;
   for (const DrawValues* draw : draws) {
-    const double weight = value_of(*draw, "motion_clipped_samples"), share = value_of(*draw, metric);
+    const double weight = value_of(draw->values, "motion_clipped_samples"), share = value_of(draw->values, metric);
     if (!(weight > 0.0) || !std::isfinite(share)) continue;
     weighted.emplace_back(weight, share);
     samples += weight;
@@ -97,7 +90,7 @@ std::vector<Spread> motion_spreads(std::span<const DrawValues> draws) {
       spread.of_draws = quantity.over == Over::draws;
       const std::vector<const DrawValues*>& own = by_scenario[name];
       for (const DrawValues* draw : own) {
-        const double value = value_of(*draw, quantity.metric);
+        const double value = value_of(draw->values, quantity.metric);
         if (std::isfinite(value)) spread.values.push_back(value);
       }
       if (spread.values.empty()) continue;

@@ -4,6 +4,7 @@
 #include "scenarios/draw/scenario.hpp"
 #include "scenarios/methods/estimate_file.hpp"
 #include "scenarios/recordings/replace_file.hpp"
+#include "scenarios/text.hpp"
 
 namespace tumble::scenarios {
 

@@ -9,6 +9,7 @@
 #include <algorithm>
 #include <cmath>
 #include <fstream>
+#include <memory>
 #include <new>
 #include <optional>
 #include <system_error>
@@ -19,6 +20,7 @@
 #include "scenarios/sweep/message.hpp"
 #include "scenarios/sweep/motion_values.hpp"
 #include "scenarios/sweep/variation.hpp"
+#include "scenarios/text.hpp"
 #include "sim/lidar/surface.hpp"
 #include "sim/simulate.hpp"
 
@@ -134,6 +136,72 @@ void give_up(const DrawTask& task, OutcomeStatus status, const std::string& mess
   for (const Outcome& outcome : without_answer(task, status, message)) write_all(fd, to_line({outcome, {}}));
 }
 
+/// A draw as simulated or read, and where there are maps to score the surface that they are scored against.
+struct MadeDraw {
+  SimulatedDraw draw;
+  std::optional<sim::Surface> surface;
+};
+
+std::unique_ptr<MadeDraw> make(const DataRoot& data, const DrawTask& task, bool recordings_unseen) {
+  auto made = std::make_unique<MadeDraw>();
+  made->draw = task.recording != nullptr ? read_draw(*task.recording)
+                                         : simulate_draw(data, with_setting(*task.scenario, task.setting), task.seed, 1,
+                                                         lidars_for(task, recordings_unseen));
+  const bool maps = std::any_of(task.runs.begin(), task.runs.end(),
+                                [](const DrawTask::Run& run) { return run.method->info.kind == Kind::slam; });
+  if (maps && made->draw.built) made->surface.emplace(*made->draw.built);
+  return made;
+}
+
+DrawValues motion_of(const DrawTask& task, const sim::Recording& recording) {
+  const bool whole = task.recording == nullptr || task.recording->simulated;
+  DrawValues values =
+      whole ? motion_values(task.name, task.seed, recording) : recorded_motion_values(task.name, task.seed, recording);
+  values.setting = task.setting;
+  return values;
+}
+
+/// Tells of the draw's motion; null, and told why, where the draw cannot be had.
+std::unique_ptr<MadeDraw> made_draw(const DataRoot& data, const DrawTask& task, int fd, bool recordings_unseen) {
+  try {
+    std::unique_ptr<MadeDraw> made = make(data, task, recordings_unseen);
+    write_all(fd, to_line({{}, {}, motion_of(task, made->draw.recording)}));
+    return made;
+  } catch (const BadInput& error) {
+    reject(task, error, fd);
+  } catch (const sim::InvalidSituation& error) {
+    reject(task, error, fd);
+  } catch (const sim::SimulationFailure& error) {
+    reject(task, error, fd);
+  } catch (const std::bad_alloc&) {
+    give_up(task, OutcomeStatus::killed, "no memory was left to simulate the draw", fd);
+  } catch (const std::exception& error) {
+    give_up(task, OutcomeStatus::crashed, std::string("the simulation: ") + error.what(), fd);
+  }
+  return nullptr;
+}
+
+/// One method on the draw. `given`: as the run before was given it, which most settings share.
+Outcome run_one(const DrawTask& task, const DrawTask::Run& run, const MadeDraw& made, double timeout_s, Given& given,
+                DrawFiles& files) {
+  Outcome outcome;
+  std::string not_kept;
+  try {
+    if (run.setting != given.setting) given = changed(made.draw, run.setting);
+    outcome =
+        run_isolated(with_setting(*run.method, run.setting), given.draw ? *given.draw : made.draw,
+                     given.scored ? *given.scored : made.draw, made.surface ? &*made.surface : nullptr, timeout_s,
+                     run.setting.is_plain() ? files.estimate(run.method->info) : std::filesystem::path(), &not_kept);
+    if (!not_kept.empty()) files.miss(not_kept);
+  } catch (const std::bad_alloc&) {
+    outcome = unanswered(task, run, OutcomeStatus::killed, "no memory was left for it");
+  } catch (const std::system_error& error) {
+    outcome = unanswered(task, run, OutcomeStatus::killed, error.what());
+  }
+  outcome.setting = run.setting;
+  return outcome;
+}
+
 }  // namespace
 
 OutcomeStatus ended_as(const Process::End& end) {
@@ -177,57 +245,19 @@ std::vector<Outcome> without_answer(const DrawTask& task, OutcomeStatus status, 
 }
 
 void run_draw(const DataRoot& data, const DrawTask& task, double timeout_s, int fd, bool recordings_unseen) {
-  std::optional<SimulatedDraw> draw;
-  std::optional<sim::Surface> surface;
-  const std::string& name = task.name;
-  try {
-    draw = task.recording != nullptr ? read_draw(*task.recording)
-                                     : simulate_draw(data, with_setting(*task.scenario, task.setting), task.seed, 1,
-                                                     lidars_for(task, recordings_unseen));
-    const bool maps = std::any_of(task.runs.begin(), task.runs.end(),
-                                  [](const DrawTask::Run& run) { return run.method->info.kind == Kind::slam; });
-    if (maps && draw->built) surface.emplace(*draw->built);
-    const bool whole = task.recording == nullptr || task.recording->simulated;
-    DrawValues values = whole ? motion_values(name, task.seed, draw->recording)
-                              : recorded_motion_values(name, task.seed, draw->recording);
-    values.setting = task.setting;
-    write_all(fd, to_line({{}, {}, std::move(values)}));
-  } catch (const BadInput& error) {
-    return reject(task, error, fd);
-  } catch (const sim::InvalidSituation& error) {
-    return reject(task, error, fd);
-  } catch (const sim::SimulationFailure& error) {
-    return reject(task, error, fd);
-  } catch (const std::bad_alloc&) {
-    return give_up(task, OutcomeStatus::killed, "no memory was left to simulate the draw", fd);
-  } catch (const std::exception& error) {
-    return give_up(task, OutcomeStatus::crashed, std::string("the simulation: ") + error.what(), fd);
-  }
+  const std::unique_ptr<const MadeDraw> made = made_draw(data, task, fd, recordings_unseen);
+  if (!made) return;
   // what the simulation gave back is not to hide what a method takes
   malloc_trim(0);
   DrawFiles files(task.keeping);
   bool failed = false;
   Given given;
   for (const DrawTask::Run& run : task.runs) {
-    Outcome outcome;
-    std::string not_kept;
-    try {
-      if (run.setting != given.setting) given = changed(*draw, run.setting);
-      outcome =
-          run_isolated(with_setting(*run.method, run.setting), given.draw ? *given.draw : *draw,
-                       given.scored ? *given.scored : *draw, surface ? &*surface : nullptr, timeout_s,
-                       run.setting.is_plain() ? files.estimate(run.method->info) : std::filesystem::path(), &not_kept);
-      if (!not_kept.empty()) files.miss(not_kept);
-    } catch (const std::bad_alloc&) {
-      outcome = unanswered(task, run, OutcomeStatus::killed, "no memory was left for it");
-    } catch (const std::system_error& error) {
-      outcome = unanswered(task, run, OutcomeStatus::killed, error.what());
-    }
-    outcome.setting = run.setting;
+    const Outcome outcome = run_one(task, run, *made, timeout_s, given, files);
     failed = failed || (run.setting.is_plain() && outcome.status != OutcomeStatus::ok);
     if (!write_all(fd, to_line({outcome, {}}))) return;
   }
-  files.finish(*draw, failed);
+  files.finish(made->draw, failed);
   if (!files.trouble().empty()) write_all(fd, to_line({{}, {}, {}, files.trouble()}));
 }
 

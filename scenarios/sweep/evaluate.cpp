@@ -4,7 +4,6 @@
 #include <sys/resource.h>
 #include <time.h>
 
-#include <algorithm>
 #include <exception>
 #include <iterator>
 #include <new>
@@ -14,6 +13,7 @@
 #include "scenarios/errors.hpp"
 #include "scenarios/methods/external_method.hpp"
 #include "scenarios/recordings/recording_file.hpp"
+#include "scenarios/text.hpp"
 #include "sim/simulate.hpp"
 
 namespace tumble::scenarios {
@@ -153,12 +153,6 @@ double process_cpu_s() {
   return static_cast<double>(now.tv_sec + children.ru_utime.tv_sec + children.ru_stime.tv_sec) +
          1e-9 * static_cast<double>(now.tv_nsec) +
          1e-6 * static_cast<double>(children.ru_utime.tv_usec + children.ru_stime.tv_usec);
-}
-
-std::string one_line(std::string text) {
-  std::replace_if(
-      text.begin(), text.end(), [](char c) { return c == '\n' || c == '\r' || c == '\t'; }, ' ');
-  return text;
 }
 
 }  // namespace tumble::scenarios

@@ -58,7 +58,4 @@ SimulatedDraw scored_by(const SimulatedDraw& draw, const SimulatedDraw& given);
 /// CPU time that this process and the children that it has waited for have used [s].
 double process_cpu_s();
 
-/// A message as it may stand in one line of a table.
-std::string one_line(std::string text);
-
 }  // namespace tumble::scenarios

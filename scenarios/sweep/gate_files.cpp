@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <algorithm>
 #include <array>
-#include <charconv>
 #include <cmath>
 #include <limits>
 #include <sstream>
@@ -11,6 +10,7 @@
 #include "scenarios/errors.hpp"
 #include "scenarios/scoring/score.hpp"
 #include "scenarios/sweep/gate.hpp"
+#include "scenarios/text.hpp"
 
 namespace tumble::scenarios {
 
@@ -45,12 +45,6 @@ struct GateLine {
     throw BadInput(file + ":" + std::to_string(number) + ": " + what);
   }
 };
-
-template <typename Number>
-bool read_number(const std::string& text, Number& value) {
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-  return error == std::errc() && end == text.data() + text.size();
-}
 
 std::vector<std::uint64_t> read_seeds(const GateLine& line) {
   const std::array<std::string, kKeyCells> head = {"scenario", "kind", "method", "metric"};

@@ -2,7 +2,6 @@
 #include "scenarios/sweep/keep.hpp"
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 #include <limits>
 #include <map>
@@ -12,6 +11,7 @@
 
 #include "scenarios/errors.hpp"
 #include "scenarios/scoring/metric.hpp"
+#include "scenarios/text.hpp"
 
 namespace tumble::scenarios {
 
@@ -86,11 +86,8 @@ Keep parse_keep(const std::string& text) {
   if (text == "failed") return {Keep::Which::failed, 0};
   if (text == "all") return {Keep::Which::all, 0};
   if (text.starts_with(kWorst)) {
-    const char* const begin = text.data() + kWorst.size();
-    const char* const end = text.data() + text.size();
     std::size_t count = 0;
-    const auto read = std::from_chars(begin, end, count);
-    if (read.ec == std::errc() && read.ptr == end && count >= 1 && count <= kCountMax)
+    if (read_number(std::string_view(text).substr(kWorst.size()), count) && count >= 1 && count <= kCountMax)
       return {Keep::Which::worst, count};
   }
   throw BadInput("which draws to keep is '" + text + "', must be none, failed, all, or worst:N with N from 1 to " +

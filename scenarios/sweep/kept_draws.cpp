@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <algorithm>
-#include <charconv>
 #include <optional>
 #include <system_error>
 
@@ -8,6 +7,7 @@
 #include "scenarios/sweep/draw_files.hpp"
 #include "scenarios/sweep/keep.hpp"
 #include "scenarios/sweep/unfinished_folder.hpp"
+#include "scenarios/text.hpp"
 
 namespace tumble::scenarios {
 
@@ -27,10 +27,7 @@ auto guarded(Action&& action) {
 
 std::optional<std::uint64_t> seed_of(const std::string& text) {
   std::uint64_t seed = 0;
-  const char* const end = text.data() + text.size();
-  const auto read = std::from_chars(text.data(), end, seed);
-  if (read.ec != std::errc() || read.ptr != end) return std::nullopt;
-  return seed;
+  return read_number(text, seed) ? std::optional(seed) : std::nullopt;
 }
 
 void link_or_copy(const fs::path& from, const fs::path& to) {

@@ -13,6 +13,7 @@
 #include "scenarios/processes/process.hpp"
 #include "scenarios/sweep/draw_process.hpp"
 #include "scenarios/sweep/message.hpp"
+#include "scenarios/text.hpp"
 
 namespace tumble::scenarios {
 

@@ -14,12 +14,6 @@ namespace tumble::scenarios {
 
 namespace {
 
-const Score* find_score(const Outcome& outcome, const std::string& metric) {
-  const auto found = std::find_if(outcome.scores.begin(), outcome.scores.end(),
-                                  [&](const Score& score) { return score.metric == metric; });
-  return found == outcome.scores.end() ? nullptr : &*found;
-}
-
 TriageRow row_of(const std::string& input, const std::string& doc, Outcome outcome, const Failure& failure) {
   TriageRow row{input, doc, std::move(outcome), false};
   row.fails = failure.holds(row.outcome);
@@ -35,7 +29,7 @@ bool Failure::holds(const Outcome& outcome) const {
   });
   if (condemned) return true;
   if (metric.empty()) return false;
-  const Score* score = find_score(outcome, metric);
+  const Score* score = find_score(outcome.scores, metric);
   if (score == nullptr || std::isnan(score->value)) return true;  // a run without the number has not shown it
   return metric_info(metric).sense == Sense::higher ? score->value < limit : score->value > limit;
 }

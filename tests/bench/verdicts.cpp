@@ -23,14 +23,13 @@
 
 #include "scenarios/draw/scenario.hpp"
 #include "scenarios/errors.hpp"
-#include "scenarios/methods/bridge.hpp"
-#include "scenarios/methods/imu_check.hpp"
 #include "scenarios/methods/method.hpp"
 #include "scenarios/scoring/truth_track.hpp"
 #include "scenarios/sweep/evaluate.hpp"
 #include "sim/lidar/surface.hpp"
 #include "sim/simulate.hpp"
 #include "tests/bench/people.hpp"
+#include "tests/scenarios/methods/rates_before_doubt.hpp"
 #include "tests/scenarios/methods/wrong_inputs.hpp"
 #include "tests/tree.hpp"
 
@@ -41,26 +40,16 @@ namespace sim = tumble::sim;
 using scenarios::testing::is_of_kind;
 using scenarios::testing::wrong_inputs;
 using tumble::AttitudeState;
-using tumble::ImuSample;
 using tumble::RateState;
 
 constexpr double kWrongDeviations = 5.0;
 constexpr double kWrongShare = 0.2, kWrongTilt_rad = 0.5;
 constexpr std::string_view kPeople = "people";  // about the start: what they hide depends on the truth
 
-double value_of(const std::vector<scenarios::Score>& scores, const std::string& metric) {
-  const auto found =
-      std::find_if(scores.begin(), scores.end(), [&](const auto& score) { return score.metric == metric; });
-  return found == scores.end() ? std::nan("") : found->value;
-}
-
 bool told(const scenarios::Outcome& outcome, const scenarios::Estimate& estimate) {
   if (outcome.status != scenarios::OutcomeStatus::ok) return true;
-  const auto says = [&](const char* key, double otherwise) {
-    const auto found = estimate.health.find(key);
-    return found == estimate.health.end() ? otherwise : found->second;
-  };
-  return says("localised", 1.0) == 0.0 || says("imu_implausible", 0.0) != 0.0;
+  using About = scenarios::Doubt::About;
+  return has_doubt({About::place}, estimate) || has_doubt({About::readings}, estimate);
 }
 
 /// How far off a run is, in its deviations: by the covariances that it reports, by those before it told of trouble, and
@@ -129,13 +118,11 @@ Judgement judge_poses(const scenarios::Estimate& estimate, const std::vector<sce
   return out;
 }
 
-Judgement judgement_of(const scenarios::Method& method, const sim::Recording& truth, const sim::Sensors& given,
+Judgement judgement_of(const scenarios::Method& method, const sim::Recording& truth,
                        const scenarios::Estimate& estimate, const std::vector<scenarios::Score>& scores) {
   if (method.info.kind == scenarios::Kind::attitude) return judge_attitudes(truth, estimate);
   if (method.info.kind != scenarios::Kind::rate) return judge_poses(estimate, scores);
-  std::vector<ImuSample> samples;
-  if (!scenarios::bridge::primary_imu_samples(given, samples).ok()) return {};
-  return judge_rates(truth, scenarios::rates_before_doubt(given, samples, estimate), estimate);
+  return judge_rates(truth, scenarios::testing::rates_before_doubt(estimate), estimate);
 }
 
 /// The two rates of a classifier, as counts.
@@ -178,7 +165,7 @@ void judge(const scenarios::Method& method, const scenarios::SimulatedDraw& draw
   if (answered) {
     scenarios::assess(method, scenarios::scored_by(draw, given), surface, estimate, outcome);
     overlap = value_of(outcome.scores, "map_overlap"), coverage = value_of(outcome.scores, "map_coverage");
-    judged = judgement_of(method, draw.recording, given.recording.sensors, estimate, outcome.scores);
+    judged = judgement_of(method, draw.recording, estimate, outcome.scores);
   }
   const auto is_wrong = [&](double deviations) {
     return answered && (!(deviations <= kWrongDeviations) || judged.gross);

@@ -248,7 +248,7 @@ TEST(FirstRun, AScenarioAloneDoesSomethingGood) {
   EXPECT_EQ(said["seed"], 1);
   std::vector<std::string> methods;
   for (const json& outcome : said["outcomes"]) methods.push_back(outcome["method"]);
-  EXPECT_THAT(methods, ::testing::ElementsAre("rolling", "tumble"));
+  EXPECT_THAT(methods, ::testing::ElementsAre("integrate", "tumble", "rolling", "tumble"));
   for (const char* file : {"recording.h5", "snapshots/scene.png", "estimates/position-tumble/estimate.json"})
     EXPECT_TRUE(fs::exists(folder / "roll" / file)) << file;
   EXPECT_THAT(ended.err, HasSubstr("left in roll/"));

@@ -6,27 +6,46 @@
 namespace tumble::tools {
 namespace {
 
+using scenarios::Doubt;
+
 TEST(VerdictLines, AnEstimateWithoutTroubleSaysNothing) {
   scenarios::Estimate estimate;
-  estimate.health = {{"imu_force_share", 1.0},  {"localised", 1.0},       {"rate_unit_suspect", 0.0},
-                     {"samples_slip", 12.0},    {"imu_implausible", 0.0}, {"imu_2_time_offset_s", 0.003},
-                     {"started_in_motion", 1.0}};
+  estimate.health = {{"imu_force_share", 1.0}, {"samples_slip", 12.0}, {"imu_2_time_offset_s", 0.003}};
+  tell_undoubted(Doubt::About::place, estimate);
+  tell_undoubted(Doubt::About::rate_unit, estimate);
   EXPECT_TRUE(verdict_lines(estimate).empty());
+  EXPECT_EQ(estimate.health.at("localised"), 1.0);
+  EXPECT_EQ(estimate.health.at("rate_unit_suspect"), 0.0);
 }
 
-TEST(VerdictLines, EachVerdictIsALineWithItsRowAndValue) {
+TEST(VerdictLines, EachDoubtIsALineWithItsRowAndValue) {
   scenarios::Estimate estimate;
-  estimate.health = {{"imu_implausible", 1.0},
-                     {"imu_2_gyro_z_frozen_since_s", 4.348},
-                     {"imu_3_silent_since_s", 0.0},
-                     {"localised", 0.0},
-                     {"samples_slip", 12.0}};
+  add_doubt({Doubt::About::readings}, estimate);
+  add_doubt({Doubt::About::unit_frozen, 4.348, "imu_2_gyro_z"}, estimate);
+  add_doubt({Doubt::About::place, 0.0}, estimate);
+  add_doubt({Doubt::About::unit_silent, 0.0, "imu_3"}, estimate);
+  estimate.health["samples_slip"] = 12.0;
   const std::vector<std::string> lines = verdict_lines(estimate);
   ASSERT_EQ(lines.size(), 4U);
   EXPECT_EQ(lines[0], "imu_2_gyro_z_frozen_since_s 4.348: repeats one reading from then on");
   EXPECT_EQ(lines[1], "imu_3_silent_since_s 0: without readings from then on, for half a second at least");
   EXPECT_TRUE(lines[2].starts_with("imu_implausible 1: ")) << lines[2];
   EXPECT_TRUE(lines[3].starts_with("localised 0: ")) << lines[3];
+}
+
+// Whatever its row is called: but for rates, of which `readings` speaks.
+TEST(VerdictLines, EachDoubtIsSaidAlsoOfAnEstimateOfWhichOnlyTheHealthWasKept) {
+  for (const Doubt::About about : scenarios::kAllDoubts) {
+    const bool of_unit = about >= Doubt::About::unit_frozen;
+    scenarios::Estimate estimate;
+    add_doubt({about, about == Doubt::About::place ? 0.0 : 2.5, of_unit ? "imu_2" : ""}, estimate);
+    const std::size_t lines = about == Doubt::About::rates ? 0 : 1;
+    EXPECT_EQ(verdict_lines(estimate).size(), lines) << row_of(estimate.doubts.at(0));
+    scenarios::Estimate back;
+    back.doubts = scenarios::doubts_in(estimate.health);
+    EXPECT_EQ(back.doubts, estimate.doubts) << row_of(estimate.doubts.at(0));
+    EXPECT_EQ(verdict_lines(back), verdict_lines(estimate));
+  }
 }
 
 }  // namespace

@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include <algorithm>
 #include <cctype>
 #include <string_view>
 
 #include "tools/tables/table.hpp"
+
+#include "scenarios/text.hpp"
 
 namespace tumble::tools {
 
@@ -19,13 +20,6 @@ std::string joined(const std::vector<std::string>& cells, std::string_view betwe
     out += escape(cells[i]);
   }
   return out;
-}
-
-/// A title stands in a comment, which ends with its line.
-std::string one_line(std::string text) {
-  std::replace_if(
-      text.begin(), text.end(), [](char c) { return c == '\n' || c == '\r'; }, ' ');
-  return text;
 }
 
 std::string for_markdown(const std::string& cell) {
@@ -88,7 +82,7 @@ std::string Table::markdown() const {
 
 std::string Table::csv() const {
   std::string out;
-  if (!title_.empty()) out += "# " + one_line(title_) + "\n";
+  if (!title_.empty()) out += "# " + scenarios::one_line(title_) + "\n";
   out += joined(header_, ",", for_csv) + "\n";
   for (const auto& row : rows_) out += joined(row, ",", for_csv) + "\n";
   return out;
@@ -96,7 +90,7 @@ std::string Table::csv() const {
 
 std::string Table::tex() const {
   std::string out;
-  if (!title_.empty()) out += "% " + one_line(title_) + "\n";
+  if (!title_.empty()) out += "% " + scenarios::one_line(title_) + "\n";
   out += "\\begin{tabular}{";
   for (std::size_t i = 0; i < header_.size(); ++i) out += i >= right_from_ ? 'r' : 'l';
   out += "}\n\\toprule\n" + joined(header_, " & ", for_tex) + " \\\\\n\\midrule\n";

@@ -5,13 +5,13 @@
 #include <sched.h>
 
 #include <algorithm>
-#include <charconv>
 
 #include "scenarios/errors.hpp"
 #include "scenarios/methods/external_method.hpp"
 #include "scenarios/recordings/replace_file.hpp"
 #include "scenarios/scoring/score.hpp"
 #include "scenarios/sweep/sweep.hpp"
+#include "scenarios/text.hpp"
 #include "sim/parameters.hpp"
 
 namespace tumble::tools {
@@ -20,26 +20,22 @@ namespace {
 
 using scenarios::BadInput;
 
-bool parse_whole(const std::string& text, std::uint64_t& value) {
-  const char* end = text.data() + text.size();
-  const auto [stop, error] = std::from_chars(text.data(), end, value);
-  return error == std::errc() && stop == end;
-}
-
 }  // namespace
 
 std::uint64_t parse_seed(const std::string& text) {
   std::uint64_t seed = 0;
-  if (!parse_whole(text, seed)) throw BadInput("--seed is '" + text + "', must be a whole number from 0 to 2^64 - 1");
+  if (!scenarios::read_number(text, seed))
+    throw BadInput("--seed is '" + text + "', must be a whole number from 0 to 2^64 - 1");
   return seed;
 }
 
 std::pair<std::uint64_t, std::uint64_t> parse_seeds(const std::string& text) {
   const std::size_t dots = text.find("..");
   std::uint64_t first = 0, last = 0;
-  const bool read = dots == std::string::npos
-                        ? parse_whole(text, first) && parse_whole(text, last)
-                        : parse_whole(text.substr(0, dots), first) && parse_whole(text.substr(dots + 2), last);
+  const bool read =
+      dots == std::string::npos
+          ? scenarios::read_number(text, first) && scenarios::read_number(text, last)
+          : scenarios::read_number(text.substr(0, dots), first) && scenarios::read_number(text.substr(dots + 2), last);
   if (!read) throw BadInput("--seeds is '" + text + "', must be A..B with whole numbers, as in 1..40");
   if (last < first) throw BadInput("--seeds is '" + text + "': the first is greater than the last");
   return {first, last};
@@ -48,8 +44,8 @@ std::pair<std::uint64_t, std::uint64_t> parse_seeds(const std::string& text) {
 Shard parse_shard(const std::string& text) {
   Shard shard;
   const std::size_t bar = text.find('/');
-  const bool read = bar != std::string::npos && parse_whole(text.substr(0, bar), shard.index) &&
-                    parse_whole(text.substr(bar + 1), shard.count);
+  const bool read = bar != std::string::npos && scenarios::read_number(text.substr(0, bar), shard.index) &&
+                    scenarios::read_number(text.substr(bar + 1), shard.count);
   if (!read || shard.index < 1 || shard.index > shard.count || shard.count > 1000000) {
     throw BadInput("--shard is '" + text + "', must be i/n with 1 <= i <= n <= 1000000, as in 2/8");
   }

@@ -4,13 +4,13 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 #include <nlohmann/json.hpp>
 #include <sstream>
 
 #include "scenarios/draw/scenario.hpp"
 #include "scenarios/errors.hpp"
+#include "scenarios/text.hpp"
 #include "tools/tumble/arguments.hpp"
 
 namespace tumble::tools {
@@ -21,9 +21,8 @@ using scenarios::Question;
 scenarios::Margin parse_margin(const std::string& option, const std::string& text) {
   const bool relative = text.ends_with('%');
   double value = 0.0;
-  const char* const end = text.data() + text.size() - (relative ? 1 : 0);
-  const auto [stop, error] = std::from_chars(text.data(), end, value);
-  if (error != std::errc() || stop != end || !std::isfinite(value) || value < 0.0)
+  const std::string_view number = std::string_view(text).substr(0, text.size() - (relative ? 1 : 0));
+  if (!scenarios::read_number(number, value) || !std::isfinite(value) || value < 0.0)
     throw BadInput(option + " is '" + text + "', must be a number from 0 on, or such a number and %");
   return {relative ? value / 100.0 : value, relative};
 }

@@ -120,7 +120,7 @@ int run_estimate(const Session& session, const EstimateOptions& options) {
   const std::vector<scenarios::Method> methods = scenarios::with_parameters(told, options.parameters);
   scenarios::OutputFolder folder(options.folder);
   scenarios::Estimate estimate = run_of(methods.front(), sensors);
-  if (!scenarios::states_digest(options.recording)) estimate.health["recording_without_digest"] = 1.0;
+  if (!scenarios::states_digest(options.recording)) add_doubt({scenarios::Doubt::About::digest}, estimate);
   scenarios::write_estimate(options.folder, method.info.name, method.info.kind, estimate,
                             scenarios::digest(sensors, nullptr));
   folder.keep();

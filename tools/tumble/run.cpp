@@ -52,21 +52,38 @@ fs::path free_folder(const std::string& name) {
   return folder;
 }
 
-/// Ours beside the method that does nothing about the problem, of every kind that has both for this scenario.
+/// The first method of a kind that is so and needs no truth; null where there is none.
+template <class Is>
+const scenarios::MethodInfo* first_of(scenarios::Kind kind, Is is) {
+  for (const scenarios::Method& method : scenarios::methods()) {
+    if (method.info.kind == kind && !method.info.needs_truth && is(method.info)) return &method.info;
+  }
+  return nullptr;
+}
+
+/// What the others of a kind are held against: the one that is registered as baseline, else the first.
+const scenarios::MethodInfo* baseline_of(scenarios::Kind kind) {
+  const scenarios::MethodInfo* const baseline = first_of(kind, [](const auto& info) { return info.baseline; });
+  return baseline != nullptr ? baseline : first_of(kind, [](const auto&) { return true; });
+}
+
+/// Ours beside the baseline, of every kind that has both for this scenario.
 RunOptions first_run(RunOptions options, const scenarios::Scenario& scenario) {
-  constexpr std::pair<const char*, const char*> kPairs[] = {
-      {"rate/raw", "rate/tumble"}, {"position/rolling", "position/tumble"}, {"slam/icp_raw", "slam/tumble"}};
-  const auto applies = [&](const char* name) {
-    return scenarios::find_methods(name).front()->info.applies_to(scenarios::subject_of(scenario));
-  };
-  for (const auto& [baseline, ours] : kPairs) {
-    if (applies(baseline) && applies(ours)) options.methods.insert(options.methods.end(), {baseline, ours});
+  using scenarios::Kind;
+  const scenarios::Subject subject = scenarios::subject_of(scenario);
+  for (const Kind kind : {Kind::rate, Kind::attitude, Kind::position, Kind::slam}) {
+    const scenarios::MethodInfo* const baseline = baseline_of(kind);
+    const scenarios::MethodInfo* const ours = first_of(kind, [](const auto& info) { return info.ours; });
+    if (baseline == nullptr || ours == nullptr || !baseline->applies_to(subject) || !ours->applies_to(subject))
+      continue;
+    options.methods.push_back(full_name(*baseline));
+    options.methods.push_back(full_name(*ours));
   }
   options.folder = free_folder(scenario.name);
   return options;
 }
 
-void say_what_next(const Session& session, const RunOptions& options) {
+void say_what_next(const Session& session, const RunOptions& options, const scenarios::RunResult& result) {
   const std::string folder = options.folder.string();
   session.note("left in " + folder +
                "/: recording.h5, situation.yaml, estimates/, snapshots/scene.png and film.png, replay.html");
@@ -74,7 +91,8 @@ void say_what_next(const Session& session, const RunOptions& options) {
   const auto say = [&](const std::string& command, const char* what) {
     session.note(fmt::format("  {:<78}  {}", command, what));
   };
-  if (std::find(options.methods.begin(), options.methods.end(), "slam/tumble") != options.methods.end()) {
+  if (std::any_of(result.methods.begin(), result.methods.end(),
+                  [](const auto& method) { return method->info.kind == scenarios::Kind::slam; })) {
     say(fmt::format("tumble render {0}/recording.h5 {0}/estimates/slam-* --map -o {0}/maps.png", folder),
         "the maps, coloured by error");
   }
@@ -141,38 +159,27 @@ void say_troubles(const Session& session, const scenarios::RunResult& result) {
   }
 }
 
-int run(const Session& session, const RunOptions& given) {
-  const scenarios::DataRoot data = session.data();
-  const scenarios::Scenario scenario = scenarios::load_scenario(data, given.scenario);
-  const bool first = is_bare(given);
-  const RunOptions options = first ? first_run(given, scenario) : given;
+std::uint64_t asked_seed(const RunOptions& options, const scenarios::Scenario& scenario) {
   const bool any_draw = options.seed.empty() && !scenario.named_case;
-  const std::uint64_t seed = any_draw ? 1 : seed_of(scenario, options.seed);
+  return any_draw ? 1 : seed_of(scenario, options.seed);
+}
+
+/// Those that are asked for, of which some start from what was learnt.
+std::vector<scenarios::Method> asked_methods(const RunOptions& options, const scenarios::Scenario& scenario,
+                                             LearntFile& learnt) {
   const auto selected = select_methods(options.methods);
-  LearntFile learnt(options.learnt);
   if (!options.learnt.empty() &&
       std::none_of(selected.begin(), selected.end(), [](const auto& method) { return method->info.learns_rig; })) {
     throw scenarios::BadInput("--learnt is for " + LearntFile::learning_methods() + ", of which none is to run");
   }
   if (!options.methods.empty() && scenarios::applicable(selected, scenarios::subject_of(scenario)).empty())
     scenarios::require_applies(*selected.front(), scenario);
-  std::vector<scenarios::Method> copies;
-  for (const scenarios::MethodPointer& method : selected) copies.push_back(learnt.wrap(*method));
-  const std::vector<scenarios::Method> told = scenarios::with_parameters(pointers(copies), options.parameters);
-  const std::vector<scenarios::MethodPointer> methods = pointers(told);
-  std::optional<scenarios::OutputFolder> folder;
-  if (!options.folder.empty()) folder.emplace(options.folder);
+  std::vector<scenarios::Method> out;
+  for (const scenarios::MethodPointer& method : selected) out.push_back(learnt.wrap(*method));
+  return out;
+}
 
-  const scenarios::Setting setting = setting_of(data, options, seed);
-  const scenarios::RunResult result =
-      scenarios::run_situation(data, scenario, seed, methods, options.threads, scenarios::Lidars::simulated, setting);
-  if (!options.folder.empty()) {
-    leave_files(options.folder, result);
-    leave_pictures(options.folder, result);
-    folder->keep();
-  }
-  learnt.keep(session);
-
+void print_result(const Session& session, const scenarios::RunResult& result, std::uint64_t seed) {
   const std::string digest = scenarios::run_digest(result);
   const nlohmann::json document = {{"scenario", result.scenario},
                                    {"seed", seed},
@@ -186,9 +193,33 @@ int run(const Session& session, const RunOptions& given) {
   closing.add_row({"digest of the recording", result.recording_digest});
   tables.push_back(std::move(closing));
   session.print(tables, document);
+}
+
+int run(const Session& session, const RunOptions& given) {
+  const scenarios::DataRoot data = session.data();
+  const scenarios::Scenario scenario = scenarios::load_scenario(data, given.scenario);
+  const bool first = is_bare(given);
+  const RunOptions options = first ? first_run(given, scenario) : given;
+  const std::uint64_t seed = asked_seed(options, scenario);
+  LearntFile learnt(options.learnt);
+  const std::vector<scenarios::Method> asked = asked_methods(options, scenario, learnt);
+  const std::vector<scenarios::Method> methods = scenarios::with_parameters(pointers(asked), options.parameters);
+  std::optional<scenarios::OutputFolder> folder;
+  if (!options.folder.empty()) folder.emplace(options.folder);
+
+  const scenarios::Setting setting = setting_of(data, options, seed);
+  const scenarios::RunResult result = scenarios::run_situation(data, scenario, seed, pointers(methods), options.threads,
+                                                               scenarios::Lidars::simulated, setting);
+  if (folder) {
+    leave_files(options.folder, result);
+    leave_pictures(options.folder, result);
+    folder->keep();
+  }
+  learnt.keep(session);
+  print_result(session, result, seed);
   say_troubles(session, result);
   if (const std::string moving = end_in_motion(result.recording.truth); !moving.empty()) session.note(moving);
-  if (first) say_what_next(session, options);
+  if (first) say_what_next(session, options, result);
   return kDone;
 }
 

@@ -165,50 +165,68 @@ scenarios::Kind kind_of(const std::string& name, const sim::Sensors& sensors) {
   return name == "slam" ? scenarios::Kind::slam : scenarios::Kind::position;
 }
 
-int score_estimate(const Session& session, const ScoreOptions& options) {
-  const scenarios::RecordingInfo info = scenarios::read_info(options.recording);
-  if (!info.has_truth) throw scenarios::BadInput(options.recording.string() + ": holds no truth to score against");
-  const sim::Sensors sensors = scenarios::read_sensors(options.recording);
+/// What is to be scored.
+struct Claim {
+  scenarios::RecordingInfo info;
+  sim::Sensors sensors;
+  sim::Truth truth;
+  scenarios::Estimate estimate;
+  scenarios::Kind kind = scenarios::Kind::position;
+  std::string method;
+  bool foreign = false;  ///< a trajectory of somebody else, which says nothing of itself
+};
+
+/// What the estimate itself does not say.
+void complete_foreign(const Session& session, const ScoreOptions& options, Claim& claim) {
+  claim.kind = kind_of(options.kind, claim.sensors);
+  move_to_clock(claim.info.origin_ns, claim.estimate);
+  const std::string complaint = scenarios::turning_complaint(claim.estimate, claim.sensors);
+  if (!complaint.empty()) session.note("caution: " + complaint);
+}
+
+Claim read_claim(const Session& session, const ScoreOptions& options) {
+  Claim claim;
+  claim.info = scenarios::read_info(options.recording);
+  if (!claim.info.has_truth)
+    throw scenarios::BadInput(options.recording.string() + ": holds no truth to score against");
+  claim.sensors = scenarios::read_sensors(options.recording);
   if (!scenarios::states_digest(options.recording))
     session.note(options.recording.string() + ": states no digest of its data, so that damage would not show");
-  const sim::Truth truth = scenarios::read_truth(options.recording);
-  scenarios::Outcome outcome;
-  scenarios::Estimate estimate = scenarios::read_estimate(options.estimate, outcome.kind, outcome.method,
-                                                          frame_of(options.frame, !truth.imus.empty()));
-  require_own(options.estimate, options.recording, sensors);
-  const bool foreign = !std::filesystem::is_directory(options.estimate);
-  if (!foreign && !options.kind.empty())
+  claim.truth = scenarios::read_truth(options.recording);
+  claim.estimate = scenarios::read_estimate(options.estimate, claim.kind, claim.method,
+                                            frame_of(options.frame, !claim.truth.imus.empty()));
+  require_own(options.estimate, options.recording, claim.sensors);
+  claim.foreign = !std::filesystem::is_directory(options.estimate);
+  if (!claim.foreign && !options.kind.empty())
     throw scenarios::BadInput("--kind is for a TUM file; " + options.estimate.string() + " says what it is");
-  if (foreign) {
-    outcome.kind = kind_of(options.kind, sensors);
-    move_to_clock(info.origin_ns, estimate);
-    const std::string complaint = scenarios::turning_complaint(estimate, sensors);
-    if (!complaint.empty()) session.note("caution: " + complaint);
-  }
+  if (claim.foreign) complete_foreign(session, options, claim);
+  if (claim.kind == scenarios::Kind::position || claim.kind == scenarios::Kind::slam)
+    require_common_time(options, claim.estimate, claim.truth);
+  return claim;
+}
 
-  if (outcome.kind == scenarios::Kind::position || outcome.kind == scenarios::Kind::slam) {
-    require_common_time(options, estimate, truth);
-  }
+/// The true one, which matters to maps alone, and building it takes a while: null where there is none to score.
+std::unique_ptr<const sim::Surface> surface_of(const Session& session, const ScoreOptions& options,
+                                               const Claim& claim) {
+  if (claim.kind != scenarios::Kind::slam || claim.foreign || claim.info.situation_yaml.empty()) return nullptr;
+  return std::make_unique<const sim::Surface>(built_from(claim.info, options.recording.string(), session.data()));
+}
 
-  // the true surface matters to maps alone, and building it takes a while; somebody else's trajectory has none
-  std::optional<sim::Surface> surface;
-  if (outcome.kind == scenarios::Kind::slam && !foreign && !info.situation_yaml.empty()) {
-    surface.emplace(built_from(info, options.recording.string(), session.data()));
-  }
-  std::optional<Standing> standing;
-  if (foreign) {
-    standing = standing_of(estimate, truth);
-    require_compared(options, *standing);
-  }
-  const scenarios::ScoredEstimate scored(estimate, {&sensors, &truth, surface ? &*surface : nullptr});
-  outcome.scenario = info.scenario;
-  outcome.seed = info.seed;
-  outcome.status = estimate.status.ok() ? scenarios::verdict(outcome.kind, scored) : scenarios::OutcomeStatus::failed;
-  outcome.message = estimate.status.ok() ? "" : estimate.status.message();
-  outcome.scores = scenarios::score(outcome.kind, scored);
-  std::string status = to_string(outcome.status);
-  if (standing) status = judge_trajectory(session, *standing, scored, outcome);
+scenarios::Outcome outcome_of(const Claim& claim, const scenarios::ScoredEstimate& scored) {
+  const bool ok = claim.estimate.status.ok();
+  scenarios::Outcome outcome;
+  outcome.kind = claim.kind;
+  outcome.method = claim.method;
+  outcome.scenario = claim.info.scenario;
+  outcome.seed = claim.info.seed;
+  outcome.status = ok ? scenarios::verdict(claim.kind, scored) : scenarios::OutcomeStatus::failed;
+  outcome.message = ok ? "" : claim.estimate.status.message();
+  outcome.scores = scenarios::score(claim.kind, scored);
+  return outcome;
+}
 
+void print_scores(const Session& session, const ScoreOptions& options, const scenarios::Outcome& outcome,
+                  const std::string& status, const std::optional<Standing>& standing) {
   const std::vector<scenarios::Outcome> outcomes = {outcome};
   nlohmann::json document = {{"kind", to_string(outcome.kind)},
                              {"method", outcome.method},
@@ -220,6 +238,21 @@ int score_estimate(const Session& session, const ScoreOptions& options) {
     add_cover(*standing, tables.front());
   }
   session.print(tables, document);
+}
+
+int score_estimate(const Session& session, const ScoreOptions& options) {
+  const Claim claim = read_claim(session, options);
+  const std::unique_ptr<const sim::Surface> surface = surface_of(session, options, claim);
+  std::optional<Standing> standing;
+  if (claim.foreign) {
+    standing = standing_of(claim.estimate, claim.truth);
+    require_compared(options, *standing);
+  }
+  const scenarios::ScoredEstimate scored(claim.estimate, {&claim.sensors, &claim.truth, surface.get()});
+  scenarios::Outcome outcome = outcome_of(claim, scored);
+  std::string status = to_string(outcome.status);
+  if (standing) status = judge_trajectory(session, *standing, scored, outcome);
+  print_scores(session, options, outcome, status, standing);
   return kDone;
 }
 

@@ -16,10 +16,8 @@ using scenarios::Kind;
 using scenarios::Outcome;
 
 std::string cell(const Outcome& outcome, const std::string& metric) {
-  for (const scenarios::Score& score : outcome.scores) {
-    if (score.metric == metric) return number_text(score.value);
-  }
-  return "";
+  const scenarios::Score* const score = find_score(outcome.scores, metric);
+  return score != nullptr ? number_text(score->value) : "";
 }
 
 Table kind_table(const std::string& title, const std::vector<const Outcome*>& outcomes, const std::string& said) {

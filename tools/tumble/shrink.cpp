@@ -51,13 +51,6 @@ scenarios::MethodPointer control_of(const ShrinkVerbOptions& options, const scen
   return nullptr;
 }
 
-double value_of(const scenarios::Outcome& outcome, const std::string& metric) {
-  for (const scenarios::Score& score : outcome.scores) {
-    if (score.metric == metric) return score.value;
-  }
-  return std::nan("");
-}
-
 std::string amount_text(const std::optional<double>& value) {
   return value ? number_text(*value) : "";
 }
@@ -67,7 +60,7 @@ Table lines_table(const Shrunk& shrunk, const std::string& metric) {
   for (const ShrinkLine& line : shrunk.lines) {
     table.add_row({line.what, to_string(line.fate), amount_text(line.from), amount_text(line.to),
                    line.without ? to_string(line.without->status) : "",
-                   line.without ? number_text(value_of(*line.without, metric)) : ""});
+                   line.without ? number_text(value_of(line.without->scores, metric)) : ""});
   }
   return table;
 }
@@ -75,8 +68,8 @@ Table lines_table(const Shrunk& shrunk, const std::string& metric) {
 Table outcomes_table(const Shrunk& shrunk, const std::string& metric) {
   Table table("", {"draw", "status", metric, "estimate took [s]"});
   const auto add = [&](const char* name, const scenarios::Outcome& outcome) {
-    table.add_row({name, to_string(outcome.status), number_text(value_of(outcome, metric)),
-                   number_text(value_of(outcome, "estimate_cpu_s"))});
+    table.add_row({name, to_string(outcome.status), number_text(value_of(outcome.scores, metric)),
+                   number_text(value_of(outcome.scores, "estimate_cpu_s"))});
   };
   add("as drawn", shrunk.drawn);
   add("shrunk", shrunk.left);
@@ -91,12 +84,12 @@ json to_json(const Shrunk& shrunk, const std::string& metric, const ShrinkVerbOp
     if (line.to) row["to"] = *line.to;
     if (line.without) {
       row["without"] = {{"status", to_string(line.without->status)},
-                        {"value", finite(value_of(*line.without, metric))}};
+                        {"value", finite(value_of(line.without->scores, metric))}};
     }
     lines.push_back(std::move(row));
   }
   const auto side = [&](const scenarios::Outcome& outcome) {
-    return json{{"status", to_string(outcome.status)}, {"value", finite(value_of(outcome, metric))}};
+    return json{{"status", to_string(outcome.status)}, {"value", finite(value_of(outcome.scores, metric))}};
   };
   return {{"failure", shrunk.failure},       {"metric", metric},          {"drawn", side(shrunk.drawn)},
           {"shrunk", side(shrunk.left)},     {"runs", shrunk.runs},       {"complete", shrunk.complete},
@@ -163,7 +156,7 @@ int run_shrink(const Session& session, const ShrinkVerbOptions& options) {
   shrinking.on_trial = [&](const scenarios::ShrinkTrial& trial) {
     session.note(fmt::format("{:>3} of {} at most: {}: {}, {} {}{}", trial.run, options.budget, trial.what,
                              trial.kept ? "fails" : "does not", to_string(trial.outcome.status),
-                             number_text(value_of(trial.outcome, metric)),
+                             number_text(value_of(trial.outcome.scores, metric)),
                              trial.outcome.message.empty() ? "" : " (" + trial.outcome.message + ")"));
   };
   const Shrunk shrunk = scenarios::shrink(data, scenario, seed, *method, shrinking);

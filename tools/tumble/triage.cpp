@@ -34,13 +34,6 @@ struct TriageVerbOptions {
   std::filesystem::path database;
 };
 
-double value_of(const TriageRow& row, const std::string& metric) {
-  for (const scenarios::Score& score : row.outcome.scores) {
-    if (score.metric == metric) return score.value;
-  }
-  return std::nan("");
-}
-
 /// "cures" when the run failed as it was and does not with this input true.
 std::string verdict(const TriageRow& row, const TriageRow& base) {
   if (!base.fails) return "";
@@ -50,9 +43,9 @@ std::string verdict(const TriageRow& row, const TriageRow& base) {
 Table table_of(const std::vector<TriageRow>& rows, const std::string& metric) {
   Table table("", {"replaced by its truth", "status", metric, "of the first", "verdict", "what"});
   const TriageRow& base = rows.front();
-  const double before = value_of(base, metric);
+  const double before = value_of(base.outcome.scores, metric);
   for (const TriageRow& row : rows) {
-    const double now = value_of(row, metric);
+    const double now = value_of(row.outcome.scores, metric);
     const std::string change =
         &row == &base || !(before > 0.0) || !std::isfinite(now) ? "" : fmt::format("{:.2f}", now / before);
     table.add_row({row.input, to_string(row.outcome.status), number_text(now), change,
@@ -64,7 +57,7 @@ Table table_of(const std::vector<TriageRow>& rows, const std::string& metric) {
 json to_json(const std::vector<TriageRow>& rows, const std::string& metric) {
   json out = json::array(), cures = json::array();
   for (const TriageRow& row : rows) {
-    const double value = value_of(row, metric);
+    const double value = value_of(row.outcome.scores, metric);
     out.push_back({{"input", row.input},
                    {"doc", row.doc},
                    {"status", to_string(row.outcome.status)},

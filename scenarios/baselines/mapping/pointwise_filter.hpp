@@ -31,8 +31,8 @@ class PointwiseFilter {
     double gravity_m_s2 = 9.80665;
     double range_min_m = 0.3;
     double range_max_m = 100.0;
-    Eigen::AlignedBox3d own_body_L{Eigen::Vector3d(-0.5, -0.4, -0.27), Eigen::Vector3d(0.5, 0.4, 0.23)};
-    double sweep_voxel_m = 0.25;  ///< one point per voxel of a sweep, as measured, updates the state
+    Eigen::AlignedBox3d own_body_L;  ///< returns inside are the robot's own; an empty box keeps all
+    double sweep_voxel_m = 0.25;     ///< one point per voxel of a sweep, as measured, updates the state
     double map_voxel_m = 0.5;
     double map_spacing_m = 0.1;
     int neighbours = 8;  ///< of the plane fit

@@ -27,8 +27,8 @@ class RigidOdometry {
     Eigen::Isometry3d T_IL = Eigen::Isometry3d::Identity();  ///< lidar in the axes whose motion is given
     double range_min_m = 0.3;
     double range_max_m = 100.0;
-    Eigen::AlignedBox3d own_body_L{Eigen::Vector3d(-0.5, -0.4, -0.27), Eigen::Vector3d(0.5, 0.4, 0.23)};
-    double sweep_voxel_m = 0.25;  ///< one point per voxel of a sweep is registered
+    Eigen::AlignedBox3d own_body_L;  ///< returns inside are the robot's own; an empty box keeps all
+    double sweep_voxel_m = 0.25;     ///< one point per voxel of a sweep is registered
     double map_voxel_m = 0.5;
     double map_spacing_m = 0.1;
     /// Whether a sweep that could not be registered still extends the map at the pose believed, as most peers do.

@@ -10,6 +10,7 @@
 #include <string_view>
 #include <vector>
 
+#include "scenarios/recordings/bags/mcap_bytes.hpp"
 #include "scenarios/recordings/bags/mcap_records.hpp"
 
 /// An MCAP file by its chunks. Nothing in it is trusted: every length, place, time and checksum is held against the

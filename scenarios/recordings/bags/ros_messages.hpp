@@ -2,19 +2,12 @@
 #pragma once
 
 #include <array>
-#include <cstddef>
 #include <cstdint>
 #include <string>
 #include <variant>
 #include <vector>
 
-/// The messages that a recording becomes in a bag, and the one list of their fields in the order of their definitions.
-/// ROS 1 and ROS 2 lay out the same fields differently: ros_bytes.hpp has the archives that visit them. Private to
-/// scenarios/recordings/bags.
-///
-/// An archive has: operator()(uint8 | uint32 | uint64 | float | text | array of doubles), ros1_only(uint32) for the
-/// field that ROS 2 gave up, count(entries there are, least bytes of one) for the length before a list (a reader
-/// returns the length that it finds), and raw(first byte, bytes).
+/// The messages that a recording becomes in a bag; their fields: ros_fields.hpp. Private to scenarios/recordings/bags.
 namespace tumble::scenarios::ros {
 
 struct Header {
@@ -123,111 +116,6 @@ inline const char* type_of(const LivoxCustomMsg&) {
 inline constexpr const char* kLivoxRos1 = "livox_ros_driver/CustomMsg";
 inline std::string type_of(const Message& message) {
   return std::visit([](const auto& each) { return std::string(type_of(each)); }, message);
-}
-
-template <class Archive, class Entry, class Fields>
-void list(Archive& archive, std::vector<Entry>& entries, std::size_t least_bytes, Fields&& fields_of) {
-  entries.resize(archive.count(entries.size(), least_bytes));
-  for (Entry& entry : entries) fields_of(entry);
-}
-
-template <class Archive>
-void blob(Archive& archive, std::vector<std::uint8_t>& bytes) {
-  bytes.resize(archive.count(bytes.size(), 1));
-  archive.raw(bytes.data(), bytes.size());
-}
-
-template <class Archive>
-void header_fields(Archive& archive, Header& header) {
-  archive.ros1_only(header.seq);
-  archive(header.sec);
-  archive(header.nanosec);
-  archive(header.frame_id);
-}
-
-template <class Archive>
-void fields(Archive& archive, Imu& imu) {
-  header_fields(archive, imu.header);
-  archive(imu.orientation_xyzw);
-  archive(imu.orientation_covariance);
-  archive(imu.angular_velocity);
-  archive(imu.angular_velocity_covariance);
-  archive(imu.linear_acceleration);
-  archive(imu.linear_acceleration_covariance);
-}
-
-template <class Archive>
-void fields(Archive& archive, PointCloud2& cloud) {
-  header_fields(archive, cloud.header);
-  archive(cloud.height);
-  archive(cloud.width);
-  constexpr std::size_t kFieldBytes = 13;
-  list(archive, cloud.fields, kFieldBytes, [&](PointField& field) {
-    archive(field.name);
-    archive(field.offset);
-    archive(field.datatype);
-    archive(field.count);
-  });
-  archive(cloud.is_bigendian);
-  archive(cloud.point_step);
-  archive(cloud.row_step);
-  blob(archive, cloud.data);
-  archive(cloud.is_dense);
-}
-
-template <class Archive>
-void fields(Archive& archive, PoseStamped& pose) {
-  header_fields(archive, pose.header);
-  archive(pose.position);
-  archive(pose.orientation_xyzw);
-}
-
-template <class Archive>
-void fields(Archive& archive, Odometry& odometry) {
-  header_fields(archive, odometry.header);
-  archive(odometry.child_frame_id);
-  archive(odometry.position);
-  archive(odometry.orientation_xyzw);
-  archive(odometry.pose_covariance);
-  archive(odometry.linear_velocity);
-  archive(odometry.angular_velocity);
-  archive(odometry.twist_covariance);
-}
-
-template <class Archive>
-void fields(Archive& archive, TFMessage& message) {
-  constexpr std::size_t kTransformBytes = 72;
-  list(archive, message.transforms, kTransformBytes, [&](TransformStamped& each) {
-    header_fields(archive, each.header);
-    archive(each.child_frame_id);
-    archive(each.translation);
-    archive(each.rotation_xyzw);
-  });
-}
-
-template <class Archive>
-void fields(Archive& archive, Clock& clock) {
-  archive(clock.sec);
-  archive(clock.nanosec);
-}
-
-template <class Archive>
-void fields(Archive& archive, LivoxCustomMsg& message) {
-  header_fields(archive, message.header);
-  archive(message.timebase);
-  archive(message.point_num);
-  archive(message.lidar_id);
-  for (std::uint8_t& reserved : message.rsvd) archive(reserved);
-  constexpr std::size_t kPointBytes = 19;
-  list(archive, message.points, kPointBytes, [&](LivoxPoint& point) {
-    archive(point.offset_time);
-    archive(point.x);
-    archive(point.y);
-    archive(point.z);
-    archive(point.reflectivity);
-    archive(point.tag);
-    archive(point.line);
-  });
 }
 
 }  // namespace tumble::scenarios::ros

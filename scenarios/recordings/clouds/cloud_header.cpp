@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <algorithm>
 #include <array>
-#include <charconv>
 #include <cmath>
 #include <fstream>
 #include <map>
@@ -10,6 +9,7 @@
 
 #include "scenarios/errors.hpp"
 #include "scenarios/recordings/clouds/cloud_file.hpp"
+#include "scenarios/text.hpp"
 
 namespace tumble::scenarios {
 
@@ -51,8 +51,7 @@ class HeaderLines {
 
   std::uint64_t whole(const std::string& what, const std::string& text) const {
     std::uint64_t value = 0;
-    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-    if (error != std::errc() || end != text.data() + text.size()) fail(what + " is '" + text + "', no whole number");
+    if (!read_number(text, value)) fail(what + " is '" + text + "', no whole number");
     return value;
   }
 
@@ -179,8 +178,7 @@ std::string viewpoint_of(const HeaderLines& lines, const Words& words) {
   bool own = true;
   for (std::size_t i = 0; i < kOwn.size(); ++i) {
     double value = 0.0;
-    const auto [end, error] = std::from_chars(words[i].data(), words[i].data() + words[i].size(), value);
-    if (error != std::errc() || end != words[i].data() + words[i].size() || !std::isfinite(value))
+    if (!read_number(words[i], value) || !std::isfinite(value))
       lines.fail("VIEWPOINT's number " + std::to_string(i + 1) + " is '" + words[i] + "', must be finite");
     own = own && value == kOwn[i];
     written += (i > 0 ? " " : "") + words[i];

@@ -2,13 +2,13 @@
 #include "scenarios/recordings/clouds/vtk_file.hpp"
 
 #include <algorithm>
-#include <charconv>
 #include <cstdint>
 #include <fstream>
 #include <iterator>
 #include <string_view>
 
 #include "scenarios/errors.hpp"
+#include "scenarios/text.hpp"
 
 namespace tumble::scenarios {
 
@@ -60,9 +60,7 @@ class VtkWords {
   std::uint64_t whole(const char* what) {
     const std::string_view word = need(what);
     std::uint64_t value = 0;
-    const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), value);
-    if (error != std::errc() || end != word.data() + word.size())
-      fail(std::string(what) + " is '" + shortened(word) + "', no whole number");
+    if (!read_number(word, value)) fail(std::string(what) + " is '" + shortened(word) + "', no whole number");
     return value;
   }
 
@@ -71,8 +69,7 @@ class VtkWords {
     std::string_view word = need("its numbers");
     if (word.starts_with('+')) word.remove_prefix(1);
     double value = 0.0;
-    const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), value);
-    if (error != std::errc() || end != word.data() + word.size())
+    if (!read_number(word, value))
       fail("'" + shortened(word) + "' is no number that a double holds, decimals behind a point");
     return value;
   }
@@ -129,8 +126,7 @@ void read_scalars(VtkWords& words, Cloud& cloud) {
   std::uint64_t each = 1;
   std::string_view word = words.need("LOOKUP_TABLE");
   if (word != "LOOKUP_TABLE") {
-    const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), each);
-    if (error != std::errc() || end != word.data() + word.size() || each < 1 || each > 4)
+    if (!read_number(word, each) || each < 1 || each > 4)
       words.fail("scalars '" + shortened(name) + "' of '" + shortened(word) + "' numbers a point, must be 1 to 4");
     word = words.need("LOOKUP_TABLE");
   }

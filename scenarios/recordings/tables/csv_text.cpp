@@ -2,12 +2,12 @@
 #include "scenarios/recordings/tables/csv_text.hpp"
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 #include <fstream>
 #include <iterator>
 
 #include "scenarios/errors.hpp"
+#include "scenarios/text.hpp"
 
 namespace tumble::scenarios {
 
@@ -28,11 +28,6 @@ char likely_separator(std::string_view text) {
     if (std::count(line.begin(), line.end(), separator) > std::count(line.begin(), line.end(), most)) most = separator;
   }
   return most;
-}
-
-bool parse(std::string_view text, double& value) {
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-  return error == std::errc() && end == text.data() + text.size();
 }
 
 }  // namespace
@@ -80,7 +75,7 @@ double csv_number(const CsvLine& line, std::size_t index, const std::string& col
   const std::string_view text = line.fields[index];
   double value = 0.0;
   const std::string place = line.where + ": column " + column + " ";
-  if (!parse(text, value)) {
+  if (!read_number(text, value)) {
     const bool comma = text.find(',') != std::string_view::npos;
     throw BadInput(place + "must be a number, is '" + std::string(text) + "'" +
                    (comma ? ": decimals stand behind a point" : ""));
@@ -91,7 +86,7 @@ double csv_number(const CsvLine& line, std::size_t index, const std::string& col
 
 bool is_number(std::string_view field) {
   double value = 0.0;
-  return parse(field, value);
+  return read_number(field, value);
 }
 
 }  // namespace tumble::scenarios

@@ -25,7 +25,7 @@ testing::SyntheticMotion dash() {
   return motion;
 }
 
-/// Median error of the seed's velocity while the acceleration is large.
+/// Median error of the chain's velocity while the acceleration is large.
 double velocity_error_m_s(double late_velocity) {
   const testing::SyntheticMotion motion = dash();
   const sim::Recording recording = testing::synthetic_rig(motion);

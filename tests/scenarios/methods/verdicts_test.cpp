@@ -8,10 +8,9 @@
 #include <vector>
 
 #include "scenarios/draw/scenario.hpp"
-#include "scenarios/methods/bridge.hpp"
-#include "scenarios/methods/imu_check.hpp"
 #include "scenarios/methods/method.hpp"
 #include "scenarios/sweep/evaluate.hpp"
+#include "tests/scenarios/methods/rates_before_doubt.hpp"
 #include "tests/scenarios/methods/wrong_inputs.hpp"
 #include "tests/tree.hpp"
 
@@ -222,15 +221,13 @@ TEST(Verdicts, CovariancesBeforeADoubtComeBack) {
     testing::wrong_inputs().at(wrong)(given.recording.sensors);
     Outcome outcome;
     const Estimate estimate = run_method(*find_methods("rate/tumble").at(0), given, outcome);
-    std::vector<ImuSample> samples;
-    EXPECT_TRUE(bridge::primary_imu_samples(given.recording.sensors, samples).ok());
-    const std::vector<RateState> before = rates_before_doubt(given.recording.sensors, samples, estimate);
+    const std::vector<RateState> before = testing::rates_before_doubt(estimate);
     EXPECT_EQ(before.size(), estimate.rates.size());
     double squares = 0.0, least = 1.0;
     for (const RateState& rate : estimate.rates) squares += 3.0 * rate.w_WI_I_rad_s.squaredNorm();
     for (const RateState& rate : before) least = std::min(least, rate.covariance_rad2_s2.diagonal().minCoeff());
     EXPECT_GT(least, 0.0);
-    return std::pair((trace(estimate.rates) - trace(before)) / squares, estimate.health.contains("imu_rates_doubted"));
+    return std::pair((trace(estimate.rates) - trace(before)) / squares, has_doubt({Doubt::About::rates}, estimate));
   };
   EXPECT_EQ(of("none"), std::pair(0.0, false));
   const auto [share, doubted] = of("gyro_flipped");

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "scenarios/recordings/bags/bag_messages.hpp"
+#include "scenarios/recordings/bags/mcap_bytes.hpp"
 #include "scenarios/recordings/bags/mcap_records.hpp"
 #include "scenarios/recordings/bags/packed.hpp"
 #include "scenarios/recordings/bags/ros2_definitions.hpp"

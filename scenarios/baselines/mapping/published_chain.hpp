@@ -1,0 +1,112 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <Eigen/Geometry>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "scenarios/baselines/mapping/published_imu_odometry.hpp"
+#include "scenarios/baselines/mapping/trimmed_icp.hpp"
+#include "tumble/common/parameters.hpp"
+#include "tumble/common/status.hpp"
+#include "tumble/mapping/lidar.hpp"
+#include "tumble/mapping/lidar_inertial_odometry.hpp"
+#include "tumble/mapping/voxel_map.hpp"
+
+namespace tumble::baselines {
+
+/// The published mapping chain behind a rate method (Deschenes et al., ICRA 2024, with the constants of the authors'
+/// launch files): Madgwick's attitude, accelerometer odometry whose velocity the registration feeds back, deskewing to
+/// the start of the sweep (of one that was cast at an instant: to that), time weighting, trimmed point-to-plane
+/// registration of voxelised points, a map that grows where it is empty. The chain's own errors are parameters, as
+/// launched.
+class PublishedChain {
+ public:
+  struct Params {
+    Eigen::Isometry3d T_IL = Eigen::Isometry3d::Identity();  ///< lidar in IMU axes
+    Eigen::AlignedBox3d own_body_L;  ///< returns inside are the robot's own; an empty box keeps all
+    double skew_sigma_m_s = 0.25;
+    TrimmedIcp::Params icp;
+    bool late_velocity = true, voxel_averages_time = true, abort_ends_mapping = false;
+    double madgwick_gain_rad_s = 0.01;
+    int stamp_step_ns = 50000;
+    double range_min_m = 0.2, range_max_m = 100.0;
+    double sweep_voxel_m = 0.15;
+    double map_spacing_m = 0.05;
+    double range_sigma_m = 0.02, range_sigma_share = 0.0015;
+
+    template <class Self, class Visitor>
+    static void fields(Self& p, Visitor& visit) {
+      visit(p.skew_sigma_m_s,
+            {"skew_sigma_m_s", "m/s", 0.0, 100.0,
+             "growth of a point's uncertainty over the sweep (time weighting); 0: none", Rank::first});
+      visit(p.late_velocity, on_off("late_velocity",
+                                    "1: velocity fed back is the mean since the last sweep taken for the present one, "
+                                    "half a sweep late, as launched",
+                                    Rank::first));
+      visit(p.voxel_averages_time, on_off("voxel_averages_time",
+                                          "1: points of a voxel share their mean time, also across the seam of the "
+                                          "sweep, as launched; 0: mean variance",
+                                          Rank::first));
+      visit(p.abort_ends_mapping, on_off("abort_ends_mapping",
+                                         "1: a registration that aborts ends the mapper, as launched; 0: odometry goes "
+                                         "on alone for that sweep",
+                                         Rank::first));
+      visit.group("", p.icp);
+      visit(p.own_body_L.min(), {"own_body_min_m", "m", -kUnbounded, kUnbounded,
+                                 "least corner of the box that holds the robot's own returns, lidar axes"});
+      visit(p.own_body_L.max(), {"own_body_max_m", "m", -kUnbounded, kUnbounded, "and its largest corner"});
+      visit(p.madgwick_gain_rad_s, {"madgwick_gain_rad_s", "rad/s", 0.0, 10.0, "of the attitude's filter"});
+      visit(p.stamp_step_ns,
+            {"stamp_step_ns", "ns", 1, 1000000, "a point's time is rounded down to this before its pose is looked up"});
+      visit(p.range_min_m, {"range_min_m", "m", 0.0, 10.0, "nearer returns are dropped"});
+      visit(p.range_max_m, {"range_max_m", "m", 0.0, 1e4, "farther returns are dropped"});
+      visit(p.sweep_voxel_m, {"sweep_voxel_m", "m", 0.01, 10.0, "one mean point per voxel of a sweep is registered"});
+      visit(p.map_spacing_m,
+            {"map_spacing_m", "m", 0.0, 10.0, "a point enters the map where the old map has none within this"});
+      visit(p.range_sigma_m, {"range_sigma_m", "m", 1e-6, 10.0, "least deviation of a range"});
+      visit(p.range_sigma_share, {"range_sigma_share", "1", 0.0, 1.0, "and the same as a share of the range"});
+    }
+  };
+  using SweepReport = LidarInertialOdometry::SweepReport;
+
+  /// One sweep of the lidar, in its axes; offsets count from `start_ns`.
+  struct Sweep {
+    TimeNs start_ns = 0, end_ns = 0;
+    std::span<const LidarPoint> points;
+  };
+
+  /// Those of a whole recording: `rates`, one for each of the samples, take the place of the gyro. `samples` must
+  /// outlive it.
+  PublishedChain(const Params& params, std::span<const ImuSample> samples, std::span<const RateState> rates);
+
+  /// Whether the samples reach over the end of a sweep.
+  bool covers(const Sweep& sweep) const;
+  /// Places a sweep that is covered, later than any before. Trouble: `out_of_range` of an offset beyond its end, when
+  /// nothing was done; `empty`, `degenerate` (points all of one time), `too_few` (none in range), when the odometry
+  /// goes on alone.
+  Status add(const Sweep& sweep, SweepReport& report);
+  /// With normals that look towards where each point was seen from.
+  std::vector<MapPoint> map() const;
+
+ private:
+  bool registers(const Sweep& sweep, TimeNs at_ns, std::span<const TrimmedIcp::Point> points, SweepReport& report);
+  void extend(std::span<const TrimmedIcp::Point> points, const Eigen::Isometry3d& T_WL, SweepReport& report);
+  void tell_poses(const Sweep& sweep, SweepReport& report);
+  void feed_back(TimeNs at_ns);
+
+  Params params_;
+  std::span<const ImuSample> samples_;
+  PublishedImuOdometry odometry_;
+  TrimmedIcp icp_;
+  VoxelMap map_{{0.5, 0.0}};
+  std::vector<Eigen::Vector3f> seen_from_;
+  Eigen::Isometry3d T_map_odom_ =
+      Eigen::Isometry3d::Identity();  ///< what lies between the map's frame and the odometry's
+  bool dead_ = false;
+  std::optional<TimeNs> registered_ns_;  ///< when the last sweep was registered, and where
+  Eigen::Vector3d registered_m_ = Eigen::Vector3d::Zero();
+};
+
+}  // namespace tumble::baselines

@@ -1,0 +1,108 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "scenarios/methods/slam_conclusion.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "scenarios/methods/sweep_log.hpp"
+
+namespace tumble::scenarios {
+
+namespace {
+
+constexpr double kRests_m = 0.01, kRests_rad = 0.01;  // from one end of a sweep to the other
+
+/// How far sweeps moved from where the IMU put them, in standard deviations: its median and what a tenth exceeds.
+void report_innovations(Estimate& estimate) {
+  std::vector<double> all;
+  for (const auto& sweep : estimate.sweeps) {
+    if (sweep.innovation > 0.0) all.push_back(sweep.innovation);
+  }
+  if (all.empty()) return;
+  std::sort(all.begin(), all.end());
+  estimate.health["innovation_median"] = all[all.size() / 2];
+  estimate.health["innovation_90"] = all[all.size() * 9 / 10];
+}
+
+/// A sweep in which the rig stands: a lidar draws rings then, that hold it no worse for being degenerate.
+bool rests(const SweepReport& sweep) {
+  if (sweep.trajectory.size() < 2) return false;
+  const PoseState &first = sweep.trajectory.front(), &last = sweep.trajectory.back();
+  return (last.p_WA_m - first.p_WA_m).norm() < kRests_m && first.q_WA.angularDistance(last.q_WA) < kRests_rad;
+}
+
+/// Share of the sweeps in which the rig moves whose surfaces tell its motion in all directions.
+double well_constrained_share(std::span<const SweepReport> sweeps) {
+  std::size_t constrained = 0, moving = 0;
+  for (const SweepReport& sweep : sweeps) {
+    if (rests(sweep)) continue;
+    ++moving;
+    constrained += sweep.verdict == SweepVerdict::registered;
+  }
+  return moving > 0 ? static_cast<double>(constrained) / static_cast<double>(moving) : 1.0;
+}
+
+/// How sure the chain is of where it ended; a world that does not hold it shows here.
+void report_end(const Localisation& localisation, Estimate& estimate) {
+  const Eigen::Matrix<double, 6, 6>& P = estimate.sweeps.back().pose.covariance;
+  estimate.health["end_sigma_m"] = std::sqrt(P.topLeftCorner<3, 3>().trace());
+  estimate.health["end_sigma_rad"] = std::sqrt(P.bottomRightCorner<3, 3>().trace());
+  estimate.health["well_constrained_share"] = well_constrained_share(estimate.sweeps);
+  estimate.health["sigma_largest_m"] = localisation.largest_sigma_m();
+  estimate.health["innovation_second"] = localisation.second_innovation();
+}
+
+void report_scale(const SweepScale& scale, Estimate& estimate) {
+  estimate.health["lidar_scale_changes"] = static_cast<double>(scale.changes);
+  if (!std::isfinite(scale.sigma)) return;
+  estimate.health["lidar_scale"] = scale.scale;
+  estimate.health["lidar_scale_sigma"] = scale.sigma;
+  if (scale.is_off()) add_doubt({Doubt::About::lidar_scale}, estimate);
+}
+
+/// Whether a run knows where on its map it is: it was never lost, its calibration stayed where it was believed to be,
+/// and its ranges are those of the motion; others make a map of another size, however well its sweeps agree.
+bool is_localised(const CalibrationVerdict& calibration, const Localisation& localisation, const SweepScale* scale) {
+  if (!calibration.converged && calibration.moved > GivenCalibration::kBelieved) return false;
+  return localisation.verdict().ok() && !(scale && scale->is_off());
+}
+
+Status any_registered(std::span<const SweepReport> sweeps) {
+  const bool any = std::any_of(sweeps.begin(), sweeps.end(),
+                               [](const SweepReport& sweep) { return sweep.verdict != SweepVerdict::rejected; });
+  return any ? Status{} : Status{Trouble::too_few, "lidar.sweeps_registered", 0.0, 1.0};
+}
+
+}  // namespace
+
+void apply_smoothed(std::vector<PoseState> smoothed, SweepReport& sweep) {
+  if (smoothed.empty()) return;
+  sweep.trajectory = std::move(smoothed);
+  sweep.pose = sweep.trajectory.back();
+}
+
+bool conclude(const LidarInertialOdometry& odometry, const CalibrationVerdict& calibration,
+              const Localisation& localisation, const SweepScale* scale, Estimate& estimate) {
+  for (const SweepReport& sweep : estimate.sweeps) append_poses(sweep.trajectory, estimate);
+  report_innovations(estimate);
+  bool localised = false;
+  if (!estimate.sweeps.empty()) {
+    report_end(localisation, estimate);
+    localised = is_localised(calibration, localisation, scale);
+    localised ? tell_undoubted(Doubt::About::place, estimate) : add_doubt({Doubt::About::place, 0.0}, estimate);
+  }
+  if (scale) report_scale(*scale, estimate);
+  estimate.map = odometry.map();
+  estimate.status = any_registered(estimate.sweeps);
+  return localised && estimate.status.ok();
+}
+
+void conclude_sweeps(const LidarInertialOdometry& odometry, const GivenCalibration& given, const SweepScale& scale,
+                     const Localisation& localisation, Estimate& estimate) {
+  const CalibrationVerdict calibration{given.moved(odometry.calibration()), false};
+  estimate.health["lidar_calibration_mahalanobis"] = calibration.moved;
+  conclude(odometry, calibration, localisation, &scale, estimate);
+}
+
+}  // namespace tumble::scenarios

@@ -1,0 +1,111 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <fastcdr/Cdr.h>
+#include <fastcdr/FastBuffer.h>
+
+#include <algorithm>
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <string>
+#include <utility>
+
+#include "scenarios/recordings/bags/ros1_archives.hpp"
+
+/// ROS 2's CDR of messages, by Fast-CDR. Private to scenarios/recordings/bags.
+namespace tumble::scenarios::ros {
+
+/// So many bytes at most, padding included.
+class CdrBound {
+ public:
+  void operator()(std::uint8_t) { bytes += 1; }
+  void operator()(std::uint32_t) { bytes += 4 + kPadding; }
+  void operator()(std::uint64_t) { bytes += 8 + kPadding; }
+  void operator()(float) { bytes += 4 + kPadding; }
+  void operator()(const std::string& text) { bytes += 4 + kPadding + text.size() + 1; }
+  template <std::size_t kCount>
+  void operator()(const std::array<double, kCount>&) {
+    bytes += 8 * kCount + kPadding;
+  }
+  void ros1_only(std::uint32_t) {}
+  std::size_t count(std::size_t entries, std::size_t) {
+    bytes += 4 + kPadding;
+    return entries;
+  }
+  void raw(const std::uint8_t*, std::size_t size) { bytes += size; }
+  std::size_t bytes = 4;  ///< the encapsulation
+
+ private:
+  static constexpr std::size_t kPadding = 7;
+};
+
+/// Into bytes that are zero before: the library leaves what it pads as it finds it.
+class CdrWriter {
+ public:
+  explicit CdrWriter(std::size_t bound)
+      : bytes_(bound),
+        buffer_(reinterpret_cast<char*>(bytes_.data()), bytes_.size()),
+        cdr_(buffer_, eprosima::fastcdr::Cdr::LITTLE_ENDIANNESS, eprosima::fastcdr::Cdr::DDS_CDR) {
+    cdr_.serialize_encapsulation();
+  }
+  void operator()(std::uint8_t number) { cdr_ << number; }
+  void operator()(std::uint32_t number) { cdr_ << number; }
+  void operator()(std::uint64_t number) { cdr_ << number; }
+  void operator()(float number) { cdr_ << number; }
+  void operator()(const std::string& text) { cdr_ << text; }
+  template <std::size_t kCount>
+  void operator()(const std::array<double, kCount>& numbers) {
+    cdr_.serializeArray(numbers.data(), kCount);
+  }
+  void ros1_only(std::uint32_t) {}
+  std::size_t count(std::size_t entries, std::size_t) {
+    cdr_ << static_cast<std::uint32_t>(entries);
+    return entries;
+  }
+  void raw(const std::uint8_t* first, std::size_t size) { cdr_.serializeArray(first, size); }
+  Bytes bytes() {
+    bytes_.resize(cdr_.getSerializedDataLength());
+    return std::move(bytes_);
+  }
+
+ private:
+  Bytes bytes_;
+  eprosima::fastcdr::FastBuffer buffer_;
+  eprosima::fastcdr::Cdr cdr_;
+};
+
+class CdrReader {
+ public:
+  explicit CdrReader(Bytes& bytes)
+      : size_(bytes.size()),
+        buffer_(reinterpret_cast<char*>(bytes.data()), bytes.size()),
+        cdr_(buffer_, eprosima::fastcdr::Cdr::DEFAULT_ENDIAN, eprosima::fastcdr::Cdr::DDS_CDR) {
+    if (size_ < 4) throw BadMessage("has " + std::to_string(size_) + " bytes, needs 4 at least");
+    cdr_.read_encapsulation();
+  }
+  void operator()(std::uint8_t& number) { cdr_ >> number; }
+  void operator()(std::uint32_t& number) { cdr_ >> number; }
+  void operator()(std::uint64_t& number) { cdr_ >> number; }
+  void operator()(float& number) { cdr_ >> number; }
+  void operator()(std::string& text) { cdr_ >> text; }
+  template <std::size_t kCount>
+  void operator()(std::array<double, kCount>& numbers) {
+    cdr_.deserializeArray(numbers.data(), kCount);
+  }
+  void ros1_only(std::uint32_t&) {}
+  std::size_t count(std::size_t, std::size_t least_bytes) {
+    std::uint32_t entries = 0;
+    cdr_ >> entries;
+    require_left(size_ - std::min(size_, cdr_.getSerializedDataLength()), entries, least_bytes);
+    return entries;
+  }
+  void raw(std::uint8_t* out, std::size_t size) { cdr_.deserializeArray(out, size); }
+
+ private:
+  std::size_t size_;
+  eprosima::fastcdr::FastBuffer buffer_;
+  eprosima::fastcdr::Cdr cdr_;
+};
+
+}  // namespace tumble::scenarios::ros
