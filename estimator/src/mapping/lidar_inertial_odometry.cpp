@@ -30,8 +30,7 @@ LidarInertialOdometry::Impl::Impl(const Params& given)
       track(given),
       window(given.expert.window_sweeps),
       map(given),
-      points(given),
-      aligner(given) {
+      scratch(given) {
   border.belief.mean.calibration.T_IL = given.T_IL;
 }
 
