@@ -61,7 +61,7 @@ bool is_small(const Vector& step, double span_s, const Registration::Params& par
   const bool angles = u::segment(step, u::attitude).norm() < below.step_rad &&
                       u::segment(step, u::deficit).cwiseAbs().maxCoeff() * span_s < below.step_rad &&
                       u::segment(step, u::mounting_rotation).norm() < below.step_rad;
-  return lengths && angles && u::segment(step, u::clock).cwiseAbs().value() < 1e-5;
+  return lengths && angles && u::segment(step, u::clock).cwiseAbs().value() < below.step_s;
 }
 
 }  // namespace
