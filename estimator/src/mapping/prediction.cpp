@@ -7,6 +7,7 @@
 #include <memory>
 
 #include "../common/dense.hpp"
+#include "../common/symmetric.hpp"
 #include "inertial_prior.hpp"
 #include "tumble/common/so3.hpp"
 #include "unknowns.hpp"
