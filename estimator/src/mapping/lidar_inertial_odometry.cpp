@@ -26,7 +26,7 @@ Status check(const ImuSample& sample, const RateState& rate) {
 }  // namespace
 
 LidarInertialOdometry::Impl::Impl(const Params& given)
-    : params((mapping::check_params(given), given)),
+    : params((mapping::require_params(given), given)),
       track(given),
       window(given.expert.window_sweeps),
       map(given),

@@ -16,7 +16,7 @@ namespace tumble {
 namespace mapping {
 
 /// Throws InvalidParams.
-void check_params(const LidarInertialOdometry::Params& params);
+void require_params(const LidarInertialOdometry::Params& params);
 
 /// A sweep's unknowns at its start, as predicted and what stands, and the motion by the latter.
 struct UpdatedSweep {

@@ -44,12 +44,9 @@ void OdometryPass::members(Self& s, Visitor& visit) {
   odometry::visit_taught(rate, visit);
   visit.scratch(s.rates_);
   if constexpr (!std::is_const_v<Self>) {
+    if (visit.going() && rate.rate.model.calibration) visit.refuse(check_calibration(*rate.rate.model.calibration));
     if (!visit.going()) return;
-    try {
-      s.begin_rates(rate);
-    } catch (const InvalidParams&) {
-      visit.refuse({Trouble::out_of_range, "calibration", 0.0, 0.0});
-    }
+    s.begin_rates(rate);
   }
   visit("pass.rates", s.rate_state_);
   visit("pass.mapper", s.mapper_);

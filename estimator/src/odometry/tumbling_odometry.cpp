@@ -206,12 +206,9 @@ void TumblingOdometry::begin_anew() {
 
 void TumblingOdometry::begin_rates() {
   RegimeStream::Params params = rate_params(params_);
-  params.rate.model.calibration = rig();
-  try {
-    pass_.begin_rates(params);
-  } catch (const InvalidParams&) {  // what was learnt is beyond what can be: from what was given
-    pass_.begin_rates(rate_params(params_));
-  }
+  // where what was learnt is beyond what can be: from what was given
+  if (const RigCalibration learnt = rig(); check_calibration(learnt).ok()) params.rate.model.calibration = learnt;
+  pass_.begin_rates(params);
 }
 
 }  // namespace tumble

@@ -92,4 +92,7 @@ struct OdometryParams {
   }
 };
 
+/// `out_of_range` with the first number that LidarInertialOdometry would refuse: that of a Field, or of what is none.
+Status check_odometry_params(const OdometryParams& params);
+
 }  // namespace tumble
