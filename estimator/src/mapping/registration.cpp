@@ -153,7 +153,7 @@ Status Registration::iterate(const Problem& problem, Descent& at, SweepTrajector
                       problem.points, moved_);
     at.points = moved_;
   }
-  place(trajectory, at.points, problem.map);
+  match_points(trajectory, at.points, problem.map);
   at.kernel_m = kernel_width_m();
   accumulate(at.points, trajectory, at.now.calibration, problem.unknowns, at.kernel_m, at.sum);
   result.matches = at.sum.matches;

@@ -54,8 +54,8 @@ void OdometryPass::members(Self& s, Visitor& visit) {
   visit("pass.localisation", s.localisation_);
   visit.scratch(s.rate_sigma_max_rad_s_);                    // of the parameters
   visit("pass.time_offset_s", s.time_offset_s_, -1.0, 1.0);  // as the mapper's parameter
-  visit("pass.unsettled", s.unsettled_);
-  visit("pass.settled", s.settled_);
+  visit("pass.pending", s.pending_);
+  visit("pass.smoothed", s.smoothed_);
   visit("pass.told_ns", s.told_ns_);
   visit("pass.refused_samples", s.refused_samples_);
 }

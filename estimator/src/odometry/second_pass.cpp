@@ -153,7 +153,7 @@ void SecondPass::run(OdometryPass& first, std::size_t sweeps) {
     }
     if (!pass_->covers(sweep.end_ns)) {
       tail = true;
-      pass_->settle_until(std::max(first.settled()->time_ns, pass_->needed_ns(sweep.end_ns)));
+      pass_->flush_until(std::max(first.smoothed_rate()->time_ns, pass_->needed_ns(sweep.end_ns)));
     }
     if (!pass_->covers(sweep.end_ns)) {  // the clocks differ by more than the first pass knew: with the next one
       --next_sweep_;
@@ -168,7 +168,7 @@ void SecondPass::run(OdometryPass& first, std::size_t sweeps) {
 }
 
 void SecondPass::take_over(OdometryPass& first) {
-  pass_->settle_until(first.settled()->time_ns);
+  pass_->flush_until(first.smoothed_rate()->time_ns);
   SweepVerdict& newest = sweeps_.back().verdict;
   const bool first_lost = newest == SweepVerdict::rejected;
   if (rejected_ <= rejected_by_first_ + sweeps_.size() / kMoreShare && (!lost_ || first_lost)) {

@@ -59,7 +59,7 @@ struct TumblingParams {
   /// refused.
   Eigen::AlignedBox3d own_body_L;
   double lag_s =
-      0.2;  ///< how old a sample is when its rate is settled; a sweep waits no longer, two samples at least
+      0.2;  ///< how old a sample is when its rate is given out; a sweep waits no longer, two samples at least
 
   using Expert = TumblingExpertParams;
   Expert expert;  ///< what few need
