@@ -202,6 +202,19 @@ TEST(SecondPass, AGapOfTheImuEndsIt) {
   EXPECT_FALSE(odometry.passed_again());
 }
 
+TEST(SecondPass, ALagBeyondTheRatesWindowIsThatWindow) {
+  ThrownBody body;
+  body.imu_hz = 2000.0;
+  TumblingOdometry::Params params = measured_badly(body, 0.9);
+  params.expert.rate.rate.step_s = 0.05;
+  params.expert.again.lag_s = 3.0;  // 6000 samples
+  TumblingOdometry odometry(params);
+  Outcome run;
+  live(body, 0, body.imu().size(), odometry, run);
+  odometry.finish();
+  EXPECT_TRUE(odometry.passed_again());
+}
+
 TEST(SecondPass, RefusesParametersOutOfTheirBounds) {
   TumblingOdometry::Params stated;
   stated.lever_arm_I_m.setZero();

@@ -122,7 +122,7 @@ TEST(StateMembers, AllOfATumblingOdometry) {
   expect_whole(CarriedStream::Reading{}, "carried.readings");
   expect_whole(CarriedStream::Knot{}, "carried.window");
   expect_whole(CarriedLive::State{}, "live");
-  expect_whole(RateState{}, "settled");
+  expect_whole(RateState{}, "smoothed");
   expect_whole(RateKnot{}, "left");
   expect_whole(RailPlane{}, "planes");
   expect_whole(RigCalibration{}, "calibration");

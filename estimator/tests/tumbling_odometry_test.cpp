@@ -43,7 +43,7 @@ void feed_as_they_end(const std::vector<ImuSample>& imu, const std::vector<Throw
       run.sweeps.push_back(std::move(*sweep));
       run.came_ns.push_back(imu[k].time_ns);
     }
-    const std::optional<RateState>& rate = odometry.settled_rate();
+    const std::optional<RateState>& rate = odometry.smoothed_rate();
     if (rate && (run.rates.empty() || rate->time_ns > run.rates.back().time_ns)) run.rates.push_back(*rate);
   }
 }
@@ -226,8 +226,8 @@ TEST(TumblingOdometry, GoesOnAfterItWasFinished) {
   feed_as_they_end(imu, sweeps, 0, 200, odometry, heard);
   odometry.finish();
   odometry.finish();
-  ASSERT_TRUE(odometry.settled_rate());
-  EXPECT_EQ(odometry.settled_rate()->time_ns, imu[199].time_ns);
+  ASSERT_TRUE(odometry.smoothed_rate());
+  EXPECT_EQ(odometry.smoothed_rate()->time_ns, imu[199].time_ns);
   PoseState pose;
   EXPECT_TRUE(odometry.newest(pose).ok());
   EXPECT_EQ(odometry.add_imu(imu[199]).trouble, Trouble::time_order);
@@ -363,7 +363,7 @@ TEST(TumblingOdometry, NamesAnAxisThatFrozeAndNoLongerStatesToKnowIt) {
     if (k < from) {
       EXPECT_TRUE(odometry.doubt().ok()) << odometry.doubt().message();
     }
-    if (const auto& rate = odometry.settled_rate())
+    if (const auto& rate = odometry.smoothed_rate())
       widest_rad_s = std::max(widest_rad_s, std::sqrt(rate->covariance_rad2_s2(0, 0)));
   }
   const Status doubt = odometry.doubt();

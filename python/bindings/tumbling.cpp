@@ -131,11 +131,11 @@ void bind_talk(Class& bound) {
           },
           "Rate of the newest sample, provisional where the gyro clips; no row before the first.")
       .def(
-          "settled_rate",
+          "smoothed_rate",
           [](TumblingDoor& self) {
-            return rates_of(self.run([](TumblingOdometry& odometry) { return odometry.settled_rate(); }));
+            return rates_of(self.run([](TumblingOdometry& odometry) { return odometry.smoothed_rate(); }));
           },
-          "Latest settled rate, lag_s old; no row while the lag fills.")
+          "Latest rate of the fixed-lag smoother, lag_s old; no row while the lag fills.")
       .def(
           "rig", [](TumblingDoor& self) { return self.run([](TumblingOdometry& odometry) { return odometry.rig(); }); },
           "What is known of the IMU on the body: lever arm, biases, elements. For the next run's `calibration`.")
@@ -213,7 +213,7 @@ void bind_tumbling(nb::module_& m) {
           nb::arg("options"), takes_options())
       .def("add_imu", &add_tumbling_imu, nb::arg("time_ns"), nb::arg("gyro"), nb::arg("accel"),
            nb::arg("clip_flags") = nb::none(),
-           "Takes one sample or many, in order of time. Sweeps whose rates are settled with them are registered now.")
+           "Takes one sample or many, in order of time. Sweeps whose rates are known with them are registered now.")
       .def("add_sweep", &add_tumbling_sweep, nb::arg("start_ns"), nb::arg("end_ns"), nb::arg("position"),
            nb::arg("offset_ns"), nb::arg("ring") = nb::none(), nb::arg("intensity") = nb::none(),
            "Takes a sweep of points fired in [start_ns, end_ns], at any time after its last point: position (N, 3), m, "

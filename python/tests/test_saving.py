@@ -43,7 +43,7 @@ class Door(Stream):
         if isinstance(door, tumble.RollingOdometry):
             door.finish()
             return rows_of(door.take())
-        return [*rows_of(door.newest_rate()), *rows_of(door.settled_rate()), door.rig().covariance.copy()]
+        return [*rows_of(door.newest_rate()), *rows_of(door.smoothed_rate()), door.rig().covariance.copy()]
 
 
 STREAMS = {

@@ -57,22 +57,22 @@ bool descend(const RateSmoother::Params& params, const RateModel& model, std::sp
         solution.iteration.apply(model, params.expert.descent.step_max_rad_s, estimates, solution.rig);
     ++health.iterations;
 
-    const bool settled = widen == 1.0 && (health.last_step_rad_s < params.expert.descent.tolerance_rad_s ||
-                                          solution.iteration.decrement() < kStepDeviations * kStepDeviations);
+    const bool converged = widen == 1.0 && (health.last_step_rad_s < params.expert.descent.tolerance_rad_s ||
+                                            solution.iteration.decrement() < kStepDeviations * kStepDeviations);
     if (soft > 0) {
       solution.iteration.for_each_conditional([&](std::size_t k, const arrow::Conditional& conditional) {
         model.update_bounds(observations[k], solution.rig, conditional, solution.rig_covariance,
                             params.expert.descent.bound_damping, estimates[k]);
       });
     }
-    if (soft > 0 || settled ||
+    if (soft > 0 || converged ||
         health.iterations + params.expert.descent.bound_iterations >= params.expert.descent.iterations_max) {
       for (std::size_t k = 0; k < estimates.size() && soft == 0; ++k) {
         if (estimates[k].flight_weight >= 0.5) continue;
         model.seek_flight(observations[k], solution.rig, estimates[k]);
         model.start_bounds(observations[k], solution.rig, estimates[k]);
       }
-      health.converged = settled || health.converged;
+      health.converged = converged || health.converged;
       if (soft++ == params.expert.descent.bound_iterations) break;
     }
     widen = std::max(1.0, 0.5 * widen);

@@ -33,9 +33,8 @@ void check(const RateModelParams& p) {
   for (const double value : p.errors.vector()) require_within("sensor errors", value, -0.2, 0.2);
   require_within("auxiliary_imus", p.auxiliary_imus.size(), 0, kAuxiliaryImusMax);
   for (const AuxiliaryImu& auxiliary_imu : p.auxiliary_imus) check(auxiliary_imu);
-  const RigConstants& nominal = p.calibration ? p.calibration->constants : p.nominal;
-  for (const double value : nominal.lever_arm_m) require_within("lever_arm_m", value, -10.0, 10.0);
-  for (const double value : nominal.vector()) require_within("rig constants", value, -10.0, 10.0);
+  const Status rig = check_rig(p.calibration ? p.calibration->constants : p.nominal);
+  if (!rig.ok()) require_within(rig.field, rig.value, -RigConstants::kMost, RigConstants::kMost);
 }
 
 RigConstants::Matrix covariance_of(const RateModelParams& p) {

@@ -71,7 +71,7 @@ RateStream::RateStream(const Params& params)
       device_(params.model.expert.error_sizes, params.expert.uncalibrated) {
   require_fields(params);
   if (params.learnt_errors) require_known(*params.learnt_errors);
-  require_within("lag_s", params.lag_s, 2.0 * params.period_s, std::min(10.0, 4096.0 * params.period_s));
+  require_within("lag_s", params.lag_s, 2.0 * params.period_s, params.lag_max_s());
   capacity_ = static_cast<std::size_t>(std::lround(params.lag_s / params.period_s)) + 1;
   every_ = std::clamp(static_cast<std::size_t>(params.step_s / params.period_s + 1e-6), std::size_t{1}, capacity_);
 }

@@ -1,9 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "tumble/angular_velocity/rig_constants.hpp"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <numbers>
+
+#include "../common/dense.hpp"
 
 namespace tumble {
 
@@ -66,6 +69,24 @@ void RigConstants::add(const Vector& step) {
   accel_bias_m_s2 += step.segment<3>(6);
   inertia += step.segment<5>(9);
   elements += step.segment<6>(kElements);
+}
+
+Status check_rig(const RigConstants& rig) {
+  constexpr double kMost = RigConstants::kMost;
+  const auto beyond = [](double value) { return !(std::abs(value) <= kMost); };
+  const RigConstants::Vector all = rig.vector();
+  const auto first = std::find_if(all.begin(), all.end(), beyond);
+  if (first == all.end()) return {};
+  const char* const name = first - all.begin() < rig.lever_arm_m.size() ? "lever_arm_m" : "rig constants";
+  return {Trouble::out_of_range, name, *first, std::copysign(kMost, *first)};
+}
+
+Status check_calibration(const RigCalibration& calibration) {
+  if (const Status status = check_rig(calibration.constants); !status.ok()) return status;
+  const RigConstants::Matrix& P = calibration.covariance;
+  const RigConstants::Matrix symmetric = 0.5 * (P + P.transpose());
+  if (symmetric.allFinite() && dense::Cholesky(symmetric).ok()) return {};
+  return {Trouble::degenerate, "calibration covariance", symmetric.trace(), 0.0};
 }
 
 }  // namespace tumble

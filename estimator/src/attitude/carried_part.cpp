@@ -12,8 +12,8 @@ namespace tumble::carried {
 
 namespace {
 
-constexpr double kSettled = 0.2;  // change of the cost, which are odds of 1.1
-constexpr int kSettleMax = 30;    // iterations
+constexpr double kCostChange = 0.2;  // change of the cost, which are odds of 1.1
+constexpr int kStepsMax = 30;        // iterations
 
 Message message(const Node& about, const System::Block& block) {
   return {about, block.diagonal, block.gradient};
@@ -90,12 +90,12 @@ bool Problem::tell(std::span<Part> parts) const {
   return true;
 }
 
-double Problem::settle() {
+double Problem::converge() {
   constexpr double kNone = std::numeric_limits<double>::infinity();
   double before = kNone;
-  for (int k = 0; k < kSettleMax; ++k) {
+  for (int k = 0; k < kStepsMax; ++k) {
     const double cost = linearise();
-    if (std::abs(cost - before) < kSettled) return cost;
+    if (std::abs(cost - before) < kCostChange) return cost;
     before = cost;
     double largest = 0.0;
     if (!step(largest)) return kNone;

@@ -135,7 +135,7 @@ class Problem {
   /// Fills what the rest says of each part's ends: one sweep from either side. False where it loses its definiteness.
   bool tell(std::span<Part> parts) const;
   /// Gauss-Newton of a part. The cost at the solution, infinite where it did not converge.
-  double settle();
+  double converge();
 
   const Eigen::Matrix3d& rows() const { return rows_; }
   /// Rate and bias of a node: what the gyro would read.

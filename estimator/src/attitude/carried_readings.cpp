@@ -53,7 +53,8 @@ TimeNs nanoseconds(double s) {
   return static_cast<TimeNs>(std::llround(1e9 * s));
 }
 
-double median_period_s(std::span<const ImuSample> samples, double otherwise_s) {
+/// Of fewer than two samples `otherwise_s`.
+double median_step_or(std::span<const ImuSample> samples, double otherwise_s) {
   if (samples.size() < 2) return otherwise_s;
   std::vector<double> periods(samples.size() - 1);
   for (std::size_t k = 1; k < samples.size(); ++k) periods[k - 1] = since_s(samples, k - 1, k);
@@ -254,7 +255,7 @@ void add_force(const ImuSample& sample, const ClipSigns& signs, double t, NodeRe
 Collected collect(const CarriedSmoother::Params& params, std::span<const ImuSample> samples,
                   const ClippedElements& clipped) {
   Collected out;
-  const double period_s = median_period_s(samples, params.expert.node_s);
+  const double period_s = median_step_or(samples, params.expert.node_s);
   const TimeNs origin_ns = samples.front().time_ns - nanoseconds(0.5 * period_s);
   out.samples = windows_of(samples, origin_ns, period_s);
   out.nodes.resize(static_cast<std::size_t>(std::llround(out.samples.centre_s.back() / params.expert.node_s)) + 1);

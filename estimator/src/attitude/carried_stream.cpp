@@ -306,7 +306,7 @@ void CarriedStream::add_prior(const State& state, System::Block& block, System::
 
 // carried.md (C14), as rate_stream.md (R90); the hand's power is that of carried.md (C32).
 void CarriedStream::marginalise_oldest(State& state) const {
-  settle_oldest(state);
+  keep_rates_of_oldest(state);
   const Knot& oldest = state.window[0];
   const Node& next = state.window[1].node;
   System::Block block, after;

@@ -29,7 +29,7 @@ std::uint8_t clipped_axes(const ClipSigns& signs) {
 // Of reading `at`. The covariance of a node stands until the next step of the window. `factorised`: as publish().
 RateState CarriedStream::give(std::size_t at, bool due, bool factorised, State& state) const {
   const Reading& reading = state.readings[at];
-  if (reading.settled) return *reading.settled;
+  if (reading.smoothed) return *reading.smoothed;
   const bool known = state.given_node >= 0 && reading.node - state.given_node < carried::kFreeNodes;
   if (reading.node == state.given_node || (known && !due))
     return to_rate(reading, state, state.given_covariance_rad2_s2);
@@ -46,13 +46,13 @@ std::size_t CarriedStream::first_not_given(const State& state) const {
 }
 
 // Samples that come sparser than is said are given out after their node has left: their rates stand as they are now.
-void CarriedStream::settle_oldest(State& state) const {
+void CarriedStream::keep_rates_of_oldest(State& state) const {
   const std::size_t first = first_not_given(state);
   for (std::size_t k = first; k < state.readings.size() && state.readings[k].node <= state.first_node; ++k) {
-    if (state.readings[k].settled) continue;
+    if (state.readings[k].smoothed) continue;
     RateState rate;
     publish(k, k, false, state, {&rate, 1});
-    state.readings[k].settled = rate;
+    state.readings[k].smoothed = rate;
   }
 }
 
@@ -106,8 +106,8 @@ void CarriedStream::flush(const State& state, std::vector<RateState>& out) const
   const std::size_t left = std::min(delay_, state.readings.size());
   if (left == 0) return;
   std::size_t first = state.readings.size() - left;
-  for (; first < state.readings.size() && state.readings[first].settled; ++first) {
-    out.push_back(*state.readings[first].settled);
+  for (; first < state.readings.size() && state.readings[first].smoothed; ++first) {
+    out.push_back(*state.readings[first].smoothed);
   }
   if (first == state.readings.size()) return;
   State last = state;

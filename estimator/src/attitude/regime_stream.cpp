@@ -182,7 +182,7 @@ double RegimeStream::share_of(const RateState& rate, State& state) const {
   if (!after && !before) return 0.0;
   double out = state.near.empty() ? 1.0 : state.near.front().carried;
   if (out < params_.carried_min || !before) return out;
-  // what lies ahead, by rates that are not settled yet
+  // what lies ahead, by rates that are not given out yet
   RegimeShares shares = state.shares;
   const RigCalibration rig = rate_.calibration(state.rate);
   const bool doubted = doubts(state);

@@ -73,7 +73,7 @@ void members(Self& s, Visitor& visit) {
   visit("reading.rest", s.rest);
   visit("reading.gyro", s.gyro);
   visit("reading.accel", s.accel);
-  visit("reading.settled", s.settled);
+  visit("reading.smoothed", s.smoothed);
 }
 
 template <StateOf<CarriedStream::Knot> Self, class Visitor>

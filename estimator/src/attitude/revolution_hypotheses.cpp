@@ -122,7 +122,7 @@ std::vector<Hypothesis> hypotheses(const Problem& whole, const Segment& segment,
   const std::size_t a = segment.first - 1 - part.first, b = segment.last + 1 - part.first;
   std::vector<Hypothesis> out;
   const auto keep = [&](Problem& problem) {
-    Hypothesis found{{}, problem.settle()};
+    Hypothesis found{{}, problem.converge()};
     found.nodes.assign(problem.nodes().begin(), problem.nodes().end());
     if (!std::isfinite(found.cost)) return false;
     // the same turns as another's, come back to

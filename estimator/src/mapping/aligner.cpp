@@ -14,17 +14,21 @@ Registration::Params full_params(const LidarInertialOdometry::Params& params) {
   return out;
 }
 
+constexpr double kCoarseReach = 2.0;  // of the distance of a match: what lies there still pulls the right way
+
 /// Wider in every respect: finds the neighbourhood of the answer, not the answer.
 Registration::Params coarse_params(const LidarInertialOdometry::Params& params) {
+  const MatchingParams& matching = params.expert.matching;
+  const RegistrationStagesParams& stages = params.expert.stages;
   Registration::Params out = registration_params(params);
-  out.match_distance_m = std::min(2.0 * params.expert.matching.distance_m, 10.0);
-  out.iterations_max = std::min(params.expert.matching.iterations_max, params.expert.stages.coarse_iterations);
-  out.expert.kernel_min_m = 0.5;
-  out.expert.rematch_m = 0.2;
-  out.expert.step_m = 5e-3;
-  out.expert.step_rad = 2e-3;
-  out.matches_min = std::min<std::size_t>(params.expert.matching.least, params.expert.stages.coarse_matches_min);
-  out.expert.fitting_share_min = 0.2;
+  out.match_distance_m = std::min(kCoarseReach * matching.distance_m, Registration::Params::kMatchDistanceMax_m);
+  out.iterations_max = std::min(matching.iterations_max, stages.coarse_iterations);
+  out.matches_min = std::min(matching.least, stages.coarse_matches_min);
+  out.expert.kernel_min_m = stages.coarse_kernel_min_m;
+  out.expert.rematch_m = stages.coarse_rematch_m;
+  out.expert.step_m = stages.coarse_step_m;
+  out.expert.step_rad = stages.coarse_step_rad;
+  out.expert.fitting_share_min = stages.coarse_fitting_share_min;
   out.expert.agreeing_min = out.matches_min;  // there is no prior for it to agree with
   return out;
 }

@@ -23,7 +23,7 @@ class Aligner {
  public:
   explicit Aligner(const LidarInertialOdometry::Params& params);
 
-  /// With all points and few iterations: what has not settled by then is cheaper settled otherwise.
+  /// With all points and few iterations: what has not converged by then converges for less otherwise.
   void in_full(const Registration::Prior& prior, const Scene& scene, SweepTrajectory& trajectory,
                Registration::Result& found);
   /// With some of the points for as long as it takes, and in full from where these lead.

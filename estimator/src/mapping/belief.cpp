@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "belief.hpp"
 
+#include "../common/symmetric.hpp"
 #include "tumble/common/so3.hpp"
 #include "unknowns.hpp"
 
@@ -85,12 +86,6 @@ void at_end(const Belief& at_start, const SweepTrajectory& trajectory, const Mat
 
 [[gnu::noinline]] void sandwich(const Matrix& F, const Matrix& P, Matrix& out) {
   out.noalias() = F * P * F.transpose();
-}
-
-void make_symmetric(Matrix& P) {
-  for (int j = 0; j < P.cols(); ++j) {
-    for (int i = 0; i < j; ++i) P(i, j) = P(j, i) = 0.5 * (P(i, j) + P(j, i));
-  }
 }
 
 Eigen::Matrix<double, 6, 6> pose_by_mounting(const Eigen::Quaterniond& q_WI, const Eigen::Vector3d& p_IL_m) {

@@ -41,7 +41,4 @@ Eigen::Matrix<double, 6, 6> pose_by_mounting(const Eigen::Quaterniond& q_WI, con
 /// The matrix with what can be inverted in the place of variances of 0.
 Registration::Matrix invertible(const Registration::Matrix& covariance);
 
-/// P <- (P + P^T) / 2, against what rounding adds from product to product.
-void make_symmetric(Registration::Matrix& P);
-
 }  // namespace tumble::mapping

@@ -5,8 +5,11 @@
 #include <cmath>
 
 #include "tumble/attitude/strapdown.hpp"
+#include "unknowns.hpp"
 
 namespace tumble::mapping {
+
+namespace u = unknowns;
 
 /// mapping.md (R31), (R32), (R33), (R101).
 Eigen::Matrix<double, 9, 9> inertial_noise(const LidarInertialOdometry::Params& params,
@@ -14,8 +17,8 @@ Eigen::Matrix<double, 9, 9> inertial_noise(const LidarInertialOdometry::Params& 
                                            unsigned deficit_axes) {
   const double span = trajectory.duration_s() / InertialNoiseParams::kSpan_s;
   Eigen::Matrix<double, 9, 9> noise = Eigen::Matrix<double, 9, 9>::Zero();
-  noise.diagonal().segment<3>(0).setConstant(std::pow(params.expert.prior.sigma_m * span, 2));
-  noise.diagonal().segment<3>(3).setConstant(std::pow(params.expert.prior.sigma_rad * span, 2));
+  u::variances(noise, u::position).setConstant(std::pow(params.expert.prior.sigma_m * span, 2));
+  u::variances(noise, u::attitude).setConstant(std::pow(params.expert.prior.sigma_rad * span, 2));
 
   const TimeNs start_ns = trajectory.start_ns();
   std::size_t hint = 0;
@@ -39,17 +42,18 @@ Eigen::Matrix<double, 9, 9> inertial_noise(const LidarInertialOdometry::Params& 
     rotated_rad += dt * sample.w_WI_I_rad_s.norm();
     turned += dt * R * variance.asDiagonal() * R.transpose();
   }
-  noise.diagonal().segment<3>(6).setConstant(std::pow(params.expert.prior.sigma_m_s * span, 2) +
-                                             std::pow(params.expert.prior.force_share * pushed_m_s, 2) + gap_m2_s2);
-  noise.diagonal().segment<3>(0).array() += gap_m2;
+  u::variances(noise, u::velocity)
+      .setConstant(std::pow(params.expert.prior.sigma_m_s * span, 2) +
+                   std::pow(params.expert.prior.force_share * pushed_m_s, 2) + gap_m2_s2);
+  u::variances(noise, u::position).array() += gap_m2;
   // held still: velocity is zero, and what it would have moved by does not count
   const auto rests = [&](const MotionSample& sample) {
     return sample.at_rest || seconds(sample.from_ns - start_ns) >= trajectory.duration_s();
   };
   if (std::all_of(samples.begin(), samples.end(), rests))
     return params.expert.standstill.noise_share * params.expert.standstill.noise_share * noise;
-  noise.block<3, 3>(3, 3) += trajectory.duration_s() * turned;  // mapping.md (R34)
-  noise.diagonal().segment<3>(3).array() += std::pow(params.expert.prior.rotation_share * rotated_rad, 2);
+  u::block(noise, u::attitude) += trajectory.duration_s() * turned;  // mapping.md (R34)
+  u::variances(noise, u::attitude).array() += std::pow(params.expert.prior.rotation_share * rotated_rad, 2);
   return noise;
 }
 
@@ -86,10 +90,10 @@ Status start_at_rest(const LidarInertialOdometry::Params& params, std::span<cons
   state = MotionState{};
   state.time_ns = samples.front().from_ns;
   if (Status status = level(force, state.q_WI); !status.ok()) return status;
-  state.covariance.diagonal().segment<2>(3).setConstant(params.expert.start.level_sigma_rad *
-                                                        params.expert.start.level_sigma_rad);
-  state.covariance.diagonal().tail<3>().setConstant(params.expert.start.speed_sigma_m_s *
-                                                    params.expert.start.speed_sigma_m_s);
+  u::variances(state.covariance, u::tilt)
+      .setConstant(params.expert.start.level_sigma_rad * params.expert.start.level_sigma_rad);
+  u::variances(state.covariance, u::velocity)
+      .setConstant(params.expert.start.speed_sigma_m_s * params.expert.start.speed_sigma_m_s);
   return {};
 }
 

@@ -77,7 +77,7 @@ void InertialTrack::take(const Params& params, const ImuSample& sample, const Ra
     next.from_ns = std::max(from_ns, next.time_ns - (newest_->time_ns - newest_->from_ns));
   next.bridges_gap = after_gap && next.from_ns == from_ns;
   if (next.bridges_gap) next.rate_sigma_rad_s.setConstant(params.expert.prior.rate_sigma_max_rad_s);
-  const bool in_flight = params.expert.flight.body && !samples_.empty() && settle_force(params, next, after_gap);
+  const bool in_flight = params.expert.flight.body && !samples_.empty() && tell_flight(params, next, after_gap);
   before_newest_ = newest_;
   newest_ = rate_of(next);
   if (after_gap && !next.bridges_gap) fill_gap(params, in_flight);
@@ -116,7 +116,7 @@ bool InertialTrack::fly_through(const Params& params, const WindowRate& before, 
 
 /// Now that the rates on both sides of the newest sample are known, tells whether it belongs to a flight: before a gap
 /// by the rate that flight itself would change. flight_arc.md (A3), (A4), (A5).
-bool InertialTrack::settle_force(const Params& params, const MotionSample& next, bool after_gap) {
+bool InertialTrack::tell_flight(const Params& params, const MotionSample& next, bool after_gap) {
   MotionSample& now = samples_.back();
   if (now.in_flight) return true;
   if (now.at_rest || now.bridges_gap || !before_newest_) return false;

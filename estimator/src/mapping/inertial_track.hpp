@@ -49,7 +49,7 @@ class InertialTrack {
 
   void listen_for_rest(const Params& params, const ImuSample& sample, const RateState& rate, MotionSample& next);
   void take_back_rest(std::optional<TimeNs> rests_since_ns);
-  bool settle_force(const Params& params, const MotionSample& next, bool after_gap);
+  bool tell_flight(const Params& params, const MotionSample& next, bool after_gap);
   void fill_gap(const Params& params, bool in_flight);
   bool fly_through(const Params& params, const WindowRate& before, const WindowRate& after);
 

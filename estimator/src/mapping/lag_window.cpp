@@ -6,6 +6,7 @@
 #include <memory>
 
 #include "../common/dense.hpp"
+#include "../common/symmetric.hpp"
 #include "belief.hpp"
 
 namespace tumble::mapping {

@@ -26,12 +26,11 @@ Status check(const ImuSample& sample, const RateState& rate) {
 }  // namespace
 
 LidarInertialOdometry::Impl::Impl(const Params& given)
-    : params((mapping::check_params(given), given)),
+    : params((mapping::require_params(given), given)),
       track(given),
       window(given.expert.window_sweeps),
       map(given),
-      points(given),
-      aligner(given) {
+      scratch(given) {
   border.belief.mean.calibration.T_IL = given.T_IL;
 }
 

@@ -104,9 +104,7 @@ void LidarInertialOdometry::Impl::members(Self& s, Visitor& visit) {
   visit("window", s.window);
   visit("local map", s.map);
   visit("world", s.world);
-  visit.scratch(s.points);
-  visit.scratch(s.aligner);
-  visit.scratch(s.trajectory);
+  visit.scratch(s.scratch);
 }
 
 }  // namespace tumble

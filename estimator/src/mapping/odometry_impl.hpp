@@ -16,12 +16,23 @@ namespace tumble {
 namespace mapping {
 
 /// Throws InvalidParams.
-void check_params(const LidarInertialOdometry::Params& params);
+void require_params(const LidarInertialOdometry::Params& params);
 
-/// A sweep's unknowns at its start: as predicted, and what stands.
+/// A sweep's unknowns at its start, as predicted and what stands, and the motion by the latter.
 struct UpdatedSweep {
   const Prediction& prediction;
   const Belief& start;
+  const SweepTrajectory& trajectory;
+};
+
+/// What a sweep works in, kept for its memory alone, so that the next one does not allocate it anew. Each sweep fills
+/// it before it reads it, and hands what lies in it from step to step as arguments.
+struct SweepScratch {
+  explicit SweepScratch(const LidarInertialOdometry::Params& params) : points(params), aligner(params) {}
+
+  SweepPoints points;
+  Aligner aligner;
+  SweepTrajectory trajectory;
 };
 
 }  // namespace mapping
@@ -37,17 +48,21 @@ struct LidarInertialOdometry::Impl {
   /// Where nothing has been seen yet: the belief at the start, by the IMU at rest.
   Status level_at_first();
   bool rests(const mapping::InertialTrack& heard, const SweepTrajectory& motion, TimeNs end_ns) const;
-  void place(const mapping::Prediction& prediction, const mapping::MotionWindow& motion, SweepReport& report,
-             mapping::Placed& placed);
+  /// `trajectory` is the IMU's motion from the border on; on return that of the alignment where there is one, else one
+  /// that was tried.
+  void register_to_map(const mapping::Prediction& prediction, const mapping::MotionWindow& motion,
+                       mapping::SweepPoints& points, SweepTrajectory& trajectory, SweepReport& report,
+                       mapping::Placed& placed);
   /// What stands; of a lost sensor at rest the prediction is that of the rest from here on.
   mapping::Belief update(const mapping::MotionWindow& motion, const mapping::Placed& placed,
                          mapping::Prediction& prediction) const;
-  std::vector<mapping::InsertedPoint> insert(const mapping::Belief& start, bool rings_differ, SweepReport& report);
+  std::vector<mapping::InsertedPoint> insert(const mapping::UpdatedSweep& sweep, mapping::SweepPoints& points,
+                                             bool rings_differ, SweepReport& report);
   void carry_on(const mapping::UpdatedSweep& sweep, const mapping::Placed& placed, const mapping::MotionWindow& motion,
                 std::vector<mapping::InsertedPoint> inserted, SweepReport& report);
   void enter_window(const mapping::UpdatedSweep& sweep, const mapping::MotionWindow& motion,
                     std::vector<mapping::InsertedPoint> inserted, bool aligned);
-  void part_from_world(const mapping::Belief& start, const SweepReport& report);
+  void part_from_world(const mapping::UpdatedSweep& sweep, const SweepReport& report);
   void forget_until(TimeNs end_ns);
 
   PoseState pose_along(const SweepTrajectory& motion, double t_s, const Registration::Matrix& errors) const;
@@ -71,11 +86,7 @@ struct LidarInertialOdometry::Impl {
   mapping::LagWindow window;
   mapping::LocalMap map;
   mapping::WorldCovariance world;
-
-  // of the present sweep: memory, with no meaning between sweeps
-  mapping::SweepPoints points;
-  mapping::Aligner aligner;
-  SweepTrajectory trajectory;
+  mapping::SweepScratch scratch;
 };
 
 }  // namespace tumble

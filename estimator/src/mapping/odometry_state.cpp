@@ -57,15 +57,12 @@ void LidarInertialOdometry::save(StateWriter& out) const {
 void LidarInertialOdometry::load(StateReader& in) {
   Params params = impl_->params;
   visit_taught(params, in);
+  if (in.going()) in.refuse(check_odometry_params(params));
   if (!in.going()) return;
-  try {
-    auto fresh = std::make_unique<Impl>(params);
-    Impl::members(*fresh, in);
-    in.refuse(fresh->check_state());
-    if (in.going()) impl_ = std::move(fresh);
-  } catch (const InvalidParams&) {
-    in.refuse({Trouble::out_of_range, "T_IL, its deviations or the clock's", 0.0, 0.0});
-  }
+  auto fresh = std::make_unique<Impl>(params);
+  Impl::members(*fresh, in);
+  in.refuse(fresh->check_state());
+  if (in.going()) impl_ = std::move(fresh);
 }
 
 void LidarInertialOdometry::describe(StateLayout& out) const {

@@ -17,7 +17,8 @@ Status LidarInertialOdometry::Impl::add_sweep(TimeNs start_ns, TimeNs end_ns, st
   if (Status status = check_sweep(start_ns, end_ns, returns); !status.ok()) return status;
   if (Status status = level_at_first(); !status.ok()) return status;
 
-  // where the IMU leads from the border on; `trajectory` is this motion until what stands takes its place
+  // where the IMU leads from the border on
+  SweepTrajectory& trajectory = scratch.trajectory;
   const auto& [state, calibration, deficit] = border.belief.mean;
   if (Status status = trajectory.build(state, track.samples(), end_ns, calibration.gravity_W_m_s2); !status.ok())
     return status;
@@ -27,16 +28,17 @@ Status LidarInertialOdometry::Impl::add_sweep(TimeNs start_ns, TimeNs end_ns, st
       new Prediction(mapping::predict(params, border, motion, trajectory, known)));  // 27 KiB: not on the stack
 
   // where the lidar finds itself in the map; a sweep of which no return is of use is placed by inertia
+  mapping::SweepPoints& points = scratch.points;
   mapping::SweepPoints::Counts counts;
   const Status points_status =
       points.select(params, returns, end_ns - start_ns, calibration, seconds(start_ns - border.time_ns()), counts);
   report.points_used = counts.used;
   report.points_alone = counts.alone;
   const auto placed = std::make_unique<Placed>();
-  if (points_status.ok()) place(*prediction, motion, report, *placed);
+  if (points_status.ok()) register_to_map(*prediction, motion, points, trajectory, report, *placed);
   report.verdict = placed->verdict;
 
-  // what stands, what it adds to the map, and what the next sweep begins from
+  // what stands and its motion, what it adds to the map, and what the next sweep begins from
   const std::unique_ptr<const Belief> start(new Belief(update(motion, *placed, *prediction)));
   if (!placed->alignment) {
     const Registration::Estimate& mean = start->mean;
@@ -44,11 +46,12 @@ Status LidarInertialOdometry::Impl::add_sweep(TimeNs start_ns, TimeNs end_ns, st
                                            mean.deficit_rad_s);
     if (!status.ok()) return status;
   }
+  const UpdatedSweep sweep{*prediction, *start, trajectory};
   // where the map had nothing to say the prior draws on: points that it leaves too uncertain stay out by themselves
   std::vector<InsertedPoint> inserted;
   if (placed->verdict != SweepVerdict::rejected || placed->map_says_nothing)
-    inserted = insert(*start, counts.rings_differ, report);
-  carry_on({*prediction, *start}, *placed, motion, std::move(inserted), report);
+    inserted = insert(sweep, points, counts.rings_differ, report);
+  carry_on(sweep, *placed, motion, std::move(inserted), report);
   return points_status;
 }
 
@@ -89,8 +92,9 @@ bool LidarInertialOdometry::Impl::rests(const mapping::InertialTrack& heard, con
   return !(gained_m_s.norm() > params.expert.rest.force_m_s2 * motion.duration_s());
 }
 
-void LidarInertialOdometry::Impl::place(const Prediction& prediction, const MotionWindow& motion, SweepReport& report,
-                                        Placed& placed) {
+void LidarInertialOdometry::Impl::register_to_map(const Prediction& prediction, const MotionWindow& motion,
+                                                  mapping::SweepPoints& points, SweepTrajectory& trajectory,
+                                                  SweepReport& report, Placed& placed) {
   if (map.empty()) {
     if (points.all().size() >= params.expert.matching.least) placed.verdict = SweepVerdict::first;
     return;
@@ -99,7 +103,7 @@ void LidarInertialOdometry::Impl::place(const Prediction& prediction, const Moti
   points.choose(params, trajectory);
   const mapping::Scene scene{motion.samples, motion.end_ns, points.chosen(), map.voxels()};
   const mapping::Attempt attempt =
-      mapping::attempt(params, tracking, prediction.prior, scene, aligner, trajectory, placed.alignment);
+      mapping::attempt(params, tracking, prediction.prior, scene, scratch.aligner, trajectory, placed.alignment);
   report.points_registered = scene.points.size();
   report.iterations = attempt.iterations;
   report.inlier_share = attempt.inlier_share;
@@ -124,16 +128,16 @@ Belief LidarInertialOdometry::Impl::update(const MotionWindow& motion, const Pla
   return mapping::posterior(prediction);
 }
 
-std::vector<InsertedPoint> LidarInertialOdometry::Impl::insert(const Belief& start, bool rings_differ,
-                                                               SweepReport& report) {
+std::vector<InsertedPoint> LidarInertialOdometry::Impl::insert(const UpdatedSweep& sweep, mapping::SweepPoints& points,
+                                                               bool rings_differ, SweepReport& report) {
   const Belief& before = border.belief;
   if (mapping::unknowns::variances(before.weight, mapping::unknowns::calibration).maxCoeff() > 0.0) {
-    const SweepCalibration& now = start.mean.calibration;
+    const SweepCalibration& now = sweep.start.mean.calibration;
     points.move(now, now.time_offset_s - before.mean.calibration.time_offset_s);
   }
   std::vector<InsertedPoint> inserted;
-  report.map_points_added =
-      map.insert(params, trajectory, start.weight, points.all(), rings_differ, aligner.registration(), inserted);
+  report.map_points_added = map.insert(params, sweep.trajectory, sweep.start.weight, points.all(), rings_differ,
+                                       scratch.aligner.registration(), inserted);
   return inserted;
 }
 
@@ -145,22 +149,23 @@ void LidarInertialOdometry::Impl::carry_on(const UpdatedSweep& sweep, const Plac
   report.lost_sweeps = mapping::lost_sweeps(tracking);
   if (aligned && placed.verdict == SweepVerdict::degenerate && motion.resting_sweeps == 0)
     world.add_drift(report.weakest_sigma_m, report.weakest_direction);
-  report.trajectory = poses_along(trajectory, motion.end_ns, sweep.start.error);
+  report.trajectory = poses_along(sweep.trajectory, motion.end_ns, sweep.start.error);
   enter_window(sweep, motion, std::move(inserted), aligned != nullptr);
   // no later sweep refines it: it leaves with the next one
   if (window.is_full()) report.smoothed = poses_of(window.sweeps().front());
-  mapping::border_after(params, sweep.start, motion, trajectory, aligned, border);
+  mapping::border_after(params, sweep.start, motion, sweep.trajectory, aligned, border);
   report.pose = border.belief.mean.state.pose();
   report.pose.covariance = report.trajectory.back().covariance;
-  if (placed.verdict != SweepVerdict::first) part_from_world(sweep.start, report);
+  if (placed.verdict != SweepVerdict::first) part_from_world(sweep, report);
   forget_until(motion.end_ns);
 }
 
 /// What the sweep adds to the map is off by what the pose was: by so much of it the map moves where the robot is.
-void LidarInertialOdometry::Impl::part_from_world(const Belief& start, const SweepReport& report) {
+void LidarInertialOdometry::Impl::part_from_world(const UpdatedSweep& sweep, const SweepReport& report) {
   const double inserted_share =
       report.points_used == 0 ? 0.0 : double(report.map_points_added) / double(report.points_used);
-  world.add_insertion(inserted_share, trajectory, start.error, border.belief.mean.calibration.T_IL.translation());
+  world.add_insertion(inserted_share, sweep.trajectory, sweep.start.error,
+                      border.belief.mean.calibration.T_IL.translation());
 }
 
 /// All that was told of the time up to the border has been used.

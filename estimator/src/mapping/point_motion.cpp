@@ -1,7 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "point_motion.hpp"
 
+#include "unknowns.hpp"
+
 namespace tumble::mapping {
+
+namespace u = unknowns;
 
 PointMotion::PointMotion(const SweepTrajectory& trajectory, const SweepCalibration& calibration,
                          const SweepPoint& point, std::size_t& hint)
@@ -16,17 +20,17 @@ PointMotion::PointMotion(const SweepTrajectory& trajectory, const SweepCalibrati
 
 void PointMotion::along(const Eigen::Vector3d& n, SweepUnknowns::Vector& derivative) const {
   const Eigen::Vector3d n_I = now_.q_WI.conjugate() * n;
-  derivative.segment<3>(0) = n;
-  derivative.segment<3>(3) = lever_.cross(n);
-  derivative.segment<3>(6) = t_s_ * n;
-  auto of_deficit = derivative.segment<SweepTrajectory::kDeficit>(SweepUnknowns::kDeficit);
+  u::segment(derivative, u::position) = n;
+  u::segment(derivative, u::attitude) = lever_.cross(n);
+  u::segment(derivative, u::velocity) = t_s_ * n;
+  auto of_deficit = u::segment(derivative, u::deficit);
   if (clipped_) {
     of_deficit =
         by_deficit_.preintegrated_position_m_s.transpose() * n + by_deficit_.attitude_s.transpose() * turned_.cross(n);
   } else {
     of_deficit.setZero();
   }
-  derivative.tail<SweepCalibration::kErrors>() << from_lidar_I_.cross(n_I), n_I, n.dot(velocity_m_s_),
+  u::segment(derivative, u::calibration) << from_lidar_I_.cross(n_I), n_I, n.dot(velocity_m_s_),
       (0.5 * t_s_ * t_s_) * n;
 }
 

@@ -7,6 +7,7 @@
 #include <memory>
 
 #include "../common/dense.hpp"
+#include "../common/symmetric.hpp"
 #include "inertial_prior.hpp"
 #include "tumble/common/so3.hpp"
 #include "unknowns.hpp"
@@ -179,7 +180,8 @@ Belief posterior(const Prediction& prediction, const Registration::Result& align
 
 double innovation(const Prediction& prediction, const Registration::Estimate& aligned) {
   constexpr int kMotion = Registration::kMotion;
-  const auto moved = aligned.minus(prediction.prior.mean).head<kMotion>().eval();
+  const Registration::Vector away = aligned.minus(prediction.prior.mean);
+  const Eigen::Matrix<double, kMotion, 1> moved = u::segment(away, u::motion);
   Eigen::Matrix<double, kMotion, kMotion> P = u::block(prediction.errors, u::motion);
   P.diagonal().array() += unknowns::kLeastVariance;
   return std::sqrt(std::max(0.0, moved.dot(P.ldlt().solve(moved))) / kMotion);

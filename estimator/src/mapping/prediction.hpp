@@ -34,7 +34,7 @@ struct Prediction {
   Registration::Matrix noise = Registration::Matrix::Zero();        ///< that arises in between
   Registration::Matrix errors = Registration::Matrix::Zero();       ///< covariance of the means' errors, as reported
 
-  /// From the weight and the errors of what is believed at the border, once all else is settled.
+  /// From the weight and the errors of what is believed at the border, once all else is known.
   void compose(const Belief& at_border);
   /// Known to be at rest: velocity zero, and no longer correlated with the rest. Before compose().
   void zero_velocity_update(double sigma_m_s);

@@ -19,10 +19,11 @@ namespace {
 
 using Vector = Registration::Vector;
 using Matrix = Registration::Matrix;
+namespace u = mapping::unknowns;
 
 Matrix information_of(const Matrix& covariance) {
   Matrix positive = covariance;
-  positive.diagonal().array() += mapping::unknowns::kLeastVariance;
+  positive.diagonal().array() += u::kLeastVariance;
   return dense::Cholesky(positive).inverse<Matrix>();
 }
 
@@ -34,7 +35,7 @@ void add_prior(const Registration::Prior& prior, const Matrix& information, cons
   auto& [J, Jt, pull] = *held;
   J.setIdentity();
   const Vector away = now.minus(prior.mean);
-  J.block<3, 3>(3, 3) = so3::left_jacobian_inverse(away.segment<3>(3));
+  u::block(J, u::attitude) = so3::left_jacobian_inverse(u::segment(away, u::attitude));
   Jt = J.transpose();
   mapping::sandwich(Jt, information, pull);
   H += pull;
@@ -44,32 +45,33 @@ void add_prior(const Registration::Prior& prior, const Matrix& information, cons
 /// Whether the motion is within what the prior says it may be off by: mapping.md (R59).
 bool agrees(const Registration::Prior& prior, const Registration::Estimate& now) {
   constexpr int kMotion = Registration::kMotion;
-  const auto away = now.minus(prior.mean).head<kMotion>().eval();
-  Eigen::Matrix<double, kMotion, kMotion> P = prior.covariance.topLeftCorner<kMotion, kMotion>();
-  P.diagonal().array() += mapping::unknowns::kLeastVariance;
-  return away.dot(P.ldlt().solve(away)) <= mapping::unknowns::kAgrees;
+  const Vector moved = now.minus(prior.mean);
+  const Eigen::Matrix<double, kMotion, 1> away = u::segment(moved, u::motion);
+  Eigen::Matrix<double, kMotion, kMotion> P = u::block(prior.covariance, u::motion);
+  P.diagonal().array() += u::kLeastVariance;
+  return away.dot(P.ldlt().solve(away)) <= u::kAgrees;
 }
 
 bool is_small(const Vector& step, double span_s, const Registration::Params& params) {
-  constexpr int kCal = Registration::kCalibration;
-  const bool lengths = step.segment<3>(0).norm() < params.expert.step_m &&
-                       step.segment<3>(6).norm() * span_s < params.expert.step_m &&
-                       step.segment<3>(kCal + 3).norm() < params.expert.step_m &&
-                       step.segment<3>(kCal + 7).norm() * span_s * span_s < params.expert.step_m;
-  return lengths && step.segment<3>(3).norm() < params.expert.step_rad &&
-         step.segment<SweepTrajectory::kDeficit>(Registration::kDeficit).cwiseAbs().maxCoeff() * span_s <
-             params.expert.step_rad &&
-         step.segment<3>(kCal).norm() < params.expert.step_rad && std::abs(step[kCal + 6]) < 1e-5;
+  const RegistrationExpertParams& below = params.expert;
+  const bool lengths = u::segment(step, u::position).norm() < below.step_m &&
+                       u::segment(step, u::velocity).norm() * span_s < below.step_m &&
+                       u::segment(step, u::mounting_translation).norm() < below.step_m &&
+                       u::segment(step, u::gravity).norm() * span_s * span_s < below.step_m;
+  const bool angles = u::segment(step, u::attitude).norm() < below.step_rad &&
+                      u::segment(step, u::deficit).cwiseAbs().maxCoeff() * span_s < below.step_rad &&
+                      u::segment(step, u::mounting_rotation).norm() < below.step_rad;
+  return lengths && angles && u::segment(step, u::clock).cwiseAbs().value() < below.step_s;
 }
 
 }  // namespace
 
 void SweepUnknowns::Estimate::add(const Vector& error) {
-  state.p_WI_m += error.segment<3>(0);
-  state.q_WI = (so3::exp(error.segment<3>(3)) * state.q_WI).normalized();
-  state.v_WI_m_s += error.segment<3>(6);
-  deficit_rad_s += error.segment<SweepTrajectory::kDeficit>(kDeficit).reshaped(3, SweepTrajectory::kKnots);
-  calibration.add(error.tail<SweepCalibration::kErrors>());
+  state.p_WI_m += u::segment(error, u::position);
+  state.q_WI = (so3::exp(u::segment(error, u::attitude)) * state.q_WI).normalized();
+  state.v_WI_m_s += u::segment(error, u::velocity);
+  deficit_rad_s += u::segment(error, u::deficit).reshaped(3, SweepTrajectory::kKnots);
+  calibration.add(u::segment(error, u::calibration));
 }
 
 Vector SweepUnknowns::Estimate::minus(const Estimate& other) const {
@@ -151,7 +153,7 @@ Status Registration::iterate(const Problem& problem, Descent& at, SweepTrajector
                       problem.points, moved_);
     at.points = moved_;
   }
-  place(trajectory, at.points, problem.map);
+  match_points(trajectory, at.points, problem.map);
   at.kernel_m = kernel_width_m();
   accumulate(at.points, trajectory, at.now.calibration, problem.unknowns, at.kernel_m, at.sum);
   result.matches = at.sum.matches;
@@ -198,7 +200,7 @@ Status Registration::conclude(const Problem& problem, const Descent& at, SweepTr
   result.covariance = 0.5 * (posterior + posterior.transpose());
   problem.unknowns.clear_held(result.covariance);
   result.mean = at.now;
-  result.mean.state.covariance = result.covariance.topLeftCorner<kMotion, kMotion>();
+  result.mean.state.covariance = u::block(result.covariance, u::motion);
   result.verdict = at.verdict;
   if (Status status = problem.build(result.mean, trajectory); !status.ok()) return status;
   describe_errors(at.points, trajectory, at.now.calibration, problem.unknowns, at.kernel_m, result);
@@ -228,7 +230,7 @@ void Registration::describe_shape(std::span<const SweepPoint> points, double ker
   result.eigenvalues = result.eigenvalues.cwiseMax(0.0).eval();
   Eigen::Matrix<double, 6, 1> information;
   dense::eigenvalues(scale.asDiagonal() *
-                         (sum.H.topLeftCorner<6, 6>() - result.errors_in_variables_information.topLeftCorner<6, 6>()) *
+                         (u::block(sum.H, u::pose) - u::block(result.errors_in_variables_information, u::pose)) *
                          scale.asDiagonal(),
                      information);
   result.weakest_sigma_m = 1.0 / std::sqrt(std::max(information[0], 1e-12));

@@ -126,7 +126,8 @@ Registration::Weight Registration::weigh(const SweepPoint& point, const Match& m
 
 /// Where the points lie in the world by this trajectory, the planes that they belong to, and how far they are from
 /// them: mapping.md (R3), (R14).
-void Registration::place(const SweepTrajectory& trajectory, std::span<const SweepPoint> points, const VoxelMap& map) {
+void Registration::match_points(const SweepTrajectory& trajectory, std::span<const SweepPoint> points,
+                                const VoxelMap& map) {
   levers_.resize(points.size());
   positions_.resize(points.size());
   distances_.resize(points.size());

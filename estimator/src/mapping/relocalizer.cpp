@@ -14,9 +14,12 @@ namespace {
 
 using Params = LidarInertialOdometry::Params;
 
-constexpr double kDeficitTries_rad_s[] = {3.0, 6.0, 9.0, 15.0};
+// Of deficit_try_rad_s: closely where most deficits lie, then once more beyond.
+constexpr double kDeficitTries[] = {1.0, 2.0, 3.0, 5.0};
+constexpr double kDeficitSigmas = 5.0;  // a deficit of so many deviations is not tried
 
-constexpr int kStartsPerRound = 12;  // six axes, two ways
+constexpr int kStartsPerRound = 12;   // six axes, two ways
+constexpr double kStartSigmas = 1.5;  // of the prior: how far a start is moved, where that is within reach
 
 bool converged(const Registration::Result& found) {
   return found.verdict == RegistrationVerdict::converged;
@@ -35,11 +38,12 @@ void track(const Params& params, const Registration::Prior& prior, const Scene& 
     aligner.to_convergence(prior, scene, trajectory, found);
     iterations += found.iterations;
   }
-  for (const double more : kDeficitTries_rad_s) {
+  for (const double times : kDeficitTries) {
+    const double more = times * params.expert.search.deficit_try_rad_s;
     for (int axis = 0; axis < 3; ++axis) {
       if (converged(found) || tries == params.expert.search.deficit_tries_max) break;
       const int first = unknowns::deficit_at(axis, 0);
-      if (std::sqrt(prior.covariance(first, first)) < more / 5.0) continue;
+      if (std::sqrt(prior.covariance(first, first)) < more / kDeficitSigmas) continue;
       const auto start = std::make_unique<Registration::Prior>(prior);
       start->deficit_start_rad_s.row(axis).array() += more;
       aligner.from_afar(*start, prior, scene, trajectory, found);
@@ -76,9 +80,11 @@ void move_start(const RelocalizationParams& params, int index, Registration::Pri
   const double sigma = std::sqrt(prior.covariance(axis, axis));
   MotionState& state = prior.mean.state;
   if (axis < 3) {
-    state.p_WI_m[axis] += sign * std::clamp(1.5 * sigma, 0.3, round * params.shift_m);
+    state.p_WI_m[axis] +=
+        sign * std::clamp(kStartSigmas * sigma, RelocalizationParams::kLeastShift_m, round * params.shift_m);
   } else {
-    const double angle = sign * std::clamp(1.5 * sigma, 0.1, round * params.rotation_rad);
+    const double angle =
+        sign * std::clamp(kStartSigmas * sigma, RelocalizationParams::kLeastRotation_rad, round * params.rotation_rad);
     state.q_WI = so3::exp(angle * Eigen::Vector3d::Unit(axis - 3)) * state.q_WI;
   }
 }

@@ -6,6 +6,7 @@
 
 #include "rotation_series.hpp"
 #include "tumble/common/so3.hpp"
+#include "unknowns.hpp"
 
 namespace tumble {
 
@@ -197,11 +198,13 @@ SweepTrajectory::Transition SweepTrajectory::transition(double t_s) const {
   std::size_t hint = 0;
   const Interval& now = interval_at(t, hint);
   const double s = t - now.start_s;
+  namespace u = mapping::unknowns;
   Transition out;
   out.by_start.setIdentity();
-  out.by_start.block<3, 3>(0, 3) = -so3::hat(now.preintegrated_p + s * now.preintegrated_v + (0.5 * s * s) * now.a_W);
-  out.by_start.block<3, 3>(0, 6) = t * Eigen::Matrix3d::Identity();
-  out.by_start.block<3, 3>(6, 3) = -so3::hat(now.preintegrated_v + s * now.a_W);
+  u::block(out.by_start, u::position, u::attitude) =
+      -so3::hat(now.preintegrated_p + s * now.preintegrated_v + (0.5 * s * s) * now.a_W);
+  u::block(out.by_start, u::position, u::velocity) = t * Eigen::Matrix3d::Identity();
+  u::block(out.by_start, u::velocity, u::attitude) = -so3::hat(now.preintegrated_v + s * now.a_W);
 
   const DeficitDerivative deficit = deficit_derivative(t, hint);
   const ByDeficit mean_attitude = 0.5 * (now.deficit_attitude + deficit.attitude_s);

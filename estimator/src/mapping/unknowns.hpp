@@ -4,7 +4,7 @@
 #include "tumble/mapping/registration.hpp"
 
 /// Names for the blocks of a vector or a matrix over the unknowns of a sweep, or over the first of them:
-/// docs/maths/mapping.md has the list. `rows(F, velocity)` in place of an index.
+/// docs/maths/mapping.md has the list. `rows(F, velocity)` in place of an index, `segment(step, velocity)` of a vector.
 namespace tumble::mapping::unknowns {
 
 template <int First, int Size>
@@ -12,6 +12,7 @@ struct Block {};
 
 inline constexpr Block<0, 3> position;  ///< W
 inline constexpr Block<3, 3> attitude;  ///< left perturbation in W
+inline constexpr Block<3, 2> tilt;      ///< attitude about W's horizontal axes
 inline constexpr Block<6, 3> velocity;  ///< W
 inline constexpr Block<0, 6> pose;      ///< position, attitude
 inline constexpr Block<0, Registration::kMotion> motion;
@@ -34,6 +35,11 @@ static_assert(SweepUnknowns::kMotion == 9);
 /// Place of an axis of the saturation deficit at a knot.
 constexpr int deficit_at(int axis, int knot) {
   return Registration::kDeficit + 3 * knot + axis;
+}
+
+template <class Vector, int First, int Size>
+auto segment(Vector& v, Block<First, Size>) {
+  return v.template segment<Size>(First);
 }
 
 template <class Matrix, int First, int Size>

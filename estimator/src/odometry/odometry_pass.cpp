@@ -76,14 +76,14 @@ OdometryPass::OdometryPass(const RegimeStream::Params& rate, const LidarInertial
       localisation_(mapping.expert.matching.distance_m),
       rate_sigma_max_rad_s_(mapping.expert.prior.rate_sigma_max_rad_s),
       time_offset_s_(mapping.time_offset_s) {
-  unsettled_.samples.reserve(samples_in(std::max(rate.rate.lag_s, kRoom_s), rate));
+  pending_.samples.reserve(samples_in(std::max(rate.rate.lag_s, kRoom_s), rate));
 }
 
 Status OdometryPass::add_imu(const ImuSample& sample) {
   std::optional<RateState> rate;
   if (const Status status = rates_.push(sample, rate_state_, rate); !status.ok()) return status;
-  unsettled_.push(sample);
-  if (rate && (!settled_ || rate->time_ns > settled_->time_ns)) settle(*rate);
+  pending_.push(sample);
+  if (rate && (!smoothed_ || rate->time_ns > smoothed_->time_ns)) take_rate(*rate);
   return {};
 }
 
@@ -92,16 +92,16 @@ TimeNs OdometryPass::needed_ns(TimeNs lidar_ns) const {
 }
 
 std::optional<TimeNs> OdometryPass::covered_ns() const {
-  if (!settled_) return std::nullopt;
-  return settled_->time_ns - needed_ns(0);
+  if (!smoothed_) return std::nullopt;
+  return smoothed_->time_ns - needed_ns(0);
 }
 
 bool OdometryPass::covers(TimeNs end_ns) const {
-  return settled_ && settled_->time_ns >= needed_ns(end_ns);
+  return smoothed_ && smoothed_->time_ns >= needed_ns(end_ns);
 }
 
 std::optional<TimeNs> OdometryPass::covering_ns(TimeNs end_ns) const {
-  const std::span<const ImuSample> open = unsettled_.all();
+  const std::span<const ImuSample> open = pending_.all();
   const TimeNs needed = needed_ns(end_ns);
   const auto covers = [&](const ImuSample& sample) { return sample.time_ns >= needed; };
   const auto first = std::find_if(open.begin(), open.end(), covers);
@@ -122,7 +122,7 @@ Status OdometryPass::newest(PoseState& pose) const {
   std::vector<RateState> rates;
   rates_.flush(rate_state_, rates);
   std::vector<ImuSample> samples;
-  SeenByTheStream seen(unsettled_.all(), rate_state_.rate);
+  SeenByTheStream seen(pending_.all(), rate_state_.rate);
   std::erase_if(rates, [&](const RateState& rate) { return told_ns_ && rate.time_ns <= *told_ns_; });
   for (RateState& rate : rates) {
     samples.push_back(seen.at(rate.time_ns));
@@ -131,22 +131,22 @@ Status OdometryPass::newest(PoseState& pose) const {
   return mapper_.predict(samples, rates, pose);
 }
 
-void OdometryPass::settle(const RateState& rate) {
-  const ImuSample sample = SeenByTheStream(unsettled_.all(), rate_state_.rate).at(rate.time_ns);
-  unsettled_.drop_until(rate.time_ns);
-  settled_ = rate;
+void OdometryPass::take_rate(const RateState& rate) {
+  const ImuSample sample = SeenByTheStream(pending_.all(), rate_state_.rate).at(rate.time_ns);
+  pending_.drop_until(rate.time_ns);
+  smoothed_ = rate;
   if (told_ns_ && rate.time_ns <= *told_ns_) return;
   told_ns_ = rate.time_ns;
   scale_.add(sample);
   if (!mapper_.add_imu(sample, for_the_mapper(rate, sample, rate_sigma_max_rad_s_)).ok()) ++refused_samples_;
 }
 
-void OdometryPass::settle_until(TimeNs time_ns) {
+void OdometryPass::flush_until(TimeNs time_ns) {
   std::vector<RateState> rates;
   rates_.flush(rate_state_, rates);
   for (const RateState& rate : rates) {
-    if (settled_ && settled_->time_ns >= time_ns) return;
-    if (!settled_ || rate.time_ns > settled_->time_ns) settle(rate);
+    if (smoothed_ && smoothed_->time_ns >= time_ns) return;
+    if (!smoothed_ || rate.time_ns > smoothed_->time_ns) take_rate(rate);
   }
 }
 

@@ -44,12 +44,9 @@ void OdometryPass::members(Self& s, Visitor& visit) {
   odometry::visit_taught(rate, visit);
   visit.scratch(s.rates_);
   if constexpr (!std::is_const_v<Self>) {
+    if (visit.going() && rate.rate.model.calibration) visit.refuse(check_calibration(*rate.rate.model.calibration));
     if (!visit.going()) return;
-    try {
-      s.begin_rates(rate);
-    } catch (const InvalidParams&) {
-      visit.refuse({Trouble::out_of_range, "calibration", 0.0, 0.0});
-    }
+    s.begin_rates(rate);
   }
   visit("pass.rates", s.rate_state_);
   visit("pass.mapper", s.mapper_);
@@ -57,8 +54,8 @@ void OdometryPass::members(Self& s, Visitor& visit) {
   visit("pass.localisation", s.localisation_);
   visit.scratch(s.rate_sigma_max_rad_s_);                    // of the parameters
   visit("pass.time_offset_s", s.time_offset_s_, -1.0, 1.0);  // as the mapper's parameter
-  visit("pass.unsettled", s.unsettled_);
-  visit("pass.settled", s.settled_);
+  visit("pass.pending", s.pending_);
+  visit("pass.smoothed", s.smoothed_);
   visit("pass.told_ns", s.told_ns_);
   visit("pass.refused_samples", s.refused_samples_);
 }

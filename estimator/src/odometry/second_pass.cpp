@@ -85,7 +85,7 @@ bool SecondPass::is_due() const {
 
 RegimeStream::Params SecondPass::lagging_rate() const {
   RegimeStream::Params out = rate_;
-  out.rate.lag_s = std::max(params_.lag_s, rate_.rate.lag_s);
+  out.rate.lag_s = std::min(std::max(params_.lag_s, rate_.rate.lag_s), rate_.rate.lag_max_s());
   return out;
 }
 
@@ -112,12 +112,13 @@ LidarInertialOdometry::Params SecondPass::learnt_mapping(const OdometryPass& fir
 }
 
 bool SecondPass::begin(const OdometryPass& first) {
-  try {
-    pass_.emplace(learnt_rate(first), learnt_mapping(first));
-  } catch (const InvalidParams&) {  // what was learnt is beyond what can be
-    give_up();
+  const RegimeStream::Params rate = learnt_rate(first);
+  const LidarInertialOdometry::Params mapping = learnt_mapping(first);
+  if (!check_calibration(*rate.rate.model.calibration).ok() || !check_odometry_params(mapping).ok()) {
+    give_up();  // what was learnt is beyond what can be
     return false;
   }
+  pass_.emplace(rate, mapping);
   next_sample_ = next_sweep_ = rejected_ = 0;
   early_ = seconds(sweeps_.back().end_ns - *moves_ns_) < params_.after_s;
   return true;
@@ -152,7 +153,7 @@ void SecondPass::run(OdometryPass& first, std::size_t sweeps) {
     }
     if (!pass_->covers(sweep.end_ns)) {
       tail = true;
-      pass_->settle_until(std::max(first.settled()->time_ns, pass_->needed_ns(sweep.end_ns)));
+      pass_->flush_until(std::max(first.smoothed_rate()->time_ns, pass_->needed_ns(sweep.end_ns)));
     }
     if (!pass_->covers(sweep.end_ns)) {  // the clocks differ by more than the first pass knew: with the next one
       --next_sweep_;
@@ -167,7 +168,7 @@ void SecondPass::run(OdometryPass& first, std::size_t sweeps) {
 }
 
 void SecondPass::take_over(OdometryPass& first) {
-  pass_->settle_until(first.settled()->time_ns);
+  pass_->flush_until(first.smoothed_rate()->time_ns);
   SweepVerdict& newest = sweeps_.back().verdict;
   const bool first_lost = newest == SweepVerdict::rejected;
   if (rejected_ <= rejected_by_first_ + sweeps_.size() / kMoreShare && (!lost_ || first_lost)) {

@@ -148,7 +148,7 @@ Status TumblingOdometry::doubt() const {
 
 void TumblingOdometry::finish() {
   if (!newest_rate()) return;  // nothing since the last time
-  settle_all();
+  flush_all();
   again_.complete(pass_);
   begin_rates();
 }
@@ -178,8 +178,8 @@ bool TumblingOdometry::is_due(TimeNs end_ns) const {
 void TumblingOdometry::register_covered() {
   while (!waiting_.empty()) {
     const TimeNs end_ns = waiting_.front().end_ns;
-    // the sample that covers it ends up to a period later: its rate is settled so much sooner
-    if (!pass_.covers(end_ns) && is_due(end_ns)) pass_.settle_until(pass_.needed_ns(end_ns));
+    // the sample that covers it ends up to a period later: its rate is given out so much sooner
+    if (!pass_.covers(end_ns) && is_due(end_ns)) pass_.flush_until(pass_.needed_ns(end_ns));
     if (!pass_.covers(end_ns)) break;
     Waiting sweep = std::move(waiting_.front());
     waiting_.pop_front();
@@ -193,25 +193,22 @@ void TumblingOdometry::register_covered() {
   }
 }
 
-void TumblingOdometry::settle_all() {
-  pass_.settle_until(*newest_ns_);
+void TumblingOdometry::flush_all() {
+  pass_.flush_until(*newest_ns_);
   register_covered();
 }
 
 void TumblingOdometry::begin_anew() {
-  settle_all();
+  flush_all();
   again_.give_up();
   begin_rates();
 }
 
 void TumblingOdometry::begin_rates() {
   RegimeStream::Params params = rate_params(params_);
-  params.rate.model.calibration = rig();
-  try {
-    pass_.begin_rates(params);
-  } catch (const InvalidParams&) {  // what was learnt is beyond what can be: from what was given
-    pass_.begin_rates(rate_params(params_));
-  }
+  // where what was learnt is beyond what can be: from what was given
+  if (const RigCalibration learnt = rig(); check_calibration(learnt).ok()) params.rate.model.calibration = learnt;
+  pass_.begin_rates(params);
 }
 
 }  // namespace tumble

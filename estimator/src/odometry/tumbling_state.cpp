@@ -22,27 +22,27 @@ Status OdometryPass::check_state() const {
   const TimeNs newest_ns = window.back().observation.sample.time_ns;
   if (told_ns_ && *told_ns_ > newest_ns)
     return {Trouble::out_of_range, "pass.told_ns", double(*told_ns_), double(newest_ns)};
-  if (unsettled_.all().empty()) {  // all were settled, as at the end of the second pass's samples
-    const bool settled = settled_ && settled_->time_ns == newest_ns && told_ns_ == newest_ns;
-    return settled ? Status{} : missing("pass.unsettled");
+  if (pending_.all().empty()) {  // all were given out, as at the end of the second pass's samples
+    const bool complete = smoothed_ && smoothed_->time_ns == newest_ns && told_ns_ == newest_ns;
+    return complete ? Status{} : missing("pass.pending");
   }
-  const TimeNs heard_ns = unsettled_.all().back().time_ns;
+  const TimeNs heard_ns = pending_.all().back().time_ns;
   if (heard_ns == newest_ns) return {};
-  return {Trouble::out_of_range, "pass.unsettled", double(heard_ns), double(newest_ns)};
+  return {Trouble::out_of_range, "pass.pending", double(heard_ns), double(newest_ns)};
 }
 
 Status SecondPass::check_state(const OdometryPass& first) const {
   if (!pass_) return {};
   if (!moves_ns_) return missing("again.moves_ns");
   if (sweeps_.empty()) return missing("again.sweeps");
-  if (!first.settled()) return missing("pass.settled");
+  if (!first.smoothed_rate()) return missing("pass.smoothed");
   return pass_->check_state();
 }
 
 Status TumblingOdometry::check_state() const {
   if (const Status status = pass_.check_state(); !status.ok()) return status;
   if (const Status status = again_.check_state(pass_); !status.ok()) return status;
-  if (pass_.settled() && !registered_ns_) return missing("registered_ns");
+  if (pass_.smoothed_rate() && !registered_ns_) return missing("registered_ns");
   if (newest_rate() && !newest_ns_) return missing("newest_ns");
   return {};
 }

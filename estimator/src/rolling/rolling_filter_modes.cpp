@@ -18,7 +18,7 @@ namespace {
 
 constexpr double kDropped = -120.0;   // log weight below the best at which a hypothesis is given up
 constexpr double kRestFloor = -60.0;  // least log likelihood of a node at rest: one bad node must not decide
-constexpr double kSettled_s = 1.0;    // after so long in one mode it does not matter when it began
+constexpr double kLongAgo_s = 1.0;    // after so long in one mode it does not matter when it began
 // change of u per node, horizontal; a plateau as narrow as grip, or each plateau would look like grip
 constexpr double kPlateau_m_s = 0.004, kSteady_m_s = 0.01, kJump_m_s = 0.08, kPlateauShare = 0.4, kSteadyShare = 0.35;
 constexpr double kRise_m_s = 0.03, kHit_m_s = 0.3, kRiseShare = 0.7;  // and vertical, on a bump
@@ -177,11 +177,11 @@ std::span<const Candidate> propose(const RollingParams& params, const rolling::C
 
 /// Two beginnings of the same mode are one the sooner, the longer they are past: the first node of those that are one.
 std::int64_t beginning(std::int64_t switched_node, std::int64_t node, double node_s) {
-  const auto settled = static_cast<std::int64_t>(kSettled_s / node_s);
-  const std::int64_t age = std::min(node - switched_node, settled);
+  const auto long_ago = static_cast<std::int64_t>(kLongAgo_s / node_s);
+  const std::int64_t age = std::min(node - switched_node, long_ago);
   std::int64_t width = 1;
   while (width * kAgesApart < age) width *= 2;
-  return switched_node >= node - settled ? switched_node / width * width : node - settled;
+  return switched_node >= node - long_ago ? switched_node / width * width : node - long_ago;
 }
 
 struct Kept {
@@ -304,14 +304,14 @@ void RollingFilter::correct_at_rest(State& state) const {
   });
   rearrange(order, count, state.hypotheses);
   // they agree about the present, so after a while one is enough
-  const bool settled = seconds(state.rest.quiet_ns) > kSettled_s;
-  if (settled && state.count > 1) state.pruned_spread_m2 = position_spread(state);
+  const bool rested = seconds(state.rest.quiet_ns) > kLongAgo_s;
+  if (rested && state.count > 1) state.pruned_spread_m2 = position_spread(state);
   const double best = state.hypotheses[0].log_weight;
   std::size_t kept = 0;
   for (std::size_t k = 0; k < count; ++k) {
     Hypothesis& h = state.hypotheses[k];
     h.log_weight -= best;
-    if (k == 0 || (!settled && h.log_weight > kDropped)) kept = k + 1;
+    if (k == 0 || (!rested && h.log_weight > kDropped)) kept = k + 1;
   }
   keep_first(kept, state);
 }

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "../common/symmetric.hpp"
 #include "tumble/common/detail/scalar_update.hpp"
 #include "tumble/common/so3.hpp"
 
@@ -320,12 +321,6 @@ bool reset_tilt(const RollingParams& params, const RollingSums& sums, bool at_re
   P.diagonal().segment<3>(kVelocity).setConstant(
       squared(at_rest ? params.expert.contact.rest_velocity_sigma_m_s : kLostSpeed_m_s));
   return true;
-}
-
-void make_symmetric(Covariance& P) {
-  for (int j = 0; j < kStates; ++j) {
-    for (int i = 0; i < j; ++i) P(i, j) = P(j, i) = 0.5 * (P(i, j) + P(j, i));
-  }
 }
 
 void update(const Row& row, double measured, double variance, Vector& x, Covariance& P) {

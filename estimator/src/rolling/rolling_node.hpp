@@ -94,9 +94,6 @@ bool forgets_slope(RollingMode from, RollingMode to);
 bool reset_tilt(const RollingParams& params, const RollingSums& sums, bool at_rest, RollingNominal& nominal,
                 Covariance& P);
 
-/// P <- (P + P^T) / 2, in place: a copy of it would lie on the stack.
-void make_symmetric(Covariance& P);
-
 /// Kalman update by a scalar row: measurement = row x + noise.
 void update(const Row& row, double measured, double variance, Vector& x, Covariance& P);
 

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 
+#include "../common/symmetric.hpp"
 #include "tumble/common/so3.hpp"
 
 namespace tumble::rolling {

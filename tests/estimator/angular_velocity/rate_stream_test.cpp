@@ -344,5 +344,29 @@ TEST(RateStream, RefusesParametersOutsideOfTheirBounds) {
   refused([](RateStream::Params& p) { p.model.rate_max_rad_s = 0.0; });
 }
 
+TEST(RateStream, WhatNoCalibrationCanBeIsToldAsAValueToo) {
+  const auto told = [](auto change) {
+    RigCalibration rig;
+    change(rig);
+    auto params = with_lever_arm<RateStream::Params>();
+    params.model.calibration = rig;
+    const Status status = check_calibration(rig);
+    if (status.ok()) {
+      EXPECT_NO_THROW(RateStream{params});
+    } else {
+      EXPECT_THROW(RateStream{params}, InvalidParams) << status.field;
+    }
+    return status;
+  };
+  EXPECT_TRUE(told([](RigCalibration&) {}).ok());
+  const Status far = told([](RigCalibration& rig) { rig.constants.lever_arm_m.z() = -11.0; });
+  EXPECT_STREQ(far.field, "lever_arm_m");
+  EXPECT_EQ(far.value, -11.0);
+  EXPECT_EQ(far.bound, -10.0);
+  EXPECT_STREQ(told([](RigCalibration& rig) { rig.constants.elements[5] = std::nan(""); }).field, "rig constants");
+  EXPECT_EQ(told([](RigCalibration& rig) { rig.covariance(3, 3) = 0.0; }).trouble, Trouble::degenerate);
+  EXPECT_EQ(told([](RigCalibration& rig) { rig.covariance(0, 1) = std::nan(""); }).trouble, Trouble::degenerate);
+}
+
 }  // namespace
 }  // namespace tumble

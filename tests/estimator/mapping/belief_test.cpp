@@ -7,6 +7,7 @@
 #include <cmath>
 #include <vector>
 
+#include "estimator/src/common/symmetric.hpp"
 #include "estimator/src/mapping/prediction.hpp"
 #include "estimator/src/mapping/unknowns.hpp"
 #include "tumble/common/so3.hpp"

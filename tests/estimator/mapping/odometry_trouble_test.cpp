@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 #include <ostream>
+#include <string>
 
 #include "tests/estimator/mapping/room_tumble.hpp"
 #include "tumble/mapping/lidar_inertial_odometry.hpp"
@@ -160,6 +161,27 @@ TEST(LidarInertialOdometry, ThrowsOnBadParams) {
   params = {};
   params.expert.prior.sigma_rad = 0.0;
   EXPECT_THROW(Odometry{params}, InvalidParams);
+}
+
+TEST(LidarInertialOdometry, BadParamsAreToldAsAValueToo) {
+  EXPECT_TRUE(check_odometry_params({}).ok());
+  const auto told = [](auto change) {
+    Odometry::Params params;
+    change(params);
+    const Status status = check_odometry_params(params);
+    EXPECT_EQ(status.trouble, Trouble::out_of_range) << status.field;
+    EXPECT_THROW(Odometry{params}, InvalidParams) << status.field;
+    return std::string(status.field);
+  };
+  EXPECT_EQ(told([](Odometry::Params& p) { p.mount_sigma_m = std::nan(""); }), "mount_sigma_m");
+  EXPECT_EQ(told([](Odometry::Params& p) { p.expert.prior.sigma_rad = 0.0; }), "prior_sigma_rad");
+  EXPECT_EQ(told([](Odometry::Params& p) { p.range_max_m = 0.1; }), "range_max_m");
+  EXPECT_EQ(told([](Odometry::Params& p) { p.T_IL.translation().x() = 2e3; }), "T_IL translation");
+  EXPECT_EQ(told([](Odometry::Params& p) { p.T_IL.linear() *= 1.1; }), "T_IL rotation's distance from orthogonal");
+  EXPECT_EQ(told([](Odometry::Params& p) {
+              p.own_body_L = {Eigen::Vector3d::Ones(), -Eigen::Vector3d::Ones()};
+            }),
+            "own_body_L largest x less the least");
 }
 
 }  // namespace

@@ -3,11 +3,14 @@
 
 #include <Eigen/Core>
 
+#include "tumble/common/status.hpp"
+
 namespace tumble {
 
 /// What stays the same during a run and is estimated with the rates: 20 numbers, in this order.
 struct RigConstants {
   static constexpr int kSize = 20, kElements = 14;
+  static constexpr double kMost = 10.0;  ///< magnitude of each, in its unit
   using Vector = Eigen::Matrix<double, kSize, 1>;
   using Matrix = Eigen::Matrix<double, kSize, kSize>;
 
@@ -41,5 +44,10 @@ struct RigCalibration {
   RigConstants constants;
   RigConstants::Matrix covariance = RigConstants::Matrix::Identity();
 };
+
+/// `out_of_range` where a constant lies beyond what any rig has.
+Status check_rig(const RigConstants& rig);
+/// The same, and `degenerate` where the covariance is not positive definite: a run cannot start from it.
+Status check_calibration(const RigCalibration& calibration);
 
 }  // namespace tumble

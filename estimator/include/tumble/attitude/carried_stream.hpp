@@ -51,8 +51,8 @@ class CarriedStream {
     double centre_s = 0.0, end_s = 0.0;  ///< of its window, from the first sample's centre
     std::int64_t node = 0;               ///< nearest to the centre
     bool rest = false;
-    HeldReading gyro, accel;           ///< of a log that says readings again
-    std::optional<RateState> settled;  ///< its rate, where its node has left and the rate has not been given out
+    HeldReading gyro, accel;            ///< of a log that says readings again
+    std::optional<RateState> smoothed;  ///< its rate, where its node has left and the rate has not been given out
   };
   struct Knot {
     carried::Node node;
@@ -114,7 +114,7 @@ class CarriedStream {
   void predict_newest(State& state) const;
   carried::ReadingNoise noise_of(const State& state) const;
   std::size_t first_not_given(const State& state) const;
-  void settle_oldest(State& state) const;
+  void keep_rates_of_oldest(State& state) const;
   void forget_readings(State& state) const;
   void marginalise_oldest(State& state) const;
   double hand(const State& state) const;

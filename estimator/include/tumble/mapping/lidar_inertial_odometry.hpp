@@ -74,7 +74,7 @@ class LidarInertialOdometry {
 
   /// Pose and velocity at the last of further samples, which are not added: from the last sweep's end by inertia alone,
   /// with covariance; there where nothing came after it. For who needs a pose before the sweep is there, or its rates
-  /// are settled. Trouble: `empty` before the first sweep, and that of add_imu. O(samples since the last sweep).
+  /// are known. Trouble: `empty` before the first sweep, and that of add_imu. O(samples since the last sweep).
   Status predict(std::span<const ImuSample> samples, std::span<const RateState> rates, PoseState& pose) const;
 
   /// Calibration as estimated so far, and the covariance of its errors; the given one, and 0, where not estimated.

@@ -4,8 +4,11 @@
 #include <Eigen/Geometry>
 
 #include "tumble/common/parameters.hpp"
+#include "tumble/mapping/detail/calibration_fields.hpp"
 #include "tumble/mapping/detail/inertial_params.hpp"
+#include "tumble/mapping/detail/map_params.hpp"
 #include "tumble/mapping/detail/placing_params.hpp"
+#include "tumble/mapping/detail/rest_params.hpp"
 #include "tumble/mapping/executor.hpp"
 
 namespace tumble {
@@ -75,12 +78,9 @@ struct OdometryParams {
   template <class Self, class Visitor>
   static void fields(Self& p, Visitor& visit) {
     visit(p.time_offset_s, {"time_offset_s", "s", -1.0, 1.0, "the IMU's clock minus the lidar's"});
-    visit(p.mount_sigma_rad,
-          {"mount_sigma_rad", "rad", 0.0, 1.0, "the lidar's attitude on the IMU as given; 0: exact", Rank::first});
-    visit(p.mount_sigma_m,
-          {"mount_sigma_m", "m", 0.0, 1.0, "the lidar's position on the IMU as given; 0: exact", Rank::first});
-    visit(p.time_offset_sigma_s,
-          {"time_offset_sigma_s", "s", 0.0, 0.02, "offset between the clocks of lidar and IMU; 0: none", Rank::first});
+    visit(p.mount_sigma_rad, calibration_fields::kMountSigma_rad);
+    visit(p.mount_sigma_m, calibration_fields::kMountSigma_m);
+    visit(p.time_offset_sigma_s, calibration_fields::kTimeOffsetSigma_s);
     visit(p.range_min_m, {"range_min_m", "m", 0.0, 10.0, "nearer returns are dropped"});
     visit(p.range_max_m, {"range_max_m", "m", 0.0, 1e4, "farther returns are dropped"});
     visit(p.own_body_L.min(), {"own_body_min_m", "m", -kUnbounded, kUnbounded,
@@ -91,5 +91,8 @@ struct OdometryParams {
     visit.group("", p.expert);
   }
 };
+
+/// `out_of_range` with the first number that LidarInertialOdometry would refuse: that of a Field, or of what is none.
+Status check_odometry_params(const OdometryParams& params);
 
 }  // namespace tumble

@@ -80,7 +80,7 @@ class Registration {
   Status iterate(const Problem& problem, Descent& at, SweepTrajectory& trajectory, Result& result);
   RegistrationVerdict judge(const Problem& problem, const Descent& at) const;
   Status conclude(const Problem& problem, const Descent& at, SweepTrajectory& trajectory, Result& result);
-  void place(const SweepTrajectory& trajectory, std::span<const SweepPoint> points, const VoxelMap& map);
+  void match_points(const SweepTrajectory& trajectory, std::span<const SweepPoint> points, const VoxelMap& map);
   void find_match(const VoxelMap& map, std::size_t point, Neighbours& found);
   double kernel_width_m();
   void describe_shape(std::span<const SweepPoint> points, double kernel_m, const Sums& sum, Result& result) const;

@@ -13,6 +13,7 @@ namespace tumble {
 struct RegistrationExpertParams {
   double step_m = 5e-4;  ///< converged when a step is below this and below step_rad
   double step_rad = 1e-4;
+  double step_s = 1e-5;       ///< likewise of the time offset
   double rematch_m = 0.05;    ///< a point's plane is searched anew once the point has moved by this
   double kernel_min_m = 0.1;  ///< least width of the robust kernel (Geman-McClure)
   /// Weight of a point's information: neighbouring returns share the errors of the map and are not independent.
@@ -30,6 +31,7 @@ struct RegistrationExpertParams {
   static void fields(Self& p, Visitor& visit) {
     visit(p.step_m, {"step_m", "m", 1e-12, 1.0, "converged when a step is below this and its turn below step_rad"});
     visit(p.step_rad, {"step_rad", "rad", 1e-12, 1.0, "converged when a step turns by less"});
+    visit(p.step_s, {"step_s", "s", 1e-12, 1.0, "and moves the time offset by less"});
     visit(p.rematch_m,
           {"rematch_m", "m", 0.0, 10.0, "a point's plane is searched anew once the point has moved by this"});
     visit(p.kernel_min_m, {"kernel_min_m", "m", 1e-6, 1e3, "least width of the robust kernel (Geman-McClure)"});
@@ -47,6 +49,7 @@ struct RegistrationExpertParams {
 
 /// Of Registration.
 struct RegistrationParams {
+  static constexpr double kMatchDistanceMax_m = 10.0;
   int neighbours = 8;             ///< k of the plane fit
   double match_distance_m = 1.0;  ///< farther map points are no match
   int iterations_max = 30;
@@ -65,7 +68,8 @@ struct RegistrationParams {
   template <class Self, class Visitor>
   static void fields(Self& p, Visitor& visit) {
     visit(p.neighbours, {"neighbours", "1", 3, 32, "map points per plane fit", Rank::first});
-    visit(p.match_distance_m, {"match_distance_m", "m", 1e-3, 10.0, "farther map points are no match", Rank::first});
+    visit(p.match_distance_m,
+          {"match_distance_m", "m", 1e-3, kMatchDistanceMax_m, "farther map points are no match", Rank::first});
     visit(p.iterations_max, {"iterations_max", "1", 1, 200, "most iterations"});
     visit(p.range_sigma_m, {"range_sigma_m", "m", 1e-6, 10.0, "of a return, at least"});
     visit(p.range_sigma_share, {"range_sigma_share", "1", 0.0, 1.0, "of a return, as a share of its range"});

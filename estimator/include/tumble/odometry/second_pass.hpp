@@ -46,7 +46,7 @@ class SecondPass {
                         "of motion, after which all is passed through again with what was learnt; 0: never"});
       visit(p.lost_s, {"lost_s", "s", 0.0, 100.0,
                        "without a registered sweep, after which it begins early, once; 0: it does not"});
-      visit(p.lag_s, {"lag_s", "s", 0.0, 10.0, "how old a sample is there when its rate is settled"});
+      visit(p.lag_s, {"lag_s", "s", 0.0, 10.0, "how old a sample is there when its rate is given out"});
       visit(p.sweeps, {"sweeps", "1", 2, 1000, "that the second pass takes for each that comes"});
       visit(p.remembered_s, {"remembered_s", "s", 0.0, 1000.0, "motion within which the second pass has to catch up"});
       visit(p.inflation,

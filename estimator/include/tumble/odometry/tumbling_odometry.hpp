@@ -47,7 +47,7 @@ class TumblingOdometry {
   /// body whose corners are swapped.
   explicit TumblingOdometry(const Params& params);
 
-  /// Takes a sample of the IMU, in order of time. Sweeps whose rates are settled with it are registered now. On trouble
+  /// Takes a sample of the IMU, in order of time. Sweeps whose rates are known with it are registered now. On trouble
   /// (`non_finite`, `time_order`, `gap`) the state is as it was, but that the sample after a gap beyond the stream's
   /// bound, a second, is held back: when the next one bears it out the rates begin anew with what is known of the rig
   /// (gaps() counts), and the mapper bridges the gap by inertia; one stamp that is wrong costs one sample.
@@ -87,8 +87,8 @@ class TumblingOdometry {
   /// Rate of the newest sample, if any: provisional where the gyro clips, since what follows tells most of it.
   std::optional<RateState> newest_rate() const { return pass_.rates().rate().newest(pass_.rate_state().rate); }
 
-  /// Latest settled rate, lag_s old, or a sample less where a sweep waited for it. Nothing while the lag fills.
-  const std::optional<RateState>& settled_rate() const { return pass_.settled(); }
+  /// Latest smoothed rate, lag_s old, or a sample less where a sweep waited for it. Nothing while the lag fills.
+  const std::optional<RateState>& smoothed_rate() const { return pass_.smoothed_rate(); }
 
   /// What is known of the IMU on the body: lever arm, biases, elements.
   RigCalibration rig() const { return pass_.rates().rate().calibration(pass_.rate_state().rate); }
@@ -131,7 +131,7 @@ class TumblingOdometry {
   void register_sweep(TimeNs start_ns, TimeNs end_ns, std::vector<LidarPoint> points);
   bool is_due(TimeNs end_ns) const;
   void register_covered();
-  void settle_all();
+  void flush_all();
   void begin_anew();
   void begin_rates();
 

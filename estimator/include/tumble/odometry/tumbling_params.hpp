@@ -8,6 +8,7 @@
 #include "tumble/attitude/regime_stream.hpp"
 #include "tumble/common/parameters.hpp"
 #include "tumble/mapping/calibration.hpp"
+#include "tumble/mapping/detail/calibration_fields.hpp"
 #include "tumble/mapping/odometry_params.hpp"
 #include "tumble/odometry/imu_sheet.hpp"
 #include "tumble/odometry/lidar_sheet.hpp"
@@ -57,7 +58,8 @@ struct TumblingParams {
   /// Returns inside are the robot's own; Eigen's empty box, as here: none are. One whose corners are swapped is
   /// refused.
   Eigen::AlignedBox3d own_body_L;
-  double lag_s = 0.2;  ///< how old a sample is when its rate is settled; a sweep waits no longer, two samples at least
+  double lag_s =
+      0.2;  ///< how old a sample is when its rate is given out; a sweep waits no longer, two samples at least
 
   using Expert = TumblingExpertParams;
   Expert expert;  ///< what few need
@@ -76,12 +78,9 @@ struct TumblingParams {
     visit(p.lever_arm_I_m,
           {"lever_arm_m", "m", -10.0, 10.0, "from the centre of mass to the IMU, IMU axes", Rank::first});
     visit(p.lever_arm_sigma_m, {"lever_arm_sigma_m", "m", 1e-9, 10.0, "what the lever arm may be off by", Rank::first});
-    visit(p.mount_sigma_rad,
-          {"mount_sigma_rad", "rad", 0.0, 1.0, "the lidar's attitude on the IMU as given; 0: exact", Rank::first});
-    visit(p.mount_sigma_m,
-          {"mount_sigma_m", "m", 0.0, 1.0, "the lidar's position on the IMU as given; 0: exact", Rank::first});
-    visit(p.time_offset_sigma_s,
-          {"time_offset_sigma_s", "s", 0.0, 0.02, "offset between the clocks of lidar and IMU; 0: none", Rank::first});
+    visit(p.mount_sigma_rad, calibration_fields::kMountSigma_rad);
+    visit(p.mount_sigma_m, calibration_fields::kMountSigma_m);
+    visit(p.time_offset_sigma_s, calibration_fields::kTimeOffsetSigma_s);
     visit.group("", p.lidar);
     visit(p.lag_s, {"lag_s", "s", 0.0, 10.0, "how long a sweep waits, at most, for what follows it", Rank::first});
     visit.group("", p.expert);

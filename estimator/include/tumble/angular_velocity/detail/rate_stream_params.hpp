@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <algorithm>
 #include <memory>
 
 #include "tumble/angular_velocity/detail/rate_stream_expert_params.hpp"
@@ -18,7 +19,7 @@ struct RateStreamParams {
   RateModelParams model = {.accel_bias_sigma_m_s2 = 0.02, .inertia_sigma = 0.15};
   RailDetector::Params rails = {};
   double period_s = 0.01;                    ///< nominal time between samples
-  double lag_s = 0.2;                        ///< length of the window; [2 period_s, 10], at most 4096 samples
+  double lag_s = 0.2;                        ///< length of the window; [2 period_s, lag_max_s()]
   double recovered_sigma_rad_s = 0.5;        ///< as in RateSmootherParams
   double calibration_mahalanobis_max = 1.5;  ///< beyond this what was learnt of the rig is dropped
   double gap_max_s = 1.0;                    ///< longest time between samples
@@ -30,6 +31,9 @@ struct RateStreamParams {
 
   using Expert = RateStreamExpertParams;
   Expert expert = {};  ///< what few need
+
+  /// Of 4096 samples, the most that a window holds.
+  double lag_max_s() const { return std::min(10.0, 4096.0 * period_s); }
 
   /// Every number of it, stated once.
   template <class Self, class Visitor>

@@ -5,27 +5,8 @@
 
 #include "tumble/common/parameters.hpp"
 
-/// Groups of LidarInertialOdometry::Params::Expert: how a sweep finds its place in the map, and what becomes of the
-/// map.
+/// Groups of LidarInertialOdometry::Params::Expert: how a sweep finds its place in the map.
 namespace tumble {
-
-/// What is kept of the world.
-struct LocalMapParams {
-  static constexpr double kPruneShare = 0.1;  ///< of radius_m: moved so far, the sensor drops what is out of reach
-  double voxel_m = 0.5;                       ///< cell of the map's hash
-  double spacing_m = 0.1;                     ///< at most one map point per cube of this edge
-  double radius_m = 100.0;                    ///< it is kept within this of the sensor, to a tenth of it
-  double sigma_max_m = 0.25;                  ///< points that the trajectory places less surely than this are kept out
-
-  template <class Self, class Visitor>
-  static void fields(Self& p, Visitor& visit) {
-    visit(p.voxel_m, {"map_voxel_m", "m", 0.01, 10.0, "cell of the map's hash", Rank::first});
-    visit(p.spacing_m, {"map_spacing_m", "m", 0.0, 10.0, "edge of the cube that holds one map point", Rank::first});
-    visit(p.radius_m, {"map_radius_m", "m", 0.0, 1e5, "the map is kept within this of the sensor, to a tenth of it"});
-    visit(p.sigma_max_m, {"map_sigma_max_m", "m", 1e-6, 1e3,
-                          "points that the trajectory places less surely than this are kept out of the map"});
-  }
-};
 
 /// A sweep against the map.
 struct MatchingParams {
@@ -33,7 +14,7 @@ struct MatchingParams {
   double distance_m = 1.0;          ///< farther map points are no match
   std::size_t least = 100;          ///< fewer matched points reject a sweep
   std::size_t agreeing_least = 30;  ///< unless they are this many and put it where the prior expects it
-  /// Of a registration; one with all points has at most eight, what has not settled goes on with a thousand of them.
+  /// Of a registration; one with all points has at most eight, what has not converged goes on with a thousand of them.
   int iterations_max = 30;
   double correction_max_m = 15.0;   ///< a larger correction of the prior is rejected
   double correction_max_rad = 1.1;  ///< a larger correction of the prior is rejected
@@ -63,11 +44,16 @@ struct MatchingParams {
 
 /// Stages of a registration: in full, with all points and few iterations; with a subsample until it converges; coarse.
 struct RegistrationStagesParams {
-  int full_iterations = 8;              ///< what has not settled by then is cheaper settled with some of the points
+  int full_iterations = 8;              ///< what has not converged by then does so for less with some of the points
   std::size_t subsample_points = 1000;  ///< tell whether a start leads somewhere
   int coarse_iterations = 15;           ///< of a start that may be far off
   std::size_t coarse_points = 300;      ///< serve one
   std::size_t coarse_matches_min = 50;  ///< fewer reject one
+  double coarse_kernel_min_m = 0.5;     ///< least width of its robust kernel
+  double coarse_rematch_m = 0.2;        ///< a point's plane is searched anew once the point has moved by this
+  double coarse_step_m = 5e-3;          ///< it has converged when a step is below this and below coarse_step_rad
+  double coarse_step_rad = 2e-3;
+  double coarse_fitting_share_min = 0.2;  ///< of its matches, within three standard deviations; fewer reject one
 
   template <class Self, class Visitor>
   static void fields(Self& p, Visitor& visit) {
@@ -77,6 +63,14 @@ struct RegistrationStagesParams {
     visit(p.coarse_iterations, {"coarse_iterations", "1", 1, 200, "most iterations from a start that may be far off"});
     visit(p.coarse_points, {"coarse_points", "1", 1, 1e9, "most points from such a start"});
     visit(p.coarse_matches_min, {"coarse_matches_min", "1", 0, 1e9, "fewer matches reject such a start"});
+    visit(p.coarse_kernel_min_m,
+          {"coarse_kernel_min_m", "m", 1e-6, 1e3, "least width of the robust kernel from such a start"});
+    visit(p.coarse_rematch_m, {"coarse_rematch_m", "m", 0.0, 10.0,
+                               "from such a start a point's plane is searched anew once it has moved by this"});
+    visit(p.coarse_step_m, {"coarse_step_m", "m", 1e-12, 1.0, "such a start has converged when a step is below this"});
+    visit(p.coarse_step_rad, {"coarse_step_rad", "rad", 1e-12, 1.0, "and turns by less than this"});
+    visit(p.coarse_fitting_share_min, {"coarse_fitting_share_min", "1", 0.0, 1.0,
+                                       "fewer of the matches within three standard deviations reject such a start"});
   }
 };
 
@@ -102,34 +96,24 @@ struct TrackingParams {
 
 /// Where a sweep is tried from that its prior did not place: docs/maths/mapping.md, sections 5 and 10.
 struct RelocalizationParams {
-  int deficit_tries_max = 5;  ///< larger saturation deficits tried for one sweep, all axes together
-  int starts_per_sweep = 3;   ///< of a lost sensor, the prior among them
-  double shift_m = 1.0;       ///< such starts reach so far at first
-  double rotation_rad = 0.3;  ///< likewise in attitude
-  int rounds = 3;             ///< each reaches that much further than the last
+  static constexpr double kLeastShift_m = 0.3, kLeastRotation_rad = 0.1;  ///< nearer starts lead to the same place
+  int deficit_tries_max = 5;       ///< larger saturation deficits tried for one sweep, all axes together
+  double deficit_try_rad_s = 3.0;  ///< the first of them; two, three and five times it follow
+  int starts_per_sweep = 3;        ///< of a lost sensor, the prior among them
+  double shift_m = 1.0;            ///< such starts reach so far at first
+  double rotation_rad = 0.3;       ///< likewise in attitude
+  int rounds = 3;                  ///< each reaches that much further than the last
 
   template <class Self, class Visitor>
   static void fields(Self& p, Visitor& visit) {
     visit(p.deficit_tries_max, {"deficit_tries_max", "1", 0, 12, "larger saturation deficits tried for one sweep"});
+    visit(p.deficit_try_rad_s, {"deficit_try_rad_s", "rad/s", 1e-3, 1e3,
+                                "by how much the first of them is larger; two, three and five times it follow"});
     visit(p.starts_per_sweep, {"starts_per_sweep", "1", 1, 100, "starts of a lost sensor, the prior among them"});
-    visit(p.shift_m, {"shift_m", "m", 0.3, 100.0, "reach of such starts, first round"});
-    visit(p.rotation_rad, {"rotation_rad", "rad", 0.1, 3.15, "reach of such starts in attitude, first round"});
+    visit(p.shift_m, {"shift_m", "m", kLeastShift_m, 100.0, "reach of such starts, first round"});
+    visit(p.rotation_rad,
+          {"rotation_rad", "rad", kLeastRotation_rad, 3.15, "reach of such starts in attitude, first round"});
     visit(p.rounds, {"rounds", "1", 1, 100, "of starts, each of which reaches that much further than the last"});
-  }
-};
-
-/// What parts the map from the world: docs/maths/mapping.md, section 8.
-struct WorldCovarianceParams {
-  double tilt_sigma_rad = 0.002;  ///< of a levelled start: an accelerometer's turn-on bias of 2 mg
-  /// Of the weakest direction's standard deviation, per sweep, where the surfaces do not hold it: measured.
-  double drift_share = 0.1;
-  double drift_sigma_max_m = 3.0;  ///< a direction held less surely counts as this
-
-  template <class Self, class Visitor>
-  static void fields(Self& p, Visitor& visit) {
-    visit(p.tilt_sigma_rad, {"tilt_sigma_rad", "rad", 0.0, 1.0, "tilt of a levelled start, as reported"});
-    visit(p.drift_share, {"drift_share", "1", 0.0, 1.0, "of the weakest direction's standard deviation per sweep"});
-    visit(p.drift_sigma_max_m, {"drift_sigma_max_m", "m", 0.0, 1e3, "a direction held less surely counts as this"});
   }
 };
 

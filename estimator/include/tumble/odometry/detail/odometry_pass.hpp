@@ -13,7 +13,7 @@
 
 namespace tumble {
 
-/// One pass over the samples of an IMU and the sweeps of a lidar, in order of time: RegimeStream settles the rates,
+/// One pass over the samples of an IMU and the sweeps of a lidar, in order of time: RegimeStream gives the rates,
 /// LidarInertialOdometry takes them and the sweeps that they cover. What TumblingOdometry does live, and once more
 /// with what it learnt (SecondPass). Copies carry all state.
 class OdometryPass {
@@ -32,13 +32,13 @@ class OdometryPass {
   /// Throws InvalidParams on a parameter outside of its bound.
   OdometryPass(const RegimeStream::Params& rate, const LidarInertialOdometry::Params& mapping);
 
-  /// As RegimeStream::push; a rate that is settled with the sample goes to the mapper.
+  /// As RegimeStream::push; the rate that is given out with the sample goes to the mapper.
   Status add_imu(const ImuSample& sample);
-  /// Whether the rates are settled up to this time of the lidar's clock.
+  /// Whether the rates are given out up to this time of the lidar's clock.
   bool covers(TimeNs end_ns) const;
   /// The same for the newest of them, by the lidar's clock. Nothing before the first.
   std::optional<TimeNs> covered_ns() const;
-  /// The first sample, by the IMU's clock, that covers this time of the lidar's and whose rate is not settled yet.
+  /// The first sample, by the IMU's clock, that covers this time of the lidar's and whose rate is not given out yet.
   std::optional<TimeNs> covering_ns(TimeNs end_ns) const;
   Status add_sweep(TimeNs start_ns, TimeNs end_ns, std::span<const LidarPoint> points,
                    LidarInertialOdometry::SweepReport& report);
@@ -47,8 +47,8 @@ class OdometryPass {
 
   /// The time of the IMU's clock that is a time of the lidar's.
   TimeNs needed_ns(TimeNs lidar_ns) const;
-  /// Settles the rates up to the first sample at or after a time as they stand, though less than the lag lies ahead.
-  void settle_until(TimeNs time_ns);
+  /// Gives out the rates up to the first sample at or after a time as they stand, though less than the lag lies ahead.
+  void flush_until(TimeNs time_ns);
   /// The rates go on with another stream, anew; the mapper stays.
   void begin_rates(const RegimeStream::Params& rate);
   /// The map and all that hangs on it is that of another pass, with the memory that it keeps for its samples; the rates
@@ -60,7 +60,7 @@ class OdometryPass {
   const LidarInertialOdometry& mapper() const { return mapper_; }
   const SweepScale& sweep_scale() const { return scale_.scale(); }
   const Localisation& localisation() const { return localisation_; }
-  const std::optional<RateState>& settled() const { return settled_; }
+  const std::optional<RateState>& smoothed_rate() const { return smoothed_; }
   std::size_t refused_samples() const { return refused_samples_; }
 
   /// Stated once, in the library's own sources: state_visitor.hpp.
@@ -70,7 +70,7 @@ class OdometryPass {
   Status check_state() const;
 
  private:
-  void settle(const RateState& rate);
+  void take_rate(const RateState& rate);
 
   RegimeStream rates_;
   RegimeStream::State rate_state_;
@@ -78,8 +78,8 @@ class OdometryPass {
   SweepScaleWatch scale_;
   Localisation localisation_;
   double rate_sigma_max_rad_s_, time_offset_s_;
-  Queue unsettled_;  ///< samples whose rates are not settled yet
-  std::optional<RateState> settled_;
+  Queue pending_;  ///< samples whose rates are not given out yet
+  std::optional<RateState> smoothed_;
   std::optional<TimeNs> told_ns_;  ///< of the last sample that the mapper was given
   std::size_t refused_samples_ = 0;
 };

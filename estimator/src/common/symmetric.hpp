@@ -1,0 +1,15 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+namespace tumble {
+
+/// P <- (P + P^T) / 2, against what rounding adds from product to product; in place, since a copy would lie on the
+/// stack.
+template <class Matrix>
+void make_symmetric(Matrix& P) {
+  for (int j = 0; j < P.cols(); ++j) {
+    for (int i = 0; i < j; ++i) P(i, j) = P(j, i) = 0.5 * (P(i, j) + P(j, i));
+  }
+}
+
+}  // namespace tumble
