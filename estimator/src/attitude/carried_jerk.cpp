@@ -5,7 +5,7 @@
 #include <cmath>
 #include <vector>
 
-#include "carried_problem.hpp"
+#include "carried_readings.hpp"
 
 namespace tumble::carried {
 

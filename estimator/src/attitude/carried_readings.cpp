@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include "carried_readings.hpp"
+
 #include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
 #include <limits>
 
 #include "../angular_velocity/sample_hold.hpp"
-#include "carried_problem.hpp"
 #include "tumble/angular_velocity/clipping_finder.hpp"
 #include "tumble/angular_velocity/detail/subsample_saturation.hpp"
 #include "tumble/attitude/vqf.hpp"

@@ -2,107 +2,11 @@
 #pragma once
 
 #include "../angular_velocity/rate_stream_members.hpp"
-#include "tumble/attitude/detail/carried_live.hpp"
+#include "carried_stream_members.hpp"
 #include "tumble/attitude/regime_stream.hpp"
 
-/// Members of the states of RegimeStream, CarriedStream and CarriedLive, and of what their Params hold beside Fields:
-/// state_visitor.hpp.
+/// Members of a RegimeStream's state and of what its Params hold beside Fields: state_visitor.hpp.
 namespace tumble {
-
-namespace carried {
-
-template <StateOf<ElementSums> Self, class Visitor>
-void members(Self& s, Visitor& visit) {
-  visit("sums.n", s.n);
-  visit("sums.t_s", s.t_s);
-  visit("sums.tt_s2", s.tt_s2);
-  visit("sums.z", s.z);
-  visit("sums.zt", s.zt);
-  visit("sums.clipped", s.clipped);
-  visit("sums.clipped_t_s", s.clipped_t_s);
-  visit("sums.rail", s.rail);
-  visit("sums.sign", s.sign);
-  visit("sums.unread", s.unread);
-  visit("sums.unread_z", s.unread_z);
-  visit("sums.open", s.open);
-}
-
-template <StateOf<NodeReadings> Self, class Visitor>
-void members(Self& s, Visitor& visit) {
-  visit("readings.gyro", s.gyro);
-  visit("readings.force_m_s2", s.force_m_s2);
-  visit("readings.force_bound", s.force_bound);
-  visit("readings.force_n", s.force_n);
-  visit("readings.force_t_s", s.force_t_s);
-  visit("readings.force_open_m_s2", s.force_open_m_s2);
-  visit("readings.rest", s.rest);
-}
-
-template <StateOf<Node> Self, class Visitor>
-void members(Self& s, Visitor& visit) {
-  visit("node.q_WI", s.q_WI);
-  visit("node.w_WI_I_rad_s", s.w_WI_I_rad_s);
-  visit("node.angular_acceleration_rad_s2", s.angular_acceleration_rad_s2);
-  visit("node.a_W_m_s2", s.a_W_m_s2);
-  visit("node.v_W_m_s", s.v_W_m_s);
-  visit("node.p_W_m", s.p_W_m);
-}
-
-template <StateOf<Constants> Self, class Visitor>
-void members(Self& s, Visitor& visit) {
-  visit("constants.gyro_bias_rad_s", s.gyro_bias_rad_s);
-  visit("constants.accel_bias_m_s2", s.accel_bias_m_s2);
-  visit("constants.lever_arm_m", s.lever_arm_m);
-}
-
-}  // namespace carried
-
-template <StateOf<ClipSigns> Self, class Visitor>
-void members(Self& s, Visitor& visit) {
-  visit("signs.gyro", s.gyro);
-  visit("signs.accel", s.accel);
-}
-
-template <StateOf<CarriedStream::Reading> Self, class Visitor>
-void members(Self& s, Visitor& visit) {
-  visit("reading.sample", s.sample);
-  visit("reading.signs", s.signs);
-  visit("reading.centre_s", s.centre_s);
-  visit("reading.end_s", s.end_s);
-  visit("reading.node", s.node);
-  visit("reading.rest", s.rest);
-  visit("reading.gyro", s.gyro);
-  visit("reading.accel", s.accel);
-  visit("reading.smoothed", s.smoothed);
-}
-
-template <StateOf<CarriedStream::Knot> Self, class Visitor>
-void members(Self& s, Visitor& visit) {
-  visit("carried.node", s.node);
-  visit("carried.readings", s.readings);
-}
-
-template <StateOf<CarriedStream::State> Self, class Visitor>
-void members(Self& s, Visitor& visit) {
-  visit("carried.readings", s.readings);
-  visit("carried.window", s.window);
-  visit("carried.first_node", s.first_node);
-  visit("carried.rows", s.rows);
-  visit("carried.constants", s.constants);
-  visit("carried.constants_covariance", s.constants_covariance);
-  visit("carried.prior", s.prior);
-  visit("carried.prior_corner", s.prior_corner);
-  visit("carried.prior_node", s.prior_node);
-  visit("carried.prior_constants", s.prior_constants);
-  visit("carried.hand_power", s.hand_power);
-  visit("carried.rests", s.rests);
-  visit("carried.given_node", s.given_node);
-  visit("carried.given_covariance_rad2_s2", s.given_covariance_rad2_s2);
-  visit("carried.start_ns", s.start_ns);
-  visit("carried.samples", s.samples);
-  visit("carried.failures", s.failures);
-  visit.scratch(s.work);
-}
 
 template <StateOf<RegimeShares> Self, class Visitor>
 void members(Self& s, Visitor& visit) {
@@ -138,22 +42,6 @@ void members(Self& s, Visitor& visit) {
 template <StateOf<RegimeStream::Params> Self, class Visitor>
 void others(Self& p, Visitor& visit) {
   others(p.rate, visit);
-}
-
-template <StateOf<CarriedLive::State> Self, class Visitor>
-void members(Self& s, Visitor& visit) {
-  visit("live.stream", s.stream);
-  visit("live.rails", s.rails);
-  visit("live.holds", s.holds);
-  visit("live.news", s.news);
-  visit.scratch(s.signs);
-}
-
-template <StateOf<CarriedLive::Params> Self, class Visitor>
-void others(Self& p, Visitor& visit) {
-  others(p.rails.clipping.upright_rails, visit);
-  others(p.rails.clipping.planes, visit);
-  others(p.rails.clipping.accel_planes, visit);
 }
 
 }  // namespace tumble
