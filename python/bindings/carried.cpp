@@ -114,16 +114,16 @@ void bind_stream(nb::module_& m) {
           "add_imu",
           [](Object& self, const ArrayLike& time_ns, const ArrayLike& gyro, const ArrayLike& accel,
              const ArrayLike& clip_flags) {
-            std::optional<RateState> settled;
-            const auto step = [&settled](Live& at, const ImuSample& sample, Rates& out) {
-              const Status status = at.filter.push(sample, *at.state, settled);
-              if (settled) out.rows.push_back(*settled);
+            std::optional<RateState> smoothed;
+            const auto step = [&smoothed](Live& at, const ImuSample& sample, Rates& out) {
+              const Status status = at.filter.push(sample, *at.state, smoothed);
+              if (smoothed) out.rows.push_back(*smoothed);
               return status;
             };
             return feed<Rates>(self, samples_of(time_ns, gyro, accel, clip_flags), step);
           },
           nb::arg("time_ns"), nb::arg("gyro"), nb::arg("accel"), nb::arg("clip_flags") = nb::none(),
-          "Takes one sample or many; returns the rates that are settled with them, lag_s old each.")
+          "Takes one sample or many; returns the rates that are smoothed with them, lag_s old each.")
       .def(
           "flush",
           [](Object& self) {

@@ -365,12 +365,12 @@ def test_doubt_names_what_cannot_be_believed(hill, slip):
 def test_mapper_alone(hill):
     """LidarInertialOdometry with rates of a stream; the gyro alone is another thing."""
     imu, until = hill.imus[0], 8
-    settled = tumble.rate(imu)
+    rates = tumble.rate(imu)
     mapper, believing = (tumble.LidarInertialOdometry(T_IL=hill.T_IL) for _ in range(2))
     covered = int(np.searchsorted(imu.time_ns, hill.sweeps[until].end_ns)) + 1
     head = [rows[:covered] for rows in imu.samples[:3]]
     with pytest.raises(tumble.TumbleError) as caught:
-        mapper.add_imu(*head, settled)
+        mapper.add_imu(*head, rates)
     assert (caught.value.trouble, caught.value.field) == ("shape", "rates")
     given = tumble.RegimeStream(lever_arm_m=imu.lever_arm_m)
     given = tumble.Rates.joined([given.add_imu(*head), given.flush()])

@@ -206,8 +206,8 @@ Estimate run_passes(const sim::LidarRecord& lidar, std::span<const ImuSample> sa
     start_from(odometry.calibration());
     again();
   }
-  const bool settled = run.status.ok() && tells_calibration(run) && mahalanobis <= kBelieved;
-  if (settled) {
+  const bool converged = run.status.ok() && tells_calibration(run) && mahalanobis <= kBelieved;
+  if (converged) {
     const auto sigma = odometry.calibration_weight().diagonal().cwiseSqrt().eval();
     start_from(odometry.calibration());
     params.mount_sigma_rad = sigma.head<3>().maxCoeff();
@@ -216,9 +216,9 @@ Estimate run_passes(const sim::LidarRecord& lidar, std::span<const ImuSample> sa
     again();
   }
   if (passes > 1) run.health["passes"] = passes;
-  verdict = {given_calibration(given, given).moved(odometry.calibration()), settled};
+  verdict = {given_calibration(given, given).moved(odometry.calibration()), converged};
   run.health["lidar_calibration_mahalanobis"] = verdict.moved;
-  run.health["calibration_unconverged"] = settled ? 0.0 : 1.0;
+  run.health["calibration_unconverged"] = converged ? 0.0 : 1.0;
   return run;
 }
 

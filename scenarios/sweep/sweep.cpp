@@ -78,7 +78,7 @@ class Sweep {
     plan_.note_recordings(results_);
     progress_.draws_total = plan_.draws_total();
     work([&] { return next_draw(); });
-    if (options_.keep.which != Keep::Which::none && !stopped()) settle_kept();
+    if (options_.keep.which != Keep::Which::none && !stopped()) update_kept();
     for (DrawWorker& worker : workers_) note_peak(worker.dismiss());
     workers_.clear();
     report();
@@ -187,7 +187,7 @@ class Sweep {
     const bool open = worker.hear(said);
     for (const Message& message : said) {
       if (message.not_kept) progress_.not_kept = *message.not_kept;
-      if (settling_) continue;  // of rows that stand
+      if (updating_kept_) continue;  // of rows that stand
       if (message.outcome) keep(*message.outcome);
       if (message.draw) results_.store(*message.draw);
       if (message.rejected && results_.store(*message.rejected)) ++progress_.rejected;
@@ -198,7 +198,7 @@ class Sweep {
   // the process of a draw died: what is left over of its runs has no answer
   void account_for_death(const DrawTask& draw, bool late, const Process::End& end) {
     const std::string what = late ? "the draw did not end in time" : "the draw's process " + end.describe();
-    if (settling_) {
+    if (updating_kept_) {
       progress_.not_kept = what;
       return;
     }
@@ -214,8 +214,8 @@ class Sweep {
 
   /// What the results say is to be kept: made again where it does not stand, removed where it stands and is not of it.
   /// What the disk refuses is trouble of the keeping alone.
-  void settle_kept() {
-    settling_ = true;
+  void update_kept() {
+    updating_kept_ = true;
     const std::set<DrawName> wanted = draws_to_keep(results_, options_.keep);
     std::vector<DrawTask> asked, missing;
     for (const DrawName& draw : wanted) {
@@ -259,7 +259,7 @@ class Sweep {
 
   void report() {
     progress_.elapsed_s = now_s() - started_s_;
-    if (!settling_) {
+    if (!updating_kept_) {
       const auto done = static_cast<double>(progress_.draws_done - done_before_);
       const auto left = static_cast<double>(progress_.draws_total - progress_.draws_done);
       progress_.left_s = done > 0.0 ? progress_.elapsed_s / done * left : 0.0;
@@ -277,7 +277,7 @@ class Sweep {
   std::list<DrawWorker> workers_;
   SweepProgress progress_;
   std::uint64_t done_before_ = 0;
-  bool settling_ = false;  ///< draws are made again for their files alone
+  bool updating_kept_ = false;  ///< draws are made again for their files alone
 };
 
 }  // namespace

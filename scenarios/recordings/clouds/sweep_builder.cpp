@@ -92,10 +92,10 @@ void SweepBuilder::add(std::optional<std::int64_t> stamp_ns, Cloud cloud, std::s
   if (rule_) return take(sweep);
   waiting_.push_back(std::move(sweep));
   const auto holds_points = [](const Waiting& each) { return each.cloud.points > 0; };
-  if (std::count_if(waiting_.begin(), waiting_.end(), holds_points) >= kProbe) settle();
+  if (std::count_if(waiting_.begin(), waiting_.end(), holds_points) >= kProbe) find_rule();
 }
 
-void SweepBuilder::settle() {
+void SweepBuilder::find_rule() {
   std::vector<Cloud> first;
   for (Waiting& sweep : waiting_) first.push_back(std::move(sweep.cloud));
   rule_ = find_point_times(first, period_ns_, reading_, waiting_.front().where);
@@ -246,7 +246,7 @@ void SweepBuilder::note_what_was_left(std::vector<std::string>& notes) const {
 }
 
 BuiltSweeps SweepBuilder::finish(const std::string& where, std::vector<std::string>& notes) {
-  if (!rule_ && !waiting_.empty()) settle();
+  if (!rule_ && !waiting_.empty()) find_rule();
   if (points() == 0) throw BadInput(where + ": no sweep holds a point");
   require_range(where);
   record_.sweep_first.push_back(points());

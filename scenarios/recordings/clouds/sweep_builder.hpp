@@ -80,7 +80,7 @@ class SweepBuilder {
     Cloud cloud;
     std::string where;
   };
-  void settle();  ///< the rule of the times, from the clouds that wait; then these are taken
+  void find_rule();  ///< the rule of the times, from the clouds that wait; then these are taken
   void take(Waiting& sweep);
   std::int64_t take_times(const Waiting& sweep, const std::vector<std::size_t>& kept);
   void take_points(const Waiting& sweep, const std::vector<std::size_t>& kept);

@@ -83,10 +83,10 @@ TEST(Window, TheSweepsAfterItPlaceASweepThatSawNothing) {
   run.sweeps(15, 18, 15, 16);  // nothing but a gyro on its rail
   run.sweeps(18, 19);
   const PoseState& at_once = run.reports[15].trajectory.back();
-  const PoseState& settled = run.reports[17].smoothed.back();
-  ASSERT_EQ(at_once.time_ns, settled.time_ns);
-  EXPECT_LT(run.error_rad(settled), 0.5 * run.error_rad(at_once));
-  EXPECT_LT(settled.covariance.diagonal().tail<3>().sum(), at_once.covariance.diagonal().tail<3>().sum());
+  const PoseState& smoothed = run.reports[17].smoothed.back();
+  ASSERT_EQ(at_once.time_ns, smoothed.time_ns);
+  EXPECT_LT(run.error_rad(smoothed), 0.5 * run.error_rad(at_once));
+  EXPECT_LT(smoothed.covariance.diagonal().tail<3>().sum(), at_once.covariance.diagonal().tail<3>().sum());
   EXPECT_LT(run.error_m(run.report.pose), 0.05);
 }
 
@@ -96,12 +96,12 @@ TEST(Window, OfOneLeavesASweepAsItWas) {
   Drive run(params);
   run.sweeps(0, 12);
   for (std::size_t k = 0; k < run.reports.size(); ++k) {
-    const std::vector<PoseState>& settled = run.reports[k].smoothed;
+    const std::vector<PoseState>& smoothed = run.reports[k].smoothed;
     const std::vector<PoseState>& before = run.reports[k].trajectory;
-    ASSERT_EQ(settled.size(), before.size());
-    for (std::size_t i = 0; i < settled.size(); ++i) {
-      EXPECT_EQ(settled[i].time_ns, before[i].time_ns);
-      EXPECT_EQ(settled[i].p_WA_m, before[i].p_WA_m);
+    ASSERT_EQ(smoothed.size(), before.size());
+    for (std::size_t i = 0; i < smoothed.size(); ++i) {
+      EXPECT_EQ(smoothed[i].time_ns, before[i].time_ns);
+      EXPECT_EQ(smoothed[i].p_WA_m, before[i].p_WA_m);
     }
   }
 }

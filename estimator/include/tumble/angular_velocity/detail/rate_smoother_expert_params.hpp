@@ -14,7 +14,7 @@ struct RateDescentParams {
   double tolerance_rad_s = 2e-3;  ///< stop when no rate changes by more
   double step_max_rad_s = 10.0;   ///< longest step of a rate in one iteration
   double widen_first = 8.0;       ///< threshold of contact in the first iteration, halved in each
-  /// Iterations after settling in which the bounds of samples in contact are those of a truncated distribution
+  /// Iterations after convergence in which the bounds of samples in contact are those of a truncated distribution
   /// instead of hard bounds, which gives them an honest covariance.
   int bound_iterations = 3;
   double bound_damping = 0.5;  ///< share of a new bound taken over in each of them
@@ -28,7 +28,7 @@ struct RateDescentParams {
           {"widen_first", "1", 1.0, 1000.0, "threshold of contact in the first iteration, halved in each"});
     visit(p.bound_iterations,
           {"bound_iterations", "1", 0, 1000,
-           "iterations after settling in which bounds in contact are truncated distributions, not hard bounds"});
+           "iterations after convergence in which bounds in contact are truncated distributions, not hard bounds"});
     visit(p.bound_damping, {"bound_damping", "1", 0.01, 1.0, "share of a new bound taken over in each of them"});
   }
 };
