@@ -220,6 +220,7 @@ Method rate_tumble() {
       "A smoother over the recording: bounds of clipped axes, rigid flight at the lever arm, Euler's equation, and the "
       "constants of the rig with it; further IMUs on the body where there are any (not imu_reference); that of carried "
       "where the readings say that a hand holds it.";
+  info.ours = true;
   info.source = "ours, from Deschenes et al., Saturation-Aware Angular Velocity Estimation, ICRA 2024";
   info.settings = {&rate_tumble_settings()};
   info.robots = {"rig", "pendulum"};

@@ -113,7 +113,7 @@ std::string MethodInfo::why_not(const Subject& subject) const {
 }
 
 Method make_method(MethodInfo info, RunCore run) {
-  if (info.ours) info.source = "ours";
+  if (info.ours && info.source.empty()) info.source = "ours";
   const std::string name = full_name(info);
   const std::vector<const SettingsTable*> settings = info.settings;
   const auto parameters =

@@ -238,6 +238,18 @@ TEST(Registry, NamesAreUniqueWithinAKindAndSortedByKind) {
   }
 }
 
+// `tumble run SCENARIO` shows it beside the baseline
+TEST(Registry, TheFirstOfOursIsTheOneThatIsCalledTumble) {
+  for (const Kind kind : {Kind::rate, Kind::attitude, Kind::position, Kind::slam}) {
+    const auto is_ours = [&](const Method& method) {
+      return method.info.kind == kind && method.info.ours && !method.info.needs_truth;
+    };
+    const auto first = std::find_if(methods().begin(), methods().end(), is_ours);
+    ASSERT_NE(first, methods().end());
+    EXPECT_EQ(first->info.name, "tumble") << to_string(kind);
+  }
+}
+
 TEST(Registry, FindsByNameAndByKindAndName) {
   EXPECT_EQ(find_methods("oracle").size(), 4u);
   ASSERT_EQ(find_methods("rate/oracle").size(), 1u);
