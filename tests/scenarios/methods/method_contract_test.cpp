@@ -57,7 +57,8 @@ TEST_P(MethodContract, DescribesItself) {
   EXPECT_NE(info.name, "");
   EXPECT_NE(info.doc, "");
   EXPECT_NE(info.source, "");
-  EXPECT_EQ(info.ours, info.source == "ours") << "whose it is, told twice";
+  // of one of ours, what it goes back to may follow; one that is kept to compare with is not shown as ours
+  EXPECT_TRUE(info.ours ? info.source.starts_with("ours") : info.source != "ours") << "whose it is, told twice";
   for (const sim::Parameter& parameter : info.parameters) {
     EXPECT_NE(parameter.doc, "") << parameter.name;
     EXPECT_LE(parameter.low, parameter.default_value) << parameter.name;
