@@ -32,18 +32,19 @@ void flip_lever_arm_of_poses(const sim::Recording& recording, Estimate& estimate
   }
 }
 
+void scale_covariances(double by, Estimate& estimate) {
+  for (RateState& rate : estimate.rates) rate.covariance_rad2_s2 *= by;
+  for (AttitudeState& attitude : estimate.attitudes) attitude.covariance_rad2 *= by;
+  for (PoseState& pose : estimate.poses) pose.covariance *= by;
+  for (auto& sweep : estimate.sweeps) sweep.pose.covariance *= by;
+}
+
 void halve_covariances(const sim::Recording&, Estimate& estimate) {
-  for (RateState& rate : estimate.rates) rate.covariance_rad2_s2 *= 0.5;
-  for (AttitudeState& attitude : estimate.attitudes) attitude.covariance_rad2 *= 0.5;
-  for (PoseState& pose : estimate.poses) pose.covariance *= 0.5;
-  for (auto& sweep : estimate.sweeps) sweep.pose.covariance *= 0.5;
+  scale_covariances(0.5, estimate);
 }
 
 void double_covariances(const sim::Recording&, Estimate& estimate) {
-  for (RateState& rate : estimate.rates) rate.covariance_rad2_s2 *= 2.0;
-  for (AttitudeState& attitude : estimate.attitudes) attitude.covariance_rad2 *= 2.0;
-  for (PoseState& pose : estimate.poses) pose.covariance *= 2.0;
-  for (auto& sweep : estimate.sweeps) sweep.pose.covariance *= 2.0;
+  scale_covariances(2.0, estimate);
 }
 
 /// The first segment of the truth that lies higher than the start: [begin, end] in ns; empty without one.
