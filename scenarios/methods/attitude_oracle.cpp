@@ -7,6 +7,7 @@
 #include "scenarios/methods/attitude_tumble.hpp"
 #include "scenarios/methods/bridge.hpp"
 #include "scenarios/methods/registry.hpp"
+#include "scenarios/methods/sample_times.hpp"
 #include "tumble/common/imu.hpp"
 
 namespace tumble::scenarios {
@@ -52,7 +53,7 @@ Method attitude_oracle() {
   info.ours = true;
   info.settings = {&attitude_tumble_settings()};
   info.needs_truth = true;
-  return make_method(std::move(info), run_attitude_oracle);
+  return make_method(std::move(info), at_sample_times<run_attitude_oracle>);
 }
 
 }  // namespace tumble::scenarios

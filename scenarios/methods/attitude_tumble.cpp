@@ -7,6 +7,7 @@
 #include "scenarios/methods/imu_check.hpp"
 #include "scenarios/methods/recovered_rates.hpp"
 #include "scenarios/methods/registry.hpp"
+#include "scenarios/methods/sample_times.hpp"
 #include "scenarios/methods/sphere_imus.hpp"
 #include "tumble/attitude/tumble_attitude.hpp"
 
@@ -90,6 +91,14 @@ Estimate run_attitude_tumble(const sim::Sensors& sensors, const sim::Values& par
   return sensors.sphere_radius_m > 0.0 ? run_sphere(sensors, parameters) : run_rig(sensors, parameters);
 }
 
+namespace {
+
+Estimate run_without_truth(const sim::Sensors& sensors, const sim::Values& parameters, const OracleInput& /*oracle*/) {
+  return run_attitude_tumble(sensors, parameters);
+}
+
+}  // namespace
+
 Method attitude_tumble() {
   MethodInfo info;
   info.name = "tumble";
@@ -99,8 +108,7 @@ Method attitude_tumble() {
       "rail hid are those of rate/tumble.";
   info.ours = true;
   info.settings = {&attitude_tumble_settings()};
-  return make_method(std::move(info), [](const sim::Sensors& sensors, const sim::Values& parameters,
-                                         const OracleInput&) { return run_attitude_tumble(sensors, parameters); });
+  return make_method(std::move(info), at_sample_times<run_without_truth>);
 }
 
 }  // namespace tumble::scenarios

@@ -8,6 +8,7 @@
 #include "scenarios/methods/method.hpp"
 #include "scenarios/methods/recovered_rates.hpp"
 #include "scenarios/methods/registry.hpp"
+#include "scenarios/methods/sample_times.hpp"
 
 namespace tumble::scenarios {
 
@@ -84,7 +85,7 @@ Method attitude_tumble_batch() {
       "clipped gyro axes as bounds, or with the rates of rate/tumble where nobody held the body meanwhile.";
   info.ours = true;
   info.settings = {&carried_settings()};
-  return make_method(std::move(info), run_attitude_tumble_batch);
+  return make_method(std::move(info), at_sample_times<run_attitude_tumble_batch>);
 }
 
 }  // namespace tumble::scenarios

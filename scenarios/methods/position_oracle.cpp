@@ -5,6 +5,7 @@
 #include "scenarios/errors.hpp"
 #include "scenarios/methods/position_tumble.hpp"
 #include "scenarios/methods/registry.hpp"
+#include "scenarios/methods/sample_times.hpp"
 #include "scenarios/methods/sphere_attitude.hpp"
 
 namespace tumble::scenarios {
@@ -126,7 +127,7 @@ Method position_oracle() {
   info.settings = {&settings_with_attitude()};
   info.needs_truth = true;
   info.robots = {"sphere"};
-  return make_method(std::move(info), run_exact_attitude);
+  return make_method(std::move(info), at_sample_times<run_exact_attitude>);
 }
 
 Method position_oracle_contact() {
@@ -138,7 +139,7 @@ Method position_oracle_contact() {
   info.settings = {&settings_with_contact()};
   info.needs_truth = true;
   info.robots = {"sphere"};
-  return make_method(std::move(info), run_exact_contact);
+  return make_method(std::move(info), at_sample_times<run_exact_contact>);
 }
 
 }  // namespace tumble::scenarios

@@ -6,6 +6,7 @@
 #include "scenarios/methods/position_tumble.hpp"
 #include "scenarios/methods/registry.hpp"
 #include "scenarios/methods/robot_presets.hpp"
+#include "scenarios/methods/sample_times.hpp"
 #include "scenarios/methods/sphere_attitude.hpp"
 
 namespace tumble::scenarios {
@@ -288,7 +289,7 @@ Method position_tumble() {
   info.ours = true;
   info.settings = {&position_settings()};
   info.robots = {"sphere"};
-  return make_method(std::move(info), run_whole);
+  return make_method(std::move(info), at_sample_times<run_whole>);
 }
 
 Method position_tumble_lag() {
@@ -299,7 +300,7 @@ Method position_tumble_lag() {
   info.ours = true;
   info.settings = {&lag_settings()};
   info.robots = {"sphere"};
-  return make_method(std::move(info), run_lag);
+  return make_method(std::move(info), at_sample_times<run_lag>);
 }
 
 Method position_tumble_live() {
@@ -310,7 +311,7 @@ Method position_tumble_live() {
   info.ours = true;
   info.settings = {&live_settings()};
   info.robots = {"sphere"};
-  return make_method(std::move(info), run_live);
+  return make_method(std::move(info), at_sample_times<run_live>);
 }
 
 }  // namespace tumble::scenarios

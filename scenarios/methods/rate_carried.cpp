@@ -2,6 +2,7 @@
 #include "scenarios/methods/carried.hpp"
 #include "scenarios/methods/method.hpp"
 #include "scenarios/methods/registry.hpp"
+#include "scenarios/methods/sample_times.hpp"
 
 namespace tumble::scenarios {
 
@@ -26,7 +27,7 @@ Method rate_carried() {
       "rate that a clipped gyro lost.";
   info.ours = true;
   info.settings = {&carried_settings()};
-  return make_method(std::move(info), run_rate_carried);
+  return make_method(std::move(info), at_sample_times<run_rate_carried>);
 }
 
 }  // namespace tumble::scenarios

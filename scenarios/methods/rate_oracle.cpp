@@ -2,6 +2,7 @@
 #include "scenarios/errors.hpp"
 #include "scenarios/methods/bridge.hpp"
 #include "scenarios/methods/registry.hpp"
+#include "scenarios/methods/sample_times.hpp"
 
 namespace tumble::scenarios {
 
@@ -35,7 +36,7 @@ Method rate_oracle() {
   info.doc = "The same gyro without its rail: noise, bias and bandwidth as read, nothing clipped. The bound.";
   info.ours = true;
   info.needs_truth = true;
-  return make_method(std::move(info), run_rate_oracle);
+  return make_method(std::move(info), at_sample_times<run_rate_oracle>);
 }
 
 }  // namespace tumble::scenarios

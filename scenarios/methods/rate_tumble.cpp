@@ -14,6 +14,7 @@
 #include "scenarios/methods/rate_baseline.hpp"
 #include "scenarios/methods/rate_regimes.hpp"
 #include "scenarios/methods/rate_tumble.hpp"
+#include "scenarios/methods/sample_times.hpp"
 #include "tumble/angular_velocity/detail/rate_model.hpp"
 
 namespace tumble::scenarios {
@@ -189,8 +190,10 @@ Status tumble_rates(const sim::Sensors& sensors, std::span<const ImuSample> samp
   return status;
 }
 
-Estimate run_rate_tumble(const sim::Sensors& sensors, const sim::Values& parameters, const LearntRig* given,
-                         std::optional<LearntRig>* found) {
+namespace {
+
+Estimate rates_of_batch(const sim::Sensors& sensors, const sim::Values& parameters, const LearntRig* given,
+                        std::optional<LearntRig>* found) {
   Estimate estimate;
   std::vector<ImuSample> samples;
   estimate.status = bridge::primary_imu_samples(sensors, samples);
@@ -210,6 +213,14 @@ Estimate run_rate_tumble(const sim::Sensors& sensors, const sim::Values& paramet
   }
   count_sources(estimate.rates, estimate.health);
   return estimate;
+}
+
+}  // namespace
+
+Estimate run_rate_tumble(const sim::Sensors& sensors, const sim::Values& parameters, const LearntRig* given,
+                         std::optional<LearntRig>* found) {
+  return with_sample_times(sensors,
+                           [&](const sim::Sensors& timed) { return rates_of_batch(timed, parameters, given, found); });
 }
 
 Method rate_tumble() {

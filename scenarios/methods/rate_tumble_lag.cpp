@@ -9,6 +9,7 @@
 #include "scenarios/methods/imu_check.hpp"
 #include "scenarios/methods/rate_tumble.hpp"
 #include "scenarios/methods/registry.hpp"
+#include "scenarios/methods/sample_times.hpp"
 #include "tumble/angular_velocity/rate_stream.hpp"
 #include "tumble/attitude/regime_stream.hpp"
 
@@ -74,8 +75,10 @@ LearntRig learnt_by(const RateStream& stream, const RateStream::Params& params, 
 
 }  // namespace
 
-Estimate run_rate_tumble_lag(const sim::Sensors& sensors, const sim::Values& parameters, const LearntRig* given,
-                             std::optional<LearntRig>* found) {
+namespace {
+
+Estimate rates_of_stream(const sim::Sensors& sensors, const sim::Values& parameters, const LearntRig* given,
+                         std::optional<LearntRig>* found) {
   Estimate estimate;
   std::vector<ImuSample> samples;
   estimate.status = bridge::primary_imu_samples(sensors, samples);
@@ -126,6 +129,14 @@ Estimate run_rate_tumble_lag(const sim::Sensors& sensors, const sim::Values& par
   }
   count_sources(estimate.rates, estimate.health);
   return estimate;
+}
+
+}  // namespace
+
+Estimate run_rate_tumble_lag(const sim::Sensors& sensors, const sim::Values& parameters, const LearntRig* given,
+                             std::optional<LearntRig>* found) {
+  return with_sample_times(sensors,
+                           [&](const sim::Sensors& timed) { return rates_of_stream(timed, parameters, given, found); });
 }
 
 Method rate_tumble_lag() {

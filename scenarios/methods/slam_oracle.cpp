@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "scenarios/methods/bridge.hpp"
 #include "scenarios/methods/registry.hpp"
+#include "scenarios/methods/sample_times.hpp"
 #include "scenarios/methods/slam_registry.hpp"
 #include "scenarios/methods/slam_settings.hpp"
 
@@ -31,7 +32,7 @@ Method slam_oracle() {
        .ours = true,
        .settings = {&slam_oracle_settings()},
        .needs_truth = true},
-      run_slam_oracle);
+      at_sample_times<run_slam_oracle>);
 }
 
 }  // namespace tumble::scenarios

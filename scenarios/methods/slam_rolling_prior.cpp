@@ -7,6 +7,7 @@
 #include "scenarios/methods/bridge.hpp"
 #include "scenarios/methods/position_stage.hpp"
 #include "scenarios/methods/registry.hpp"
+#include "scenarios/methods/sample_times.hpp"
 #include "scenarios/methods/slam_settings.hpp"
 #include "scenarios/methods/sphere_attitude.hpp"
 #include "tumble/common/so3.hpp"
@@ -257,7 +258,7 @@ Method slam_rolling_prior() {
   info.ours = true;
   info.settings = stages_after({&prior_settings(), &along_settings()}, followed());
   info.robots = {"sphere"};
-  return make_method(std::move(info), run_rolling_prior);
+  return make_method(std::move(info), at_sample_times<run_rolling_prior>);
 }
 
 }  // namespace tumble::scenarios

@@ -5,6 +5,7 @@
 #include "scenarios/methods/imu_check.hpp"
 #include "scenarios/methods/rate_tumble.hpp"
 #include "scenarios/methods/registry.hpp"
+#include "scenarios/methods/sample_times.hpp"
 #include "scenarios/methods/slam_registry.hpp"
 #include "scenarios/methods/slam_settings.hpp"
 
@@ -48,7 +49,7 @@ Method slam_tumble() {
                           "estimated in the registration.",
                    .ours = true,
                    .settings = {&slam_tumble_chain_settings(), &slam_tumble_rate_settings()}},
-                  run_slam_tumble);
+                  at_sample_times<run_slam_tumble>);
 }
 
 }  // namespace tumble::scenarios

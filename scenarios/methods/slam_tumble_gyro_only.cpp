@@ -4,6 +4,7 @@
 #include "scenarios/methods/bridge.hpp"
 #include "scenarios/methods/rate_baseline.hpp"
 #include "scenarios/methods/registry.hpp"
+#include "scenarios/methods/sample_times.hpp"
 #include "scenarios/methods/slam_registry.hpp"
 #include "scenarios/methods/slam_settings.hpp"
 
@@ -86,7 +87,7 @@ Method slam_tumble_gyro_only() {
            "a map holds.",
        .ours = true,
        .settings = {&slam_tumble_gyro_only_settings()}},
-      run_slam_tumble_gyro_only);
+      at_sample_times<run_slam_tumble_gyro_only>);
 }
 
 }  // namespace tumble::scenarios

@@ -4,6 +4,7 @@
 #include <array>
 #include <string_view>
 
+#include "../common/sample_clock_members.hpp"
 #include "../common/state_params.hpp"
 #include "pass_members.hpp"
 #include "tumble/odometry/tumbling_odometry.hpp"
@@ -72,6 +73,8 @@ void TumblingOdometry::Waiting::members(Self& s, Visitor& visit) {
 template <class Self, class Visitor>
 void TumblingOdometry::members(Self& s, Visitor& visit) {
   visit.scratch(s.params_);  // held to those that are saved
+  visit.scratch(s.clock_);   // made of them
+  visit("stamps", s.stamps_);
   visit("pass", s.pass_);
   visit("again", s.again_);
   visit("newest_ns", s.newest_ns_);

@@ -7,7 +7,7 @@
 #include "../attitude/regime_stream_members.hpp"
 #include "../mapping/odometry_members.hpp"
 #include "tumble/odometry/detail/odometry_pass.hpp"
-#include "tumble/odometry/second_pass.hpp"
+#include "tumble/odometry/detail/second_pass.hpp"
 
 /// Members of the two passes of TumblingOdometry: state_visitor.hpp.
 namespace tumble {

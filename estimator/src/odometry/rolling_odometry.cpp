@@ -102,6 +102,7 @@ RollingOdometry::RollingOdometry(const Params& params) : RollingOdometry(params,
 
 RollingOdometry::RollingOdometry(const Params& params, const ImuMerge::Params& merged)
     : params_(params),
+      clock_(params.expert.stamps),
       merge_(merged),
       smoother_(rolling_params(params, merged, merge_)),
       rails_(sheets_of(params)),
@@ -114,6 +115,8 @@ RollingOdometry::RollingOdometry(const Params& params, const ImuMerge::Params& m
 
 RollingOdometry::RollingOdometry(const RollingOdometry& other)
     : params_(other.params_),
+      clock_(other.clock_),
+      stamps_(other.stamps_),
       merge_(other.merge_),
       smoother_(other.smoother_),
       rails_(other.rails_),
@@ -137,8 +140,12 @@ Status RollingOdometry::add_imus(std::span<const ImuSample> samples) {
   std::optional<ImuSample> merged;
   if (samples.size() != params_.units.size())
     return {Trouble::too_few, "samples", double(samples.size()), double(params_.units.size())};
+  SampleClock::State stamps = stamps_;
+  TimeNs time_ns = 0;
+  if (Status status = clock_.push(samples.front().time_ns, stamps, time_ns); !status.ok()) return status;
   UnitRails::Samples flagged;
   rails_.flag(samples, rails_state_, flagged);
+  flagged.front().time_ns = time_ns;
   *merged_state_ = *merge_state_;  // all take the sample, or none
   Frozen frozen = frozen_;
   for (std::size_t k = 0; k < samples.size(); ++k) watches_[k].step(samples[k], frozen[k]);
@@ -149,6 +156,7 @@ Status RollingOdometry::add_imus(std::span<const ImuSample> samples) {
     if (Status status = take_in(*merged); !status.ok()) return status;
   }
   merge_state_.swap(merged_state_);
+  stamps_ = stamps;
   frozen_ = frozen;
   rails_.observe(samples, rails_state_);
   return {};
@@ -200,6 +208,7 @@ void RollingOdometry::finish() {
 }
 
 void RollingOdometry::reset() {
+  stamps_ = {};
   merge_state_ = std::make_unique<ImuMerge::State>();
   state_ = std::make_unique<RollingSmoother::State>();
   rails_state_ = rails_.start();

@@ -2,6 +2,7 @@
 // RollingOdometry as bytes.
 #include "../angular_velocity/frozen_members.hpp"
 #include "../attitude/imu_merge_members.hpp"
+#include "../common/sample_clock_members.hpp"
 #include "../common/state_params.hpp"
 #include "../rolling/rolling_members.hpp"
 #include "saved_state.hpp"
@@ -31,9 +32,11 @@ void others(Self& p, Visitor& visit) {
 template <class Self, class Visitor>
 void RollingOdometry::members(Self& s, Visitor& visit) {
   visit.scratch(s.params_);  // held to those that are saved; these three are made of them
+  visit.scratch(s.clock_);
   visit.scratch(s.merge_);
   visit.scratch(s.smoother_);
   visit.scratch(s.rails_);
+  visit("stamps", s.stamps_);
   visit("merge", *s.merge_state_);
   visit.scratch(s.merged_state_);
   visit("rolling", *s.state_);
@@ -58,6 +61,7 @@ std::vector<std::byte> RollingOdometry::save() const {
 Status RollingOdometry::load(std::span<const std::byte> bytes) {
   RollingOdometry fresh(params_);
   if (Status status = odometry::load(odometry::SavedKind::rolling, bytes, params_, fresh); !status.ok()) return status;
+  if (Status status = SampleClock::check_state(fresh.stamps_); !status.ok()) return status;
   if (Status status = fresh.smoother_.check_state(*fresh.state_); !status.ok()) return status;
   if (Status status = fresh.rails_.check_state(fresh.rails_state_); !status.ok()) return status;
   *this = std::move(fresh);

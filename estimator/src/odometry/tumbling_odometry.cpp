@@ -79,12 +79,11 @@ OdometryParams TumblingExpertParams::mapping_defaults() {
 
 TumblingOdometry::TumblingOdometry(const Params& params)
     : params_(params),
+      clock_(params.expert.stamps),
       pass_(rate_params(params), mapper_params(params)),
       again_(params.expert.again, rate_params(params), mapper_params(params)) {}
 
 Status TumblingOdometry::add_imu(const ImuSample& sample) {
-  if (newest_ns_ && sample.time_ns <= *newest_ns_)
-    return {Trouble::time_order, "time_ns", double(sample.time_ns), double(*newest_ns_)};
   const Status status = take_in(sample);
   if (status.trouble != Trouble::gap) return status;
   const double gap_max_s = params_.expert.rate.rate.gap_max_s;
@@ -100,11 +99,15 @@ Status TumblingOdometry::add_imu(const ImuSample& sample) {
 }
 
 Status TumblingOdometry::take_in(const ImuSample& sample) {
-  if (const Status status = pass_.add_imu(sample); !status.ok()) return status;
-  again_.remember(sample);
-  newest_ns_ = sample.time_ns;
+  SampleClock::State stamps = stamps_;  // one that is refused has no part in the clock
+  ImuSample timed = sample;
+  if (const Status status = clock_.push(sample.time_ns, stamps, timed.time_ns); !status.ok()) return status;
+  if (const Status status = pass_.add_imu(timed); !status.ok()) return status;
+  stamps_ = stamps;
+  again_.remember(timed);
+  newest_ns_ = timed.time_ns;
   after_gap_.reset();
-  if (!registered_ns_) registered_ns_ = sample.time_ns;
+  if (!registered_ns_) registered_ns_ = timed.time_ns;
   register_covered();
   return {};
 }
@@ -135,6 +138,10 @@ std::optional<TumblingOdometry::Sweep> TumblingOdometry::take() {
 
 Status TumblingOdometry::newest(PoseState& pose) const {
   return pass_.newest(pose);
+}
+
+std::optional<double> TumblingOdometry::mended_jitter_s() const {
+  return clock_.mends(stamps_) ? SampleClock::jitter_s(stamps_) : std::nullopt;
 }
 
 Status TumblingOdometry::doubt() const {

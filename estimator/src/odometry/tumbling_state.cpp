@@ -40,6 +40,7 @@ Status SecondPass::check_state(const OdometryPass& first) const {
 }
 
 Status TumblingOdometry::check_state() const {
+  if (const Status status = SampleClock::check_state(stamps_); !status.ok()) return status;
   if (const Status status = pass_.check_state(); !status.ok()) return status;
   if (const Status status = again_.check_state(pass_); !status.ok()) return status;
   if (pass_.smoothed_rate() && !registered_ns_) return missing("registered_ns");

@@ -12,6 +12,7 @@
 #include "tumble/angular_velocity/detail/frozen_axes.hpp"
 #include "tumble/attitude/imu_merge.hpp"
 #include "tumble/common/pose.hpp"
+#include "tumble/common/sample_clock.hpp"
 #include "tumble/odometry/detail/unit_rails.hpp"
 #include "tumble/odometry/imu_sheet.hpp"
 #include "tumble/rolling/rolling_smoother.hpp"
@@ -48,6 +49,7 @@ class RollingOdometry {
     struct Expert {
       ImuMerge::Params merge;
       RollingSmoother::Params rolling;
+      SampleClock::Params stamps;  ///< of stamps that a host put on the samples
     } expert;
 
     /// Every number of it, stated once.
@@ -60,6 +62,7 @@ class RollingOdometry {
       visit(p.lag_s, {"lag_s", "s", 0.0, 1e3, "poses are smoothed with what follows for so long", Rank::first});
       visit.group("merge_", p.expert.merge);
       visit.group("rolling_", p.expert.rolling);
+      visit.group("stamps_", p.expert.stamps);
     }
   };
   struct Pose {
@@ -77,7 +80,8 @@ class RollingOdometry {
   RollingOdometry& operator=(RollingOdometry&&) noexcept = default;
   ~RollingOdometry() = default;
 
-  /// Takes what all units read at one time (the first's stamp counts); one that has nothing to say gives NaN. On
+  /// Takes what all units read at one time (the first's stamp counts, and where a host jitters what SampleClock makes
+  /// of it); one that has nothing to say gives NaN. On
   /// trouble the state is as it was: `too_few` (units, or one that has something to say), `time_order`, `degenerate`
   /// (no gravity in the first sample), `gap` (more than a second: the way is not known any more, and the run is over
   /// until reset()), `out_of_range` after finish() and where the only unit that is heard has a frozen axis.
@@ -124,6 +128,8 @@ class RollingOdometry {
   Status doubt(const Frozen& frozen) const;
 
   Params params_;
+  SampleClock clock_;
+  SampleClock::State stamps_;  ///< of the samples taken in
   ImuMerge merge_;
   RollingSmoother smoother_;
   UnitRails rails_;

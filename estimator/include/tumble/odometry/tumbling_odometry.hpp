@@ -7,16 +7,18 @@
 #include <span>
 #include <vector>
 
+#include "tumble/common/sample_clock.hpp"
 #include "tumble/mapping/lidar_inertial_odometry.hpp"
 #include "tumble/odometry/detail/odometry_pass.hpp"
-#include "tumble/odometry/second_pass.hpp"
+#include "tumble/odometry/detail/second_pass.hpp"
 #include "tumble/odometry/tumbling_params.hpp"
 
 namespace tumble {
 
 /// Pose, velocity and map of a body that tumbles, from one IMU whose gyro may clip and a lidar whose sweeps are bent:
-/// causal, sample by sample. RegimeStream gives each sample its angular velocity, clipped or not, when it is `lag_s`
-/// old; LidarInertialOdometry takes samples and sweeps as their rates become known.
+/// causal, sample by sample. SampleClock tells when a sample was taken, where a host stamps; RegimeStream gives each
+/// sample its angular velocity, clipped or not, when it is `lag_s` old; LidarInertialOdometry takes samples and sweeps
+/// as their rates become known.
 ///
 /// Of each sweep there are three words: newest() places the IMU at any time, by inertia from the last sweep that was
 /// registered on; take() gives the sweep at most lag_s after its end, registered (`report.pose`); and the sweep after
@@ -77,19 +79,14 @@ class TumblingOdometry {
   /// it was (Localisation), which is for good, or with how far the lidar's calibration moved (GivenCalibration). It
   /// goes on either way: rates that nothing is known of have a wide deviation; a map of another scale is one.
   Status doubt() const;
-
   /// By how much the lidar's ranges are longer than the IMU has it, as far as the motion told.
   const SweepScale& sweep_scale() const { return pass_.sweep_scale(); }
-
   /// Time of the newest sample that was taken in.
   std::optional<TimeNs> newest_ns() const { return newest_ns_; }
-
   /// Rate of the newest sample, if any: provisional where the gyro clips, since what follows tells most of it.
   std::optional<RateState> newest_rate() const { return pass_.rates().rate().newest(pass_.rate_state().rate); }
-
   /// Latest smoothed rate, lag_s old, or a sample less where a sweep waited for it. Nothing while the lag fills.
   const std::optional<RateState>& smoothed_rate() const { return pass_.smoothed_rate(); }
-
   /// What is known of the IMU on the body: lever arm, biases, elements.
   RigCalibration rig() const { return pass_.rates().rate().calibration(pass_.rate_state().rate); }
   /// Gaps of the IMU after which the rates began anew.
@@ -100,6 +97,8 @@ class TumblingOdometry {
   /// wrong.
   std::size_t refused_samples() const { return pass_.refused_samples(); }
   std::size_t dropped_sweeps() const { return dropped_sweeps_; }
+  /// Standard deviation of the IMU's stamps about a regular clock [s], while that clock's times count for them.
+  std::optional<double> mended_jitter_s() const;
   /// The map, and all that the mapper tells beside.
   const LidarInertialOdometry& mapper() const { return pass_.mapper(); }
 
@@ -113,7 +112,6 @@ class TumblingOdometry {
   Status load(std::span<const std::byte> bytes);
   /// The parameters that such bytes are of, to make one of; on trouble `params` are as they were.
   static Status saved_params(std::span<const std::byte> bytes, Params& params);
-
   /// Stated once, in the library's own sources: state_visitor.hpp.
   template <class Self, class Visitor>
   static void members(Self& s, Visitor& visit);
@@ -136,6 +134,8 @@ class TumblingOdometry {
   void begin_rates();
 
   Params params_;
+  SampleClock clock_;
+  SampleClock::State stamps_;  ///< of the samples taken in
   OdometryPass pass_;
   SecondPass again_;
   std::optional<TimeNs> newest_ns_;      ///< of the samples taken in

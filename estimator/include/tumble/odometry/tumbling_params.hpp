@@ -7,12 +7,13 @@
 
 #include "tumble/attitude/regime_stream.hpp"
 #include "tumble/common/parameters.hpp"
+#include "tumble/common/sample_clock.hpp"
 #include "tumble/mapping/calibration.hpp"
 #include "tumble/mapping/detail/calibration_fields.hpp"
 #include "tumble/mapping/odometry_params.hpp"
+#include "tumble/odometry/detail/second_pass.hpp"
 #include "tumble/odometry/imu_sheet.hpp"
 #include "tumble/odometry/lidar_sheet.hpp"
-#include "tumble/odometry/second_pass.hpp"
 
 namespace tumble {
 
@@ -27,6 +28,8 @@ struct TumblingExpertParams {
   RegimeStream::Params rate = rate_defaults();
   /// With gravity's direction and what the rails hid of the rate among the unknowns.
   OdometryParams mapping = mapping_defaults();
+  /// Of stamps that a host put on the IMU's samples.
+  SampleClock::Params stamps;
   /// The second pass over the first seconds of motion, with what they told of rig and calibration.
   SecondPass::Params again;
   static OdometryParams mapping_defaults();
@@ -38,6 +41,7 @@ struct TumblingExpertParams {
     visit(p.sweeps_max, {"sweeps_max", "1", 1, 1e6, "sweeps that may wait for the IMU"});
     visit.group("rate_", p.rate);
     visit.group("mapping_", p.mapping);
+    visit.group("stamps_", p.stamps);
     visit.group("again_", p.again);
   }
 };

@@ -1,0 +1,208 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "tumble/common/sample_clock.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdint>
+#include <vector>
+
+namespace tumble {
+
+namespace {
+
+constexpr double kOutlier = 4.0;  // standard deviations beyond which an error counts no more than there
+constexpr double kStray = 0.4;    // periods off: the sample's number may be another
+constexpr std::size_t kStraysMax = 8;
+constexpr double kNoPeriod = 0.25;    // jitter in periods; stamps at random are 0.29 from the next number
+constexpr double kWander = 0.5;       // correlation of an error with the one before, of a line that does not follow
+constexpr double kLeastStep = 0.25;   // periods between two times
+constexpr double kNumberSigma = 0.1;  // periods that the line may be unsure of behind a gap
+
+constexpr double kPeriodMax_ns = 1e11;
+constexpr TimeNs kLast_ns = TimeNs{1} << 62;  // beyond, a time may not be moved
+
+// From an earlier stamp to a later one, whatever they are [ns].
+double after_ns(TimeNs later_ns, TimeNs earlier_ns) {
+  return static_cast<double>(static_cast<std::uint64_t>(later_ns) - static_cast<std::uint64_t>(earlier_ns));
+}
+
+// The line through numbered stamps.
+struct Line {
+  double period_ns = 0.0, last_ns = 0.0;  ///< slope; value at the last stamp's number, from the first stamp
+  double sum_n = 0.0, sum_nn = 0.0;       ///< of the numbers, counted from the last
+  double square_ns2 = 0.0;                ///< variance of the stamps about it
+};
+
+using Offsets = std::array<double, SampleClock::kStart>;  // from the first stamp [ns]
+using Numbers = std::array<double, SampleClock::kStart>;
+
+Line fit(const Offsets& x_ns, const Numbers& n) {
+  constexpr auto kCount = static_cast<double>(SampleClock::kStart);
+  Line line;
+  double sum_x = 0.0, sum_nx = 0.0;
+  for (std::size_t k = 0; k < SampleClock::kStart; ++k) {
+    const double from_last = n[k] - n.back();
+    line.sum_n += from_last;
+    line.sum_nn += from_last * from_last;
+    sum_x += x_ns[k];
+    sum_nx += from_last * x_ns[k];
+  }
+  const double determinant = kCount * line.sum_nn - line.sum_n * line.sum_n;
+  line.last_ns = (line.sum_nn * sum_x - line.sum_n * sum_nx) / determinant;
+  line.period_ns = (kCount * sum_nx - line.sum_n * sum_x) / determinant;
+  for (std::size_t k = 0; k < SampleClock::kStart; ++k) {
+    const double residual = x_ns[k] - line.last_ns - (n[k] - n.back()) * line.period_ns;
+    line.square_ns2 += residual * residual / (kCount - 2.0);
+  }
+  return line;
+}
+
+double median_step(const Offsets& x_ns) {
+  std::array<double, SampleClock::kStart - 1> steps{};
+  for (std::size_t k = 0; k + 1 < SampleClock::kStart; ++k) steps[k] = x_ns[k + 1] - x_ns[k];
+  std::nth_element(steps.begin(), steps.begin() + steps.size() / 2, steps.end());
+  return steps[steps.size() / 2];
+}
+
+// Numbers of samples from one to the next by what lies between their stamps.
+Numbers by_steps(const Offsets& x_ns, double period_ns) {
+  Numbers n{};
+  for (std::size_t k = 1; k < n.size(); ++k)
+    n[k] = n[k - 1] + std::max(1.0, std::round((x_ns[k] - x_ns[k - 1]) / period_ns));
+  return n;
+}
+
+Numbers by_line(const Offsets& x_ns, const Numbers& before, const Line& line) {
+  Numbers n{};
+  for (std::size_t k = 0; k < n.size(); ++k) {
+    n[k] = std::round((x_ns[k] - line.last_ns) / line.period_ns + before.back());
+    if (k > 0) n[k] = std::max(n[k], n[k - 1] + 1.0);
+  }
+  return n;
+}
+
+}  // namespace
+
+SampleClock::SampleClock(const Params& params) : params_(params) {
+  require_fields(params);
+}
+
+bool SampleClock::mends(const State& state) const {
+  if (!state.line) return false;
+  const double jitter = std::sqrt(state.square_ns2) / state.period_ns;
+  return jitter >= params_.jitter_min && jitter <= params_.jitter_max &&
+         state.product_ns2 <= kWander * state.square_ns2;
+}
+
+std::optional<double> SampleClock::jitter_s(const State& state) {
+  if (!state.line) return std::nullopt;
+  return 1e-9 * std::sqrt(state.square_ns2);
+}
+
+Status SampleClock::push(TimeNs stamp_ns, State& state, TimeNs& time_ns) const {
+  if (state.stamp_ns && stamp_ns <= *state.stamp_ns)
+    return {Trouble::time_order, "time_ns", double(stamp_ns), double(*state.stamp_ns)};
+  const double step_ns = state.stamp_ns ? after_ns(stamp_ns, *state.stamp_ns) : 0.0;
+  if (state.line) {
+    follow(step_ns, stamp_ns, state);
+  } else {
+    state.start[state.samples++] = stamp_ns;
+    if (state.samples == kStart) begin(state);
+  }
+  time_ns = stamp_ns;
+  if (mends(state) && std::abs(stamp_ns) < kLast_ns) {
+    const double bound_ns = 0.5 * state.period_ns;
+    time_ns += std::llround(std::clamp(state.ahead_ns, -bound_ns, bound_ns));
+  }
+  // what is not mended, or stamped in a burst, may lie before the last time: the stamps catch up
+  if (state.stamp_ns && time_ns <= state.time_ns)
+    time_ns = state.time_ns + std::max<TimeNs>(1, std::llround(std::min(kLeastStep * state.period_ns, 0.5 * step_ns)));
+  state.stamp_ns = stamp_ns;
+  state.time_ns = time_ns;
+  return {};
+}
+
+/// A line through the first stamps, where they have one.
+void SampleClock::begin(State& state) const {
+  Offsets x_ns{};
+  for (std::size_t k = 0; k < kStart; ++k) x_ns[k] = after_ns(state.start[k], state.start.front());
+  state.samples = 0;
+  Numbers numbers = by_steps(x_ns, median_step(x_ns));
+  Line line = fit(x_ns, numbers);
+  numbers = by_line(x_ns, numbers, line);
+  line = fit(x_ns, numbers);
+  if (!(line.period_ns > 0.0 && line.period_ns < kPeriodMax_ns)) return;
+  if (!(std::sqrt(line.square_ns2) < kNoPeriod * line.period_ns)) return;
+  state.line = true;
+  state.period_ns = line.period_ns;
+  state.ahead_ns = line.last_ns - x_ns.back();
+  state.sum = kStart;
+  state.sum_n = line.sum_n;
+  state.sum_nn = line.sum_nn;
+  state.square_ns2 = line.square_ns2;
+  state.product_ns2 = state.error_ns = 0.0;
+  state.strays = 0;
+}
+
+/// Takes the stamp into the line, sample_clock.md (S1), (S2) and (S3), or begins anew where it is no longer known which
+/// sample this is.
+void SampleClock::follow(double step_ns, TimeNs stamp_ns, State& state) const {
+  const double passed_ns = step_ns - state.ahead_ns;
+  const double number = std::max(1.0, std::round(passed_ns / state.period_ns));
+  const double error_ns = passed_ns - number * state.period_ns;
+  const double jitter_ns = std::max(std::sqrt(state.square_ns2), params_.jitter_min * state.period_ns);
+  const double before = state.sum * state.sum_nn - state.sum_n * state.sum_n;
+  const double unsure_ns = number * jitter_ns * std::sqrt(state.sum / before);
+  state.strays = std::abs(error_ns) > kStray * state.period_ns ? state.strays + 1 : 0;
+  const bool lost = unsure_ns > kNumberSigma * state.period_ns || state.strays > kStraysMax ||
+                    jitter_ns > kNoPeriod * state.period_ns;
+  if (lost) {
+    state.line = false;
+    state.start.front() = stamp_ns;
+    state.samples = 1;
+    return;
+  }
+  const double limited_ns = std::clamp(error_ns, -kOutlier * jitter_ns, kOutlier * jitter_ns);
+  const double fading = std::min(0.5, 1e-9 * number * state.period_ns / params_.memory_s);
+  state.square_ns2 += fading * (limited_ns * limited_ns - state.square_ns2);
+  state.product_ns2 += fading * (limited_ns * state.error_ns - state.product_ns2);
+  state.error_ns = limited_ns;
+
+  // numbers count from this sample on; of the residuals about the line it alone has one
+  const double keep = 1.0 - fading;
+  state.sum_nn = keep * (state.sum_nn - 2.0 * number * state.sum_n + number * number * state.sum);
+  state.sum_n = keep * (state.sum_n - number * state.sum);
+  state.sum = keep * state.sum + 1.0;
+  const double determinant = state.sum * state.sum_nn - state.sum_n * state.sum_n;
+  state.ahead_ns = state.sum_nn / determinant * limited_ns - error_ns;
+  state.period_ns -= state.sum_n / determinant * limited_ns;
+}
+
+Status SampleClock::check_state(const State& state) {
+  if (!state.stamp_ns) return {};
+  const auto [early_ns, late_ns] = std::minmax(state.time_ns, *state.stamp_ns);
+  if (!(after_ns(late_ns, early_ns) <= state.period_ns + 1.0))
+    return {Trouble::out_of_range, "stamps.time_ns", double(state.time_ns), double(*state.stamp_ns)};
+  if (!state.line) return {};
+  if (!(state.period_ns > 0.0)) return {Trouble::out_of_range, "stamps.period_ns", state.period_ns, 0.0};
+  const double determinant = state.sum * state.sum_nn - state.sum_n * state.sum_n;
+  if (!(determinant > 0.0)) return {Trouble::out_of_range, "stamps.sum_nn", determinant, 0.0};
+  return {};
+}
+
+Status to_sample_times(const SampleClock& clock, std::span<TimeNs> stamps_ns, double& mended_s) {
+  mended_s = 0.0;
+  SampleClock::State state;
+  std::vector<TimeNs> times_ns(stamps_ns.size());
+  double largest_s = 0.0;
+  for (std::size_t k = 0; k < stamps_ns.size(); ++k) {
+    if (const Status status = clock.push(stamps_ns[k], state, times_ns[k]); !status.ok()) return status;
+    if (clock.mends(state)) largest_s = std::max(largest_s, *SampleClock::jitter_s(state));
+  }
+  std::copy(times_ns.begin(), times_ns.end(), stamps_ns.begin());
+  mended_s = largest_s;
+  return {};
+}
+
+}  // namespace tumble

@@ -1,0 +1,108 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The doors on samples that a host stamped.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+#include "rolled_sphere.hpp"
+#include "thrown_body.hpp"
+#include "thrown_params.hpp"
+#include "tumble/tumble.hpp"
+
+namespace tumble {
+namespace {
+
+using test::ThrownBody;
+
+/// As a host stamps: up to `most_ns` early and late, by the same numbers each time.
+std::vector<ImuSample> stamped_by_a_host(std::vector<ImuSample> imu, std::uint32_t most_ns = 2'000'000) {
+  std::uint32_t random = 1;
+  for (ImuSample& sample : imu) {
+    random = random * 1664525u + 1013904223u;
+    sample.time_ns += static_cast<TimeNs>(random % (2 * most_ns + 1)) - most_ns;
+  }
+  return imu;
+}
+
+std::vector<RateState> rates_of(TumblingOdometry& odometry, const std::vector<ImuSample>& imu) {
+  std::vector<RateState> out;
+  for (const ImuSample& sample : imu) {
+    EXPECT_TRUE(odometry.add_imu(sample).ok());
+    const std::optional<RateState>& rate = odometry.smoothed_rate();
+    if (rate && (out.empty() || rate->time_ns > out.back().time_ns)) out.push_back(*rate);
+  }
+  return out;
+}
+
+TEST(Stamps, ThatJitterMoveNoRate) {
+  const ThrownBody body{.rest_s = 2.5, .end_s = 4.7};
+  const std::vector<ImuSample> exact = body.imu(), stamped = stamped_by_a_host(exact);
+  TumblingOdometry own_clock(params_of(body)), host_clock(params_of(body));
+  TumblingParams as_they_are = params_of(body);
+  as_they_are.expert.stamps.jitter_max = 0.0;
+  TumblingOdometry without(as_they_are);
+  const std::vector<RateState> expected = rates_of(own_clock, exact), found = rates_of(host_clock, stamped),
+                               control = rates_of(without, stamped);
+  EXPECT_FALSE(own_clock.mended_jitter_s());
+  ASSERT_TRUE(host_clock.mended_jitter_s());
+  EXPECT_NEAR(*host_clock.mended_jitter_s(), 1.15e-3, 0.3e-3);  // of the uniform distribution
+  EXPECT_FALSE(without.mended_jitter_s());
+  ASSERT_EQ(found.size(), expected.size());
+  double moved_ns = 0.0, left_as_stamped_ns = 0.0;
+  int turning = 0;
+  for (std::size_t k = 0; k < found.size(); ++k) {
+    if (expected[k].w_WI_I_rad_s.norm() < 1.0) continue;
+    ++turning;
+    moved_ns = std::max(moved_ns, std::abs(double(found[k].time_ns - expected[k].time_ns)));
+    left_as_stamped_ns = std::max(left_as_stamped_ns, std::abs(double(control[k].time_ns - expected[k].time_ns)));
+  }
+  EXPECT_GT(turning, 80);
+  EXPECT_LT(moved_ns, 1e6);              // a line through 200 stamps
+  EXPECT_GT(left_as_stamped_ns, 1.9e6);  // negative control
+}
+
+TEST(Stamps, ThatAreRefusedHaveNoPartInTheClock) {
+  const ThrownBody body;
+  TumblingOdometry odometry(params_of(body)), undisturbed(params_of(body));
+  for (const ImuSample& sample : stamped_by_a_host(body.imu())) {
+    ImuSample wrong = sample;
+    wrong.time_ns += 5'000'000'000;
+    if (odometry.newest_ns()) {
+      EXPECT_EQ(odometry.add_imu(wrong).trouble, Trouble::gap);
+    }
+    ASSERT_TRUE(odometry.add_imu(sample).ok());
+    ASSERT_TRUE(undisturbed.add_imu(sample).ok());
+  }
+  EXPECT_EQ(odometry.save(), undisturbed.save());
+}
+
+/// Largest distance of the live poses from where the sphere was at their times, from the start of the roll on [m].
+double worst_m(const std::vector<ImuSample>& samples, double jitter_max) {
+  RollingOdometry::Params params = test::params_of({test::kPositions[0]});
+  params.lag_s = 0.0;
+  params.expert.stamps.jitter_max = jitter_max;
+  RollingOdometry odometry(params);
+  double worst = 0.0;
+  for (const ImuSample& sample : samples) {
+    EXPECT_TRUE(odometry.add_imu(sample).ok());
+    while (const std::optional<RollingOdometry::Pose> pose = odometry.take()) {
+      const double x_m = test::kRadius_m * test::angle_rad(seconds(pose->pose.time_ns));
+      if (seconds(pose->pose.time_ns) > test::kRest_s) worst = std::max(worst, std::abs(pose->pose.p_WA_m.x() - x_m));
+    }
+  }
+  return worst;
+}
+
+TEST(Stamps, ThatJitterMoveNoSphere) {
+  const std::vector<ImuSample> exact = test::unit_at(test::kPositions[0]), stamped = stamped_by_a_host(exact, 800'000);
+  const double exact_m = worst_m(exact, 0.15), mended_m = worst_m(stamped, 0.15), as_they_are_m = worst_m(stamped, 0.0);
+  EXPECT_LT(mended_m, exact_m + 3e-4) << exact_m;  // 1.7 m/s at most, for a tenth of the jitter
+  EXPECT_GT(as_they_are_m, mended_m + 2e-4) << exact_m << ' ' << mended_m;  // negative control
+}
+
+}  // namespace
+}  // namespace tumble
