@@ -17,7 +17,7 @@ _STREAMS = "ostream istream fstream sstream iostream".split()
 
 _HEADERS = {
     "algorithm": """adjacent_find all_of any_of binary_search clamp copy_if count count_if equal_range fill_n find find_if
-        find_if_not includes is_sorted iter_swap lower_bound max_element min_element minmax_element mismatch next_permutation none_of nth_element replace replace_if
+        find_if_not includes is_sorted iter_swap lower_bound max_element min_element minmax minmax_element mismatch next_permutation none_of nth_element replace replace_if
         reverse reverse_copy rotate search set_difference set_union sort stable_partition stable_sort transform unique upper_bound ranges""",
     "atomic": "atomic",
     "bit": "bit_cast bit_ceil countr_zero endian popcount",
@@ -50,7 +50,7 @@ _HEADERS = {
     "numbers": "numbers",
     "numeric": "accumulate inner_product iota",
     "optional": "nullopt optional",
-    "random": "mt19937 mt19937_64 normal_distribution uniform_real_distribution",
+    "random": "exponential_distribution mt19937 mt19937_64 normal_distribution uniform_real_distribution",
     "regex": "regex regex_replace regex_search smatch sregex_iterator",
     "set": "multiset set",
     "span": "as_bytes as_writable_bytes span",

@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <functional>
 #include <limits>
 #include <random>
 #include <vector>
@@ -61,7 +60,8 @@ double largest_ns(const std::vector<TimeNs>& found, const std::vector<TimeNs>& e
 }
 
 bool rise(const std::vector<TimeNs>& times_ns) {
-  return std::adjacent_find(times_ns.begin(), times_ns.end(), std::greater_equal<>()) == times_ns.end();
+  return std::adjacent_find(times_ns.begin(), times_ns.end(), [](TimeNs a, TimeNs b) { return a >= b; }) ==
+         times_ns.end();
 }
 
 TEST(SampleClock, StampsOfTheSensorStayAsTheyAre) {
