@@ -169,9 +169,29 @@ class ReportPage(unittest.TestCase):
         for path in (self.page, self.hostile):
             phone = self.drawn(path, size=(PHONE, 800))
             self.assertLessEqual(phone.value(WIDTH), PHONE, f"{path}: it scrolls sideways")
+            self.assertEqual(self.cut_off(phone), [])
+        long_title = self.open(self.broken("title.text.length > most", "title.text.length > 200"), size=(PHONE, 800))
+        self.assertTrue(long_title.wait_for(f"{STATE} === 'drawn'"))
+        self.complaints(long_title)
+        self.assertNotEqual(self.cut_off(long_title), [], "negative control")
         wide = self.open(self.broken("<main>", "<main><div style='width: 500px'>wide</div>"), size=(PHONE, 800))
         self.assertTrue(wide.wait_for(f"{STATE} === 'drawn'"))
         self.assertGreater(wide.value(WIDTH), PHONE, "negative control")
+
+    @staticmethod
+    def cut_off(page: Page) -> list[str]:
+        """Titles of axes that reach out of their plot, or lie under its legend."""
+        return page.value("""[...document.querySelectorAll('.plot')].flatMap((plot) => {
+          const frame = plot.getBoundingClientRect(), box = (name) => [...plot.querySelectorAll(name)].map((part) => part.getBoundingClientRect());
+          const out = (b) => b.width > 0 && (b.top < frame.top - 1 || b.bottom > frame.bottom + 1 || b.left < frame.left - 1 || b.right > frame.right + 1);
+          const over = (a, b) => a.width > 0 && a.left < b.right && b.left < a.right && a.top < b.bottom - 1 && b.top < a.bottom - 1;
+          const legends = box('.legend .bg').concat(box('.legend .legendtext'));
+          return box('.g-xtitle, .g-ytitle').some((b) => out(b) || legends.some((other) => over(b, other))) ? [plot.id] : [];
+        })""")
+
+    def test_an_address_that_is_none_is_no_trouble(self):
+        page = self.drawn(self.page, address="100%")
+        self.assertEqual(page.value(STATE), "drawn")
 
     def test_on_paper(self):
         page = self.open(self.page, dark=True)

@@ -154,6 +154,25 @@ TEST(Report, ShowsDrawsThatFailedWhereItTellsOfThem) {
   EXPECT_THAT(text, Not(HasSubstr("made of other results")));
 }
 
+// too few draws for a typical one: what failed is shown all the same, unless nothing is wanted
+TEST(Report, ShowsADrawThatFailedOfFew) {
+  const fs::path folder = test_folder();
+  std::ofstream(folder / "lost.yaml") << "name: lost\nkind: position\ncommand: [sh, -c, 'exit 3 # {output}']\n";
+  const auto swept = [&](const char* name, const std::vector<std::string>& more) {
+    const fs::path database = folder / name;
+    std::vector<std::string> arguments = {"sweep",    "roll",           "--seeds",  "1..1",
+                                          "--method", "rolling",        "--method", (folder / "lost.yaml").string(),
+                                          "--db",     database.string()};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    EXPECT_EQ(run_shortened(arguments).status, 0);
+    return fs::path(database.string() + ".files") / "examples.json";
+  };
+  const json left = json::parse(read_file(swept("f.db", {})));
+  ASSERT_EQ(left["examples"].size(), 1u);
+  EXPECT_THAT(left["examples"][0]["choice"].get<std::string>(), HasSubstr("failed"));
+  EXPECT_FALSE(fs::exists(swept("n.db", {"--examples", "0"})));
+}
+
 TEST(Sweep, OfAnotherSuiteKeepsTheExamplesThatStandThere) {
   const fs::path folder = test_folder();
   const fs::path database = copy_of_sweep(folder, "s"), list = folder / "s.db.files" / "examples.json";

@@ -233,6 +233,18 @@ TEST(Replay, RefusesWhatItCannotShow) {
   EXPECT_FALSE(fs::exists(folder / "a.html"));
 }
 
+TEST(Render, RefusesAnEstimateOfAnotherRecording) {
+  const fs::path picture = test_folder() / "a.png";
+  const std::string rig = (shared_run("hill") / "estimates" / "slam-tumble").string();
+  for (const char* how : {"--map", "--robots=4"}) {
+    const Ended other =
+        run_program({"render", (shared_run("roll") / "recording.h5").string(), rig, how, "-o", picture.string()});
+    EXPECT_EQ(other.status, 2) << how;
+    EXPECT_THAT(other.err, HasSubstr("another recording")) << how;
+    EXPECT_FALSE(fs::exists(picture)) << how;
+  }
+}
+
 // the scenario alone: seed 1, ours beside the baseline, a folder named after it, and what to do next
 TEST(FirstRun, AScenarioAloneDoesSomethingGood) {
   const fs::path folder = test_folder();

@@ -153,6 +153,16 @@ TEST(FirstMinutes, TheProgramAloneShowsTheWay) {
     EXPECT_THAT(ended.out, HasSubstr(word));
 }
 
+TEST(FirstMinutes, HelpIsAVerbToo) {
+  const Ended alone = run_program({"help"});
+  EXPECT_EQ(alone.status, 0);
+  EXPECT_EQ(alone.out, run_program({}).out);
+  EXPECT_EQ(run_program({"help", "merge"}).out, run_program({"merge", "--help"}).out);
+  const Ended unknown = run_program({"help", "marge"});
+  EXPECT_EQ(unknown.status, 2);
+  EXPECT_THAT(unknown.err, HasSubstr("did you mean 'merge'?"));
+}
+
 TEST(FirstMinutes, JobsAreTheProcessors) {
   // pinned to one processor, the default is one
   const Ended one = run_program({"sweep", "--help"}, [] {

@@ -100,7 +100,7 @@ TEST(Contests, OfFewDrawsSayThatTheIntervalAloneSpeaks) {
   EXPECT_EQ(all[0].certainty, Certainty::interval);
   EXPECT_FALSE(all[0].won() || all[0].lost()) << "the better of two, by an interval of its own";
   EXPECT_EQ(tally(all).open, 1u);
-  EXPECT_EQ(tally_text(tally(all)), "Ahead of the baseline in 1 of 1 contest, on too few draws to be sure");
+  EXPECT_EQ(tally_text(tally(all)), "tumble is ahead of the baseline in 1 of 1 contest, on too few draws to be sure");
   EXPECT_THAT(certainty_text(all[0], 2), HasSubstr("too few draws"));
 }
 
@@ -110,13 +110,23 @@ TEST(Contests, OfThreeDrawsThatAllSayTheSameIsAheadAndUnsure) {
       contests_of(summary_of({method("raw", {2, 3, 4}), method("saave", {1, 1, 1})}));
   ASSERT_EQ(all.size(), 1u);
   EXPECT_EQ(all[0].certainty, Certainty::open);
-  EXPECT_EQ(tally_text(tally(all)), "Ahead of the baseline in 1 of 1 contest, on too few draws to be sure");
+  EXPECT_EQ(tally_text(tally(all)), "saave is ahead of the baseline in 1 of 1 contest, on too few draws to be sure");
   const std::vector<ContestResult> worse =
       contests_of(summary_of({method("raw", {1, 1, 1}), method("saave", {2, 3, 4})}));
   EXPECT_THAT(tally_text(tally(worse)), HasSubstr("No method is shown to be better"));
   const std::vector<ContestResult> mixed =
       contests_of(summary_of({method("raw", {2, 3, 4}), method("saave", {1, 1, 5})}));
   EXPECT_THAT(tally_text(tally(mixed)), HasSubstr("No method is shown to be better"));
+}
+
+TEST(Contests, NameTheOneThatIsAheadAndNotOneOfSeveral) {
+  const auto ahead = [](const std::string& name) {
+    return contests_of(summary_of({method("raw", {2, 3, 4}), method(name, {1, 1, 1})})).front();
+  };
+  EXPECT_EQ(tally_text(tally({ahead("tumble"), ahead("tumble")})),
+            "tumble is ahead of the baseline in 2 of 2 contests, on too few draws to be sure");
+  EXPECT_EQ(tally_text(tally({ahead("tumble"), ahead("saave"), ahead("tumble")})),
+            "The best methods are ahead of the baseline in 3 of 3 contests, on too few draws to be sure");
 }
 
 TEST(Contests, SayNoShareWhereHalfOfTheBaselineFailed) {

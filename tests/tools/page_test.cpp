@@ -7,6 +7,8 @@
 
 #include <limits>
 #include <nlohmann/json.hpp>
+#include <set>
+#include <string>
 
 #include "scenarios/summary/comparison.hpp"
 #include "tools/report/plots.hpp"
@@ -109,6 +111,29 @@ TEST(BoxFigure, HasATracePerMethodWithEveryDraw) {
   EXPECT_TRUE(box_figure(page_summary("hill"), Kind::slam, "map_overlap", "").empty());
 }
 
+// six colours: what comes after them has another symbol and filling, a line other dashes
+TEST(Page, TellsMoreMethodsApartThanThereAreColours) {
+  Summary summary = page_summary("hill");
+  Section& section = summary.sections[0];
+  while (section.methods.size() < 20) {
+    section.methods.push_back(section.methods[0]);
+    section.methods.back().method = "m" + std::to_string(section.methods.size());
+  }
+  const auto traces =
+      nlohmann::json::parse(box_figure(summary, Kind::rate, "rate_error_clipped_median_rad_s", "").traces);
+  ASSERT_EQ(traces.size(), 20u);
+  std::set<std::string> boxes, lines;
+  Plot plot;
+  for (std::size_t i = 0; i < traces.size(); ++i) {
+    boxes.insert(traces[i]["marker"]["color"].dump() + traces[i]["marker"]["symbol"].dump());
+    if (i < 18) boxes.insert(traces[i]["line"]["color"].dump() + traces[i]["fillcolor"].dump());
+    plot.lines.push_back({"line", static_cast<int>(i), 1.0, false, false, {0.0}, {0.0}});
+  }
+  for (const auto& line : nlohmann::json::parse(figure_of(plot, "a").traces)) lines.insert(line["line"].dump());
+  EXPECT_EQ(boxes.size(), 38u);
+  EXPECT_EQ(lines.size(), 20u);
+}
+
 TEST(Page, ShowsExamplesWithTheirPicturesAndPlots) {
   PageContent content;
   content.examples = {evil_example("hill")};
@@ -143,10 +168,27 @@ TEST(Page, SaysWhatItsRecordingsAre) {
 TEST(Page, SaysWhatItsTasksAndMethodsAre) {
   PageContent content;
   content.summary = page_summary("hill");
+  // a section of one method has no contest, so that its task is none of theirs
+  content.summary.sections.push_back(content.summary.sections[0]);
+  content.summary.sections[1].kind = Kind::attitude;
+  content.summary.sections[1].methods.resize(1);
+  content.comparison = scenarios::compare(content.summary, {});
   content.methods = {{"rate/raw (baseline)", "The gyro as it is."}};
   const std::string page = page_html(content, "");
   EXPECT_THAT(page, HasSubstr("one task on one scenario: rate, how fast it turns.</p>"));
   EXPECT_THAT(page, HasSubstr("<dt>rate/raw (baseline)</dt><dd>The gyro as it is.</dd>"));
+}
+
+TEST(Page, SaysWhichOfTheTwoFailed) {
+  PageContent content;
+  content.summary = page_summary("hill");
+  MetricSummary& raw = content.summary.sections[0].methods[0].metrics["rate_error_clipped_median_rad_s"];
+  raw.failed = raw.seeds;
+  raw.seeds.clear();
+  raw.values.clear();
+  content.comparison = scenarios::compare(content.summary, {});
+  EXPECT_THAT(page_html(content, ""), HasSubstr("raw failed on half of the draws or more"));
+  EXPECT_THAT(page_html(content, ""), Not(HasSubstr("saave failed")));
 }
 
 TEST(Page, CountsMethodsThatNeedNoTruth) {

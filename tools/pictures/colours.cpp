@@ -28,5 +28,8 @@ Colour truth_colour() {
 Colour method_colour(std::size_t index) {
   return {kMethodHex[index % kMethodHex.size()]};
 }
+std::size_t colour_round(std::size_t index) {
+  return index / kMethodColours;
+}
 
 }  // namespace tumble::tools

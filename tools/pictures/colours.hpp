@@ -19,5 +19,8 @@ inline constexpr std::size_t kMethodColours = 6;
 /// Of the truth, and of the index-th method of a picture. They stay apart for colour-blind readers too.
 Colour truth_colour();
 Colour method_colour(std::size_t index);
+/// How often the colours were gone through before this one. What has one colour has another round, which a plot shows
+/// by dashes, symbols or filling.
+std::size_t colour_round(std::size_t index);
 
 }  // namespace tumble::tools

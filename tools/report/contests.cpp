@@ -102,7 +102,11 @@ Tally tally(const std::vector<ContestResult>& results) {
     out.open += !result.won() && !result.lost();
     // of a few draws there is no interval; all of them alike say more than none
     const bool on_every_draw = result.certainty == Certainty::open && result.row.better == result.row.pairs;
-    out.ahead += result.better && (on_every_draw || result.certainty == Certainty::interval);
+    if (result.better && (on_every_draw || result.certainty == Certainty::interval)) {
+      const std::string& method = result.row.contest.method;
+      out.ahead_by = out.ahead == 0 || out.ahead_by == method ? method : "";
+      ++out.ahead;
+    }
     if (result.won()) ++won[result.row.contest.method];
   }
   for (const ContestResult& result : results) {
@@ -120,7 +124,8 @@ std::string tally_text(const Tally& tally) {
   if (tally.leader.empty() && tally.lost == tally.contests)
     return fmt::format("The baseline is better in all of {}", contests_text(tally.contests));
   if (tally.leader.empty() && tally.ahead > 0)
-    return fmt::format("Ahead of the baseline in {} of {}, on too few draws to be sure", tally.ahead,
+    return fmt::format("{} ahead of the baseline in {} of {}, on too few draws to be sure",
+                       tally.ahead_by.empty() ? "The best methods are" : tally.ahead_by + " is", tally.ahead,
                        contests_text(tally.contests));
   if (tally.leader.empty())
     return fmt::format("No method is shown to be better than the baseline in {}", contests_text(tally.contests));

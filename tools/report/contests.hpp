@@ -43,6 +43,7 @@ std::vector<ContestResult> contests(const scenarios::Summary& summary, const sce
 struct Tally {
   std::size_t contests = 0, won = 0, lost = 0, open = 0;  ///< open: neither won nor lost
   std::size_t ahead = 0;       ///< of the open ones: better by their own interval alone, or on every draw
+  std::string ahead_by;        ///< the one method that is ahead in all of these; "": several are, or none
   std::string leader;          ///< the method that wins most of them, the first of equals; "": none is won
   std::size_t leader_won = 0;  ///< by it
 };

@@ -11,6 +11,7 @@
 #include "tools/html/html.hpp"
 #include "tools/pictures/colours.hpp"
 #include "tools/report/curves.hpp"
+#include "tools/report/plots.hpp"
 
 namespace tumble::tools {
 
@@ -165,8 +166,8 @@ Figure curve_figure(const Curve& curve) {
     add_bands(line, x_factor, y_style.factor, colour, data);
     json median = line_trace(line, x_factor, y_style.factor, &CurvePoint::median, true);
     median.update({{"mode", "lines+markers"},
-                   {"line", {{"color", colour}, {"width", 2.2}}},
-                   {"marker", {{"color", colour}, {"size", 6}}}});
+                   {"line", {{"color", colour}, {"width", 2.2}, {"dash", dash_of_round(colour_round(i))}}},
+                   {"marker", {{"color", colour}, {"size", 6}, {"symbol", symbol_of_round(colour_round(i))}}}});
     json worst = line_trace(line, x_factor, y_style.factor, &CurvePoint::worst_5, false);
     worst.update({{"mode", "lines"}, {"line", {{"color", colour}, {"width", 1.2}, {"dash", "dot"}}}});
     lines.push_back(std::move(median));

@@ -2,6 +2,7 @@
 #include "tools/report/distributions.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <nlohmann/json.hpp>
 #include <utility>
@@ -61,6 +62,9 @@ std::string text(const Spread& spread, double value) {
   return number_text(value * spread.factor);
 }
 
+/// By the round of the colours.
+constexpr std::array kHatchings = {"", "/", "x", "."};
+
 /// Of one quantity, a histogram per scenario.
 Figure histograms(std::span<const Spread> spreads) {
   Figure figure;
@@ -74,7 +78,9 @@ Figure histograms(std::span<const Spread> spreads) {
                       {"histnorm", "percent"},
                       {"opacity", 0.6},
                       {"nbinsx", 30},
-                      {"marker", {{"color", method_colour(traces.size()).hex}}},
+                      {"marker",
+                       {{"color", method_colour(traces.size()).hex},
+                        {"pattern", {{"shape", kHatchings[colour_round(traces.size()) % kHatchings.size()]}}}}},
                       {"x", std::move(x)}});
   }
   figure.id = "distribution-" + spreads.front().metric;

@@ -56,8 +56,8 @@ std::string data_text(const PageContent& content) {
          "), and is judged by the truth or the reference that a recording holds.";
 }
 
-/// What the tasks are, in words.
-std::string tasks_text(const Summary& summary) {
+/// What the tasks of the contests are, in words.
+std::string tasks_text(const std::vector<ContestResult>& results) {
   using scenarios::Kind;
   const std::pair<Kind, const char*> tasks[] = {{Kind::rate, "rate, how fast it turns"},
                                                 {Kind::attitude, "attitude, how it is turned"},
@@ -65,8 +65,8 @@ std::string tasks_text(const Summary& summary) {
                                                 {Kind::slam, "slam, where it goes and what is around it"}};
   std::string out;
   for (const auto& [kind, text] : tasks) {
-    const auto of_kind = [kind = kind](const Section& section) { return section.kind == kind; };
-    if (std::ranges::any_of(summary.sections, of_kind)) out += (out.empty() ? "" : "; ") + std::string(text);
+    const auto of_kind = [kind = kind](const ContestResult& result) { return result.row.contest.kind == kind; };
+    if (std::ranges::any_of(results, of_kind)) out += (out.empty() ? "" : "; ") + std::string(text);
   }
   return out;
 }
@@ -97,7 +97,12 @@ std::string bar_html(const ContestResult& result) {
 
 std::string difference_text(const ContestResult& result) {
   const Interval& own = result.row.difference;
-  if (!std::isfinite(own.value)) return "half of the runs of one of the two failed, or more";
+  if (!std::isfinite(own.value)) {
+    const scenarios::MetricComparison& row = result.row;
+    if (!std::isfinite(row.median)) return row.contest.method + " failed on half of the draws or more";
+    if (!std::isfinite(row.against_median)) return row.contest.against + " failed on half of the draws or more";
+    return "one of the two failed on half of the draws or more";
+  }
   const std::string value = styled_value(result.row.metric, own.value, true);
   const std::string sign = own.value > 0.0 ? "+" : "";
   // an empty bracket tells a reader nothing
@@ -177,10 +182,13 @@ std::string front_html(const PageContent& content) {
     out += "<h1>" + escaped(tally_text(tally(results))) + "</h1>\n";
     const std::size_t methods = method_count(content.summary);
     out += fmt::format(
-        "<p class=\"lead\">Compared: {} from its sensors alone how a robot moved while it tumbles or rolls. {} A "
-        "contest is one task on one {}: {}.</p>\n",
+        "<p class=\"lead\">Compared: {} from its sensors alone how a robot moved while it tumbles or rolls. {}",
         methods == 1 ? "1 method that tells" : fmt::format("{} methods that tell", methods),
-        escaped(data_text(content)), content.recorded ? "recording" : "scenario", tasks_text(content.summary));
+        escaped(data_text(content)));
+    if (!results.empty())
+      out += fmt::format(" A contest is one task on one {}: {}.", content.recorded ? "recording" : "scenario",
+                         tasks_text(results));
+    out += "</p>\n";
   }
   out += "</div>\n";
   if (shown != nullptr) out += moving_html(*shown);

@@ -14,21 +14,39 @@
       paper_bgcolor: 'rgba(0,0,0,0)', plot_bgcolor: 'rgba(0,0,0,0)',
       margin: narrow ? { l: 48, r: 8, t: 12, b: 40 } : { l: 64, r: 20, t: 18, b: 48 },
       font: { family: getComputedStyle(document.body).fontFamily, size: narrow ? 11 : 13, color: colour('--ink') },
-      legend: narrow ? { orientation: 'h', y: -0.25, yanchor: 'top', x: 0 } : { orientation: 'h', y: 1.0, yanchor: 'bottom', x: 0 },
+      legend: narrow ? { orientation: 'h', yref: 'container', y: 0, yanchor: 'bottom', x: 0, maxheight: 0.7 } : { orientation: 'h', y: 1.0, yanchor: 'bottom', x: 0, maxheight: 0.7 },
       dragmode: narrow ? false : 'zoom',
     };
     const axes = { xaxis: {}, yaxis: {} };
     for (const name of Object.keys(layout)) if (/^[xy]axis/.test(name)) axes[name] = layout[name];
     // between decades Plotly writes the digit alone ("5" for 0.05), which nobody reads as that
     const logarithmic = (name) => ({ tickformat: '~g', nticks: Math.max(3, Math.round((name[0] === 'y' ? height : width) / 90)) });
+    // along a short axis a long name is cut off: its unit stays, the name stands in the caption
+    const shortened = (name, title) => {
+      const most = name[0] === 'y' ? 20 : 44;
+      const unit = narrow && title && title.text.length > most ? /\[[^\]]*\]$/.exec(title.text) : null;
+      return unit ? { title: Object.assign({}, title, { text: unit[0] }) } : {};
+    };
     for (const name of Object.keys(axes))
-      axes[name] = Object.assign({}, axis, axes[name].type === 'log' ? logarithmic(name) : {}, axes[name]);
+      axes[name] = Object.assign({}, axis, axes[name].type === 'log' ? logarithmic(name) : {}, axes[name], shortened(name, axes[name].title));
     return Object.assign(base, layout, axes);
+  }
+
+  // a legend of many names has room of its own, which Plotly would take from the plot
+  function fit(element) {
+    element.style.height = '';
+    const width = element.clientWidth, names = figures.get(element.id).data.filter((trace) => trace.name && trace.showlegend !== false);
+    if (width === 0) return;
+    const longest = Math.max(0, ...names.map((trace) => trace.name.length));
+    const columns = Math.max(1, Math.floor((width - 84) / (48 + (width < 520 ? 6.2 : 7.2) * longest)));
+    const rows = Math.ceil(names.length / columns);
+    if (rows > 2) element.style.height = `${element.clientHeight + 19 * (rows - 2)}px`;
   }
 
   function draw(element) {
     const figure = figures.get(element.id);
     drawn.add(element);
+    fit(element);
     const layout = Object.assign(themed(figure.layout, element.clientWidth, element.clientHeight), { width: element.clientWidth, height: element.clientHeight });
     Plotly.react(element, figure.data, layout, { displaylogo: false, displayModeBar: false });
     document.documentElement.dataset.drawn = String(drawn.size);
@@ -43,14 +61,17 @@
   const watcher = new IntersectionObserver((entries) => {
     for (const entry of entries) if (entry.isIntersecting && !drawn.has(entry.target)) draw(entry.target);
   }, { rootMargin: '600px' });
-  plots.forEach((element) => watcher.observe(element));
+  plots.forEach((element) => { fit(element); watcher.observe(element); });
   dark.addEventListener('change', again);
   let waiting = 0;
   window.addEventListener('resize', () => { clearTimeout(waiting); waiting = setTimeout(again, 120); });
 
   // what an address leads into is unfolded, and what is folded cannot be read on paper
+  function named() {
+    try { return document.getElementById(decodeURIComponent(location.hash.slice(1))); } catch { return null; }  // "#100%"
+  }
   function unfold() {
-    let at = location.hash.length > 1 ? document.getElementById(decodeURIComponent(location.hash.slice(1))) : null;
+    let at = location.hash.length > 1 ? named() : null;
     for (const target = at; at; at = at.parentElement) {
       if (at.tagName === 'DETAILS' && !at.open) { at.open = true; target.scrollIntoView(); }
     }

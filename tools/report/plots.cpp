@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <nlohmann/json.hpp>
@@ -27,16 +28,23 @@ json axis(const std::string& title) {
   return {{"title", {{"text", title}}}};
 }
 
-json box(const std::string& name, const char* colour) {
+std::string transparent(Colour colour, double opacity) {
+  const auto rgba = colour.rgba();
+  return fmt::format("rgba({:.0f},{:.0f},{:.0f},{})", 255.0f * rgba[0], 255.0f * rgba[1], 255.0f * rgba[2], opacity);
+}
+
+json box(const std::string& name, std::size_t index) {
+  const Colour own = method_colour(index);
+  const std::size_t round = colour_round(index);
   return {{"type", "box"},
           {"name", plot_text(name)},
           {"boxpoints", "all"},
           {"jitter", 0.5},
           {"pointpos", 0},
           {"whiskerwidth", 0.4},
-          {"marker", {{"color", colour}, {"size", 6}, {"opacity", 0.7}}},
-          {"fillcolor", "rgba(0,0,0,0)"},
-          {"line", {{"color", colour}, {"width", 1.5}}},
+          {"marker", {{"color", own.hex}, {"size", 6}, {"opacity", 0.7}, {"symbol", symbol_of_round(round)}}},
+          {"fillcolor", transparent(own, filling_of_round(round))},
+          {"line", {{"color", own.hex}, {"width", 1.5}}},
           {"x", json::array()},
           {"y", json::array()}};
 }
@@ -71,7 +79,7 @@ class Boxes {
       const std::string name = prefix + method.method;
       auto trace = std::find_if(traces_.begin(), traces_.end(), [&](const auto& t) { return t.first == name; });
       if (trace == traces_.end()) {
-        traces_.emplace_back(name, box(name, method_colour(traces_.size()).hex));
+        traces_.emplace_back(name, box(name, traces_.size()));
         trace = traces_.end() - 1;
       }
       add_values(trace->second, section.scenario, *values, style_.factor);
@@ -123,6 +131,11 @@ json shaded(double begin, double end) {
           {"line", {{"width", 0}}}};
 }
 
+const char* dash_of(const PlotLine& line) {
+  if (line.dotted) return "dot";
+  return dash_of_round(line.colour < 0 ? 0 : colour_round(static_cast<std::size_t>(line.colour)));
+}
+
 /// NaN is a gap.
 json coordinates(const std::vector<double>& values) {
   json out = json::array();
@@ -162,6 +175,21 @@ Colour colour_of(int colour) {
   return colour < 0 ? truth_colour() : method_colour(static_cast<std::size_t>(colour));
 }
 
+const char* symbol_of_round(std::size_t round) {
+  static constexpr std::array kShapes = {"circle", "diamond", "cross", "triangle-up", "square", "x", "star"};
+  return kShapes[round % kShapes.size()];
+}
+
+const char* dash_of_round(std::size_t round) {
+  static constexpr std::array kDashes = {"solid", "dash", "dashdot", "longdash"};
+  return kDashes[round % kDashes.size()];
+}
+
+double filling_of_round(std::size_t round) {
+  static constexpr std::array kShares = {0.0, 0.45, 0.9};
+  return kShares[round % kShares.size()];
+}
+
 Figure box_figure(const Summary& summary, Kind kind, const std::string& metric, const std::string& caption) {
   Figure figure;
   figure.id = std::string(to_string(kind)) + "-" + metric;
@@ -193,14 +221,12 @@ Figure figure_of(const Plot& plot, const std::string& id) {
   figure.caption = plot.caption;
   json data = json::array();
   for (const PlotLine& line : plot.lines) {
-    json trace = {
-        {"type", "scatter"},
-        {"mode", "lines"},
-        {"name", plot_text(line.name)},
-        {"line",
-         {{"color", colour_of(line.colour).hex}, {"width", line.width}, {"dash", line.dotted ? "dot" : "solid"}}},
-        {"x", coordinates(line.x)},
-        {"y", coordinates(line.y)}};
+    json trace = {{"type", "scatter"},
+                  {"mode", "lines"},
+                  {"name", plot_text(line.name)},
+                  {"line", {{"color", colour_of(line.colour).hex}, {"width", line.width}, {"dash", dash_of(line)}}},
+                  {"x", coordinates(line.x)},
+                  {"y", coordinates(line.y)}};
     if (line.hidden) trace["visible"] = "legendonly";
     data.push_back(std::move(trace));
   }

@@ -50,4 +50,9 @@ Figure figure_of(const Plot& plot, const std::string& id);
 /// Of a line of an example's plot, and of its name in a legend.
 Colour colour_of(int colour);
 
+/// By the round of the colours (`colour_round`): a marker, a line, and how much of the colour fills a box.
+const char* symbol_of_round(std::size_t round);
+const char* dash_of_round(std::size_t round);
+double filling_of_round(std::size_t round);
+
 }  // namespace tumble::tools

@@ -10,6 +10,7 @@
 #include <map>
 #include <new>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "scenarios/errors.hpp"
@@ -33,6 +34,18 @@ void check_verb(int argc, const char* const* argv) {
     if (argv[i][0] == '-') continue;
     return require_known("verb", argv[i], known);
   }
+}
+
+/// `help` and `help VERB`, as other programs have them.
+std::vector<const char*> without_help(int argc, const char* const* argv) {
+  std::vector<const char*> words(argv, argv + argc);
+  if (words.size() < 2 || std::string_view(words[1]) != "help") return words;
+  words.erase(words.begin() + 1);
+  if (words.size() > 1) {
+    words.resize(2);
+    words.push_back("--help");
+  }
+  return words;
 }
 
 /// The verb being parsed, or the program itself.
@@ -135,7 +148,8 @@ int dispatch(int argc, const char* const* argv) {
 
 int run_program(int argc, const char* const* argv) {
   try {
-    return dispatch(argc, argv);
+    const std::vector<const char*> words = without_help(argc, argv);
+    return dispatch(static_cast<int>(words.size()), words.data());
   } catch (const BadInput& error) {
     return say("", error.what(), kBadInput);
   } catch (const sim::InvalidSituation& error) {

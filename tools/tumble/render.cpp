@@ -16,6 +16,7 @@
 #include "tools/pictures/moving.hpp"
 #include "tools/pictures/pictures.hpp"
 #include "tools/tumble/arguments.hpp"
+#include "tools/tumble/given_estimate.hpp"
 #include "tools/tumble/progress.hpp"
 #include "tools/tumble/recording_info.hpp"
 #include "tools/tumble/verbs.hpp"
@@ -69,6 +70,7 @@ void load_recording(const scenarios::DataRoot& data, const RenderOptions& option
   for (const std::filesystem::path& folder : options.estimates) {
     scenarios::Kind kind;
     std::string method;
+    require_own(folder, options.what, content.sensors);
     const scenarios::Estimate estimate = scenarios::read_estimate(folder, kind, method, scenarios::Frame::imu);
     Path path = estimated_path(estimate, content.sensors, content.truth);
     if (path.empty()) throw BadInput(folder.string() + ": holds no poses to draw");
@@ -98,6 +100,7 @@ int render_maps(const Session& session, const RenderOptions& options, const scen
   for (const std::filesystem::path& folder : options.estimates) {
     scenarios::Kind kind;
     std::string method;
+    require_own(folder, options.what, content.sensors);
     const scenarios::Estimate estimate = scenarios::read_estimate(folder, kind, method, scenarios::Frame::imu);
     maps.push_back(map_by_error(full_name(kind, method), estimate, content.truth, surface));
     const ErrorMap& map = maps.back();

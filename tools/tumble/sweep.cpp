@@ -123,9 +123,11 @@ bool leave_examples(const Session& session, const scenarios::DataRoot& data, con
   if (!options.shard.empty()) return true;
   LeaveOptions leave;
   leave.count = options.examples.value_or(std::min(kExamplesMax, draws / kDrawsPerExample));
-  // who wants no pictures wants none of failures either
-  leave.failures = options.failures.value_or(
-      leave.count == 0 ? 0 : std::clamp(draws / kDrawsPerFailure, std::uint64_t{1}, kFailuresMax));
+  // who wants no pictures wants none of failures either; who sweeps too few draws for a typical one, of those that
+  // failed
+  const bool wants_none = options.examples && *options.examples == 0;
+  leave.failures =
+      options.failures.value_or(wants_none ? 0 : std::clamp(draws / kDrawsPerFailure, std::uint64_t{1}, kFailuresMax));
   leave.jobs = options.jobs;
   leave.stop = &stop;
   leave.note = [&](std::string_view line) { session.note(line); };
