@@ -203,7 +203,10 @@ std::string format_of(const ImportOptions& options) {
     require_known("format", options.format, kFormats);
     return options.format;
   }
-  if (std::filesystem::is_directory(options.path)) return format_of_folder(options.path);
+  std::error_code error;
+  if (std::filesystem::is_directory(options.path, error)) return format_of_folder(options.path);
+  // to open a pipe that nobody writes to waits for ever
+  if (!std::filesystem::is_regular_file(options.path, error)) throw BadInput(options.path.string() + ": no such file");
   const std::string ending = options.path.extension().string();
   if (ending == ".csv") return format_of_csv(options.path);
   if (ending == ".bag") return "rosbag1";
