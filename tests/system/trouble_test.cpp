@@ -74,6 +74,26 @@ TEST(Trouble, FullDiskLeavesNoPartialRecording) {
                   "x.db");
 }
 
+TEST(Trouble, TooFewFilesAreNoDefect) {
+  const fs::path folder = test_folder();
+  const std::string recording = (shared_run("hill") / "recording.h5").string();
+  // how many this process has open is not known: below some number the program cannot even be loaded
+  std::size_t met = 0;
+  for (rlim_t files = 4; files <= 12; ++files) {
+    fs::remove_all(folder / "o.mcap");
+    const Ended ended = run_program({"export", recording, "-o", (folder / "o.mcap").string()}, [&] {
+      const rlimit limit = {files, files};
+      setrlimit(RLIMIT_NOFILE, &limit);
+    });
+    if (ended.status == 127) continue;
+    EXPECT_THAT(ended.status, testing::AnyOf(0, 2)) << files << " files: " << ended.err;
+    if (ended.status != 2) continue;
+    met += ended.err.find("pipe: Too many open files") != std::string::npos;
+    EXPECT_TRUE(fs::is_empty(folder)) << fs::directory_iterator(folder)->path();
+  }
+  EXPECT_GT(met, 0u);
+}
+
 TEST(Trouble, FullStandardOutputIsSaid) {
   const Ended ended = run_program({"list", "methods"}, [] {
     if (std::freopen("/dev/full", "w", stdout) == nullptr) _exit(126);

@@ -10,6 +10,7 @@
 #include <fstream>
 #include <iterator>
 #include <memory>
+#include <nlohmann/json.hpp>
 
 #include "scenarios/certificate/certificate_text.hpp"
 #include "scenarios/errors.hpp"
