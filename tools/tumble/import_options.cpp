@@ -204,7 +204,8 @@ std::string format_of(const ImportOptions& options) {
   const bool folder = std::filesystem::is_directory(options.path, error);
   // to open a pipe that nobody writes to waits for ever; poses are read once, from wherever they come
   const bool poses = options.format == "tum" || options.format == "kitti" || options.format == "odometry";
-  if (!folder && !poses && !std::filesystem::is_regular_file(options.path, error))
+  const std::filesystem::file_status found = std::filesystem::status(options.path, error);
+  if (std::filesystem::exists(found) && !std::filesystem::is_regular_file(found) && !folder && !poses)
     throw BadInput(options.path.string() + ": no such file");
   if (!options.format.empty()) return options.format;
   if (folder) return format_of_folder(options.path);
