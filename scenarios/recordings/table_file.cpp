@@ -6,7 +6,9 @@
 #include <cmath>
 #include <cstdlib>
 #include <fstream>
+#include <istream>
 #include <span>
+#include <string>
 #include <system_error>
 
 #include "scenarios/errors.hpp"
@@ -30,6 +32,24 @@ std::vector<std::string> split(const std::string& line, char separator) {
     begin = end + 1;
   }
   return cells;
+}
+
+/// The longest line of a table: a pose's covariance takes less than a thousand bytes. A file without line ends, or a
+/// device that gives zeros for ever, would be read into memory else.
+constexpr std::size_t kLineMax = 1 << 20;
+
+/// As std::getline. Throws BadInput for a line beyond kLineMax.
+bool read_line(std::istream& file, const std::filesystem::path& path, int number, std::string& line) {
+  line.clear();
+  auto& bytes = *file.rdbuf();
+  for (int c = bytes.sbumpc(); c != std::istream::traits_type::eof(); c = bytes.sbumpc()) {
+    if (c == '\n') return true;
+    line += static_cast<char>(c);
+    if (line.size() > kLineMax)
+      throw BadInput(path.string() + ":" + std::to_string(number) + ": has more than " + std::to_string(kLineMax) +
+                     " bytes: no line of a table");
+  }
+  return !line.empty();
 }
 
 template <typename T>
@@ -94,7 +114,7 @@ Table Table::read(const std::filesystem::path& path, char separator, const std::
   std::string line;
   int number = 0;
   bool header_due = !header.empty();
-  while (std::getline(file, line)) {
+  while (read_line(file, path, number + 1, line)) {
     ++number;
     if (number == 1 && line.starts_with("\xef\xbb\xbf")) line.erase(0, 3);  // as editors on Windows begin a file
     if (!line.empty() && line.back() == '\r') line.pop_back();
@@ -142,8 +162,10 @@ std::int64_t Table::time_ns(const Row& row, std::size_t column) const {
   if (plain && point != std::string::npos && point > 0 && parse(text.substr(0, point), whole)) {
     std::string digits = text.substr(point + 1, 9);
     digits.append(9 - digits.size(), '0');
+    const bool plain_part = digits.find_first_not_of("0123456789") == std::string::npos;
     const bool fits = whole >= -kSecondsMax && whole <= kSecondsMax;
-    if (fits && parse(digits, fraction)) return whole * kSecond_ns + (text.front() == '-' ? -fraction : fraction);
+    if (fits && plain_part && parse(digits, fraction))
+      return whole * kSecond_ns + (text.front() == '-' ? -fraction : fraction);
   }
   const double value_s = number(row, column);
   if (!std::isfinite(value_s) || std::abs(value_s) > static_cast<double>(kSecondsMax)) {

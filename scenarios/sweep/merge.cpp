@@ -81,13 +81,6 @@ std::string common_rule(const std::vector<Notes>& notes) {
   return std::all_of(notes.begin(), notes.end(), is_it) ? rule : std::string();
 }
 
-bool has_rows(const Results& results) {
-  bool any = false;
-  Names names;
-  results.each(Rows::all, names, [&](const OutcomeView&) { any = true; });
-  return any;
-}
-
 /// A database that was made for a merge which failed goes again.
 class Made {
  public:
@@ -119,7 +112,7 @@ MergeCounts merge_results(const DatabaseOwner& owner, std::span<const fs::path> 
     results.in_one_transaction([&] {
       if (!made.is_new() && !mixed && !notes.empty() && !results.note("data").empty())
         require_same_origin(notes.front(), results.notes(), out);
-      if (!mixed && !notes.empty() && !has_rows(results)) results.set_note(kKeepNote, common_rule(notes));
+      if (!mixed && !notes.empty() && !results.has_rows()) results.set_note(kKeepNote, common_rule(notes));
       for (std::size_t i = 0; i < in.size(); ++i) {
         results.absorb(Results(in[i], Results::Mode::read_only), mixed, counts);
         join_method_notes(notes[i], in[i], mixed, results);

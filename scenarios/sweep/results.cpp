@@ -5,6 +5,7 @@
 
 #include <cmath>
 #include <string_view>
+#include <system_error>
 
 #include "scenarios/errors.hpp"
 #include "scenarios/sweep/results_database.hpp"
@@ -63,7 +64,12 @@ void Results::Impl::store(const std::string& kind, const Outcome& outcome) {
 }
 
 Results::Results(const std::filesystem::path& path, Mode mode) {
-  if (mode == Mode::read_only && !std::filesystem::exists(path)) throw BadInput(path.string() + ": no such file");
+  std::error_code ignored;
+  const std::filesystem::file_status found = std::filesystem::status(path, ignored);
+  if (mode == Mode::read_only && !std::filesystem::exists(found)) throw BadInput(path.string() + ": no such file");
+  // to open a pipe that nobody writes to waits for ever
+  if (std::filesystem::exists(found) && !std::filesystem::is_regular_file(found))
+    throw BadInput(path.string() + ": not a results database, but a folder, a pipe or a device");
   try {
     impl_ = std::make_unique<Impl>(path, mode);
     if (mode != Mode::read_only && impl_->is_empty()) impl_->create();

@@ -96,6 +96,8 @@ class Results {
   /// All that `work` stores, or, when it throws, nothing of it. Throws what it throws.
   void in_one_transaction(const std::function<void()>& work);
 
+  /// Whether any draw has an outcome or a rejection.
+  bool has_rows() const;
   /// The row with the scenario, seed, kind, method and setting of `key`, without its scores.
   std::optional<Outcome> find(const Outcome& key) const;
   /// What is held of one draw, curves included, without scores.

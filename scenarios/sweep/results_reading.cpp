@@ -84,6 +84,11 @@ std::vector<RejectedDraw> read_rejected(SQLite::Statement& select) {
 
 }  // namespace
 
+bool Results::has_rows() const {
+  return impl_->guarded(
+      [&] { return impl_->database.execAndGet("SELECT EXISTS (SELECT 1 FROM outcomes)").getInt() != 0; });
+}
+
 std::optional<Outcome> Results::find(const Outcome& key) const {
   for (Outcome& held : outcomes_of(key.scenario, key.seed)) {
     if (held.kind == key.kind && held.method == key.method && held.setting == key.setting) return std::move(held);

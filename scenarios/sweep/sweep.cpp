@@ -305,8 +305,7 @@ SweepProgress sweep(const DataRoot& data, const Suite& suite, const std::filesys
   return sweep(data, suite, DatabaseOwner(database), options);
 }
 
-SweepProgress sweep(const DataRoot& data, const Suite& suite, const DatabaseOwner& database,
-                    const SweepOptions& options) {
+void require_sound(const Suite& suite, const SweepOptions& options) {
   if (options.jobs < 1 || options.jobs > kJobsMax) {
     throw BadInput("jobs is " + std::to_string(options.jobs) + ", must be within [1, " + std::to_string(kJobsMax) +
                    "]");
@@ -320,6 +319,11 @@ SweepProgress sweep(const DataRoot& data, const Suite& suite, const DatabaseOwne
   if (!suite.recordings.empty() && options.keep.which != Keep::Which::none)
     throw BadInput("suite " + suite.name + ": its draws are recordings, which are there already; none is kept");
   require_worker_memory(options.memory_mib);
+}
+
+SweepProgress sweep(const DataRoot& data, const Suite& suite, const DatabaseOwner& database,
+                    const SweepOptions& options) {
+  require_sound(suite, options);
   Results results = open_results(data, suite, database.database());
   if (options.keep.which != Keep::Which::none) results.set_note(kKeepNote, to_string(options.keep));
   return Sweep(data, suite, results, options, database.database()).run();

@@ -84,6 +84,10 @@ struct SweepOptions {
   bool recordings_unseen = false;
 };
 
+/// What a sweep refuses before anything runs: jobs, seeds, statuses to run again, what to keep, memory. Throws
+/// BadInput.
+void require_sound(const Suite& suite, const SweepOptions& options);
+
 /// Makes the database, or opens it, as one of this suite, build, models and scenarios. Throws BadInput when it is of
 /// others.
 Results open_results(const DataRoot& data, const Suite& suite, const std::filesystem::path& database);

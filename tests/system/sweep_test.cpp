@@ -175,8 +175,9 @@ TEST(Sweep, NamedDrawsAreNoSeedsInARow) {
 
 TEST(Sweep, RefusesWhatItCannotKeepOrAsk) {
   const fs::path database = test_folder() / "x.db";
-  const auto refused = [&](const std::vector<std::string>& more, const std::string& what) {
-    std::vector<std::string> arguments = sweep_arguments(database, "1");
+  const auto refused = [&](const std::vector<std::string>& more, const std::string& what,
+                           const std::string& seeds = "1") {
+    std::vector<std::string> arguments = sweep_arguments(database, seeds);
     arguments.insert(arguments.end(), more.begin(), more.end());
     const Ended ended = run_shortened(arguments);
     EXPECT_EQ(ended.status, 2) << what;
@@ -188,6 +189,11 @@ TEST(Sweep, RefusesWhatItCannotKeepOrAsk) {
   refused({"--until", "rate/raw:rate/tumble"}, "must be A:B:METRIC");
   refused({"--until", "rate/raw:rate/tumble:rate_error_clipped_median_rad_s"}, "method of the suite");
   refused({"--until", "rate/raw:rate/raw:rate_error_clipped_median_rad_s", "--shard", "1/2"}, "a shard has no looks");
+  // what is met once the database is open: one that the sweep made goes again
+  refused({"--again", "ok"}, "'ok' is not run again");
+  refused({}, "take them in parts", "1..20000000");
+  refused({"--shard", "1/2"}, "take them in parts", "0..18446744073709551615");
+  EXPECT_TRUE(fs::is_empty(database.parent_path())) << fs::directory_iterator(database.parent_path())->path();
 }
 
 // the lidar's library said of too little memory that the CPU was too old

@@ -6,6 +6,7 @@
 
 #include <cstdio>
 #include <fstream>
+#include <nlohmann/json.hpp>
 
 #include "system/program.hpp"
 #include "tests/tree.hpp"
@@ -15,6 +16,7 @@ namespace {
 
 namespace fs = std::filesystem;
 using ::testing::HasSubstr;
+using ::testing::Not;
 
 void expect_one_line(const Ended& ended, const std::string& says) {
   EXPECT_EQ(ended.status, 2) << ended.err;
@@ -72,6 +74,26 @@ TEST(Trouble, FullDiskLeavesNoPartialRecording) {
                   "x.db");
 }
 
+TEST(Trouble, TooFewFilesAreNoDefect) {
+  const fs::path folder = test_folder();
+  const std::string recording = (shared_run("hill") / "recording.h5").string();
+  // how many this process has open is not known: below some number the program cannot even be loaded
+  std::size_t met = 0;
+  for (rlim_t files = 4; files <= 12; ++files) {
+    fs::remove_all(folder / "o.mcap");
+    const Ended ended = run_program({"export", recording, "-o", (folder / "o.mcap").string()}, [&] {
+      const rlimit limit = {files, files};
+      setrlimit(RLIMIT_NOFILE, &limit);
+    });
+    if (ended.status == 127) continue;
+    EXPECT_THAT(ended.status, testing::AnyOf(0, 2)) << files << " files: " << ended.err;
+    if (ended.status != 2) continue;
+    met += ended.err.find("pipe: Too many open files") != std::string::npos;
+    EXPECT_TRUE(fs::is_empty(folder)) << fs::directory_iterator(folder)->path();
+  }
+  EXPECT_GT(met, 0u);
+}
+
 TEST(Trouble, FullStandardOutputIsSaid) {
   const Ended ended = run_program({"list", "methods"}, [] {
     if (std::freopen("/dev/full", "w", stdout) == nullptr) _exit(126);
@@ -111,6 +133,43 @@ TEST(Trouble, AGapIsSaidWithItsPlace) {
   const Ended ended = run_program({"estimate", recording, "--method", "rate/raw", "-o", (folder / "e").string()});
   EXPECT_EQ(ended.status, 2);
   EXPECT_THAT(ended.err, HasSubstr("imu has no readings between 1.990 and 3.500 s"));
+}
+
+// met before the run, of which nothing stays that looks finished
+TEST(Trouble, WhatIsLearntHasAPlaceOrNothingRuns) {
+  const fs::path folder = test_folder();
+  const std::string recording = (shared_run("hill") / "recording.h5").string(), made = (folder / "e").string();
+  expect_one_line(run_program({"estimate", recording, "--method", "rate/tumble", "--learnt",
+                               (folder / "none" / "rig.json").string(), "-o", made}),
+                  "none/rig.json: cannot be written");
+  EXPECT_TRUE(fs::is_empty(folder)) << fs::directory_iterator(folder)->path();
+  expect_one_line(run_program({"run", "hill", "--method", "rate/tumble", "--learnt",
+                               (folder / "none" / "rig.json").string(), "-o", made}),
+                  "none/rig.json: cannot be written");
+  EXPECT_TRUE(fs::is_empty(folder)) << fs::directory_iterator(folder)->path();
+  // the folder that the run makes is one
+  EXPECT_EQ(run_program({"estimate", recording, "--method", "rate/tumble", "--learnt", made + "/rig.json", "-o", made})
+                .status,
+            0);
+  ASSERT_TRUE(fs::exists(folder / "e" / "rig.json"));
+}
+
+// what another rig has taught is believed to millimetres, and clipped rates are wrong by it
+TEST(Trouble, WhatWasLearntOfAnotherRigIsACaution) {
+  const fs::path folder = test_folder();
+  const std::string recording = (shared_run("hill") / "recording.h5").string(), file = (folder / "rig.json").string();
+  const auto estimate = [&](const std::string& out) {
+    return run_program(
+        {"estimate", recording, "--method", "rate/tumble", "--learnt", file, "-o", (folder / out).string()});
+  };
+  ASSERT_EQ(estimate("first").status, 0);
+  EXPECT_THAT(estimate("again").err, Not(HasSubstr("another rig")));
+  nlohmann::json rig = nlohmann::json::parse(read_file(file));
+  rig["lever_arm_m"][0] = rig["lever_arm_m"][0].get<double>() + 0.3;
+  std::ofstream(file) << rig;
+  const Ended other = estimate("other");
+  EXPECT_EQ(other.status, 0) << other.err;
+  EXPECT_THAT(other.err, HasSubstr("off that of the recording: learnt of another rig?"));
 }
 
 TEST(Trouble, AFrameIsCheckedWithoutATrajectoryToo) {

@@ -75,6 +75,23 @@ TEST(ShardSeeds, PartitionTheRange) {
   }
 }
 
+// whose number does not fit 64 bits
+TEST(ShardSeeds, PartitionAllSeedsThereAre) {
+  constexpr std::uint64_t kLast = 18446744073709551615u;
+  for (const std::uint64_t count : {1u, 2u, 3u, 1000000u}) {
+    std::uint64_t next = 0;
+    for (const std::uint64_t i : {std::uint64_t{1}, count / 2 + 1, count}) {
+      std::uint64_t first = 0, last = kLast;
+      ASSERT_TRUE(shard_seeds({i, count}, first, last)) << i << "/" << count;
+      EXPECT_GE(first, next);
+      EXPECT_GE(last - first, kLast / count - 1);
+      next = first;
+      EXPECT_EQ(first == 0, i == 1);
+      EXPECT_EQ(last == kLast, i == count);
+    }
+  }
+}
+
 TEST(RequireKnown, NamesTheNearestOrAll) {
   const std::vector<std::string> known = {"run", "record", "sweep"};
   EXPECT_NO_THROW(require_known("verb", "sweep", known));
@@ -106,6 +123,20 @@ TEST(MakeFolder, IsRefusedBelowAFileAndLeavesNothing) {
               ThrowsMessage<BadInput>(HasSubstr("a.txt/b")));
   EXPECT_THAT([&] { make_folder(folder / "a.txt" / "b"); }, ThrowsMessage<BadInput>(HasSubstr("a.txt/b")));
   EXPECT_EQ(std::distance(std::filesystem::directory_iterator(folder), {}), 1) << "no partial file stays";
+}
+
+// before anything is worked out for it
+TEST(PrepareFile, RefusesWhatCannotBeOneAndLeavesNothing) {
+  const std::filesystem::path folder =
+      std::filesystem::path(testing::TempDir()) / ("tumble_prepare_file_" + std::to_string(getpid()));
+  std::filesystem::remove_all(folder);
+  make_folder(folder);
+  EXPECT_THAT([&] { prepare_file(folder, {}); }, ThrowsMessage<BadInput>(HasSubstr("Is a directory")));
+  EXPECT_THAT([&] { prepare_file(folder / std::string(300, 'a'), {}); },
+              ThrowsMessage<BadInput>(HasSubstr("cannot be written")));
+  EXPECT_THAT([&] { prepare_file("/proc/self/x.h5", {}); }, ThrowsMessage<BadInput>(HasSubstr("cannot be written")));
+  EXPECT_NO_THROW(prepare_file(folder / "below" / "x.h5", {}));
+  EXPECT_TRUE(std::filesystem::is_empty(folder / "below"));
 }
 
 }  // namespace

@@ -53,8 +53,10 @@ Shard parse_shard(const std::string& text) {
 }
 
 bool shard_seeds(const Shard& shard, std::uint64_t& first, std::uint64_t& last) {
-  const std::uint64_t total = last - first + 1;
-  const std::uint64_t length = total / shard.count, longer = total % shard.count;
+  if (shard.count == 1) return true;
+  // of 2^64 seeds the number does not fit, the difference of the ends does
+  const std::uint64_t span = last - first, rest = span % shard.count + 1;
+  const std::uint64_t length = span / shard.count + rest / shard.count, longer = rest % shard.count;
   const std::uint64_t before = shard.index - 1;
   const std::uint64_t begin = first + before * length + std::min(before, longer);
   const std::uint64_t own = length + (before < longer ? 1 : 0);
@@ -141,6 +143,11 @@ void make_folder(const std::filesystem::path& folder) {
 void prepare_output(const std::filesystem::path& output, std::span<const std::filesystem::path> inputs) {
   scenarios::require_not_an_input(output, inputs);
   if (output.has_parent_path()) make_folder(output.parent_path());
+}
+
+void prepare_file(const std::filesystem::path& output, std::span<const std::filesystem::path> inputs) {
+  prepare_output(output, inputs);
+  const scenarios::OutputFile tried(output);
 }
 
 }  // namespace tumble::tools

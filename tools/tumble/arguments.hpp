@@ -61,4 +61,8 @@ void make_folder(const std::filesystem::path& folder);
 /// Makes the folder of an output file, and refuses an output that is one of the inputs. For before the work begins.
 void prepare_output(const std::filesystem::path& output, std::span<const std::filesystem::path> inputs);
 
+/// The same for an output that is one file: refuses what could not be written there before anything is worked out for
+/// it, and leaves nothing.
+void prepare_file(const std::filesystem::path& output, std::span<const std::filesystem::path> inputs);
+
 }  // namespace tumble::tools

@@ -131,7 +131,7 @@ int bench(const Session& session, const BenchOptions& options) {
   const std::vector<scenarios::MethodPointer> methods = methods_of(options);
   const scenarios::Suite suite = suite_of(data, options, methods.front()->info.kind);
   std::vector<BenchResult> stored = stored_results(data, options, suite);
-  if (!options.lines.empty()) prepare_output(options.lines, {});
+  if (!options.lines.empty()) prepare_file(options.lines, {});
   const fs::path database = database_of(data, options, suite, methods);
   if (database.has_parent_path()) make_folder(database.parent_path());
   session.note(fmt::format("{}, {} draws; results in {}, where a run that is stopped goes on", suite.name,

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <fmt/format.h>
 
-#include <cstdint>
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <string>
@@ -16,6 +15,7 @@
 #include "scenarios/sweep/outcome.hpp"
 #include "tools/tumble/arguments.hpp"
 #include "tools/tumble/learnt_file.hpp"
+#include "tools/tumble/trouble_place.hpp"
 #include "tools/tumble/verbs.hpp"
 #include "tools/tumble/verdict_lines.hpp"
 
@@ -33,28 +33,12 @@ struct EstimateOptions {
   std::filesystem::path learnt;
 };
 
-/// Where the longest gap of an IMU is; empty where there is none.
-std::string place_of_gap(const sim::Sensors& sensors) {
-  std::int64_t longest_ns = 0;
-  std::string place;
-  for (const sim::ImuRecord& imu : sensors.imus) {
-    for (std::size_t k = 1; k < imu.time_ns.size(); ++k) {
-      const std::int64_t from_ns = imu.time_ns[k - 1], to_ns = imu.time_ns[k];
-      if (to_ns - from_ns <= longest_ns) continue;
-      longest_ns = to_ns - from_ns;
-      place = fmt::format("{} has no readings between {:.3f} and {:.3f} s", imu.name,
-                          1e-9 * static_cast<double>(from_ns), 1e-9 * static_cast<double>(to_ns));
-    }
-  }
-  return place;
-}
-
 /// Why a run failed; a sensor that the recording does not have is called by its name.
 std::string reason(const Status& status, const sim::Sensors& sensors) {
   const std::string field = status.field;
   if (status.trouble == Trouble::empty && field == "imus") return "it needs an IMU, and the recording has none";
-  if (status.trouble == Trouble::gap) return status.message() + ": " + place_of_gap(sensors);
-  return status.message();
+  const std::string place = trouble_place(status, sensors);
+  return status.message() + (place.empty() ? "" : ": " + place);
 }
 
 /// The one method of that name which can run on this recording without the truth.
@@ -119,12 +103,13 @@ int run_estimate(const Session& session, const EstimateOptions& options) {
   const scenarios::MethodPointer told[] = {scenarios::unowned(learning)};
   const std::vector<scenarios::Method> methods = scenarios::with_parameters(told, options.parameters);
   scenarios::OutputFolder folder(options.folder);
+  learnt.require_place();
   scenarios::Estimate estimate = run_of(methods.front(), sensors);
   if (!scenarios::states_digest(options.recording)) add_doubt({scenarios::Doubt::About::digest}, estimate);
   scenarios::write_estimate(options.folder, method.info.name, method.info.kind, estimate,
                             scenarios::digest(sensors, nullptr));
-  folder.keep();
   learnt.keep(session);
+  folder.keep();
 
   const nlohmann::json document = {{"method", method.info.name},
                                    {"kind", to_string(method.info.kind)},
@@ -133,6 +118,7 @@ int run_estimate(const Session& session, const EstimateOptions& options) {
                                    {"digest", scenarios::digest(estimate)},
                                    {"health", estimate.health}};
   session.print({summary(estimate)}, document);
+  if (const std::string caution = learnt.caution(sensors); !caution.empty()) session.note(caution);
   // also of one that failed: what is wrong with the sensors may be why
   for (const std::string& line : verdict_lines(estimate)) session.note(full_name(method.info) + ": " + line);
   if (estimate.status.ok()) return kDone;

@@ -6,6 +6,7 @@
 #include <stdexcept>
 
 #include "scenarios/errors.hpp"
+#include "scenarios/exchange/imu_notes.hpp"
 #include "scenarios/exchange/lidar_rotation.hpp"
 #include "tools/tumble/arguments.hpp"
 #include "tools/tumble/import_options.hpp"
@@ -99,8 +100,8 @@ void say_what_is_assumed(const ImportOptions& options, const std::string& format
 int import_from(const Session& session, const ImportOptions& options) {
   const std::string format = format_of(options);
   require_fitting(options, format);
-  prepare_output(options.out,
-                 std::vector<std::filesystem::path>{options.path, options.imu, options.times, options.reference});
+  prepare_file(options.out,
+               std::vector<std::filesystem::path>{options.path, options.imu, options.times, options.reference});
   Imported imported = import_format(session, options, format);
   if (!options.imu.empty()) {
     scenarios::attach_imus(imported, scenarios::import_imu_csv(options.imu, imu_sheet(session, options),
@@ -113,6 +114,7 @@ int import_from(const Session& session, const ImportOptions& options) {
   }
   for (std::string& note : scenarios::lidar_rotation_notes(options.path.string(), imported, gyro_unit(options)))
     imported.notes.push_back(std::move(note));
+  for (std::string& note : scenarios::imu_notes(imported)) imported.notes.push_back(std::move(note));
   say_what_is_assumed(options, format, imported.notes);
   imported.sensors.robot = options.robot;
   imported.sensors.sphere_radius_m = options.radius_m;

@@ -199,11 +199,16 @@ void declare(VerbOptions& verb, ImportOptions& options) {
 }
 
 std::string format_of(const ImportOptions& options) {
-  if (!options.format.empty()) {
-    require_known("format", options.format, kFormats);
-    return options.format;
-  }
-  if (std::filesystem::is_directory(options.path)) return format_of_folder(options.path);
+  if (!options.format.empty()) require_known("format", options.format, kFormats);
+  std::error_code error;
+  const bool folder = std::filesystem::is_directory(options.path, error);
+  // to open a pipe that nobody writes to waits for ever; poses are read once, from wherever they come
+  const bool poses = options.format == "tum" || options.format == "kitti" || options.format == "odometry";
+  const std::filesystem::file_status found = std::filesystem::status(options.path, error);
+  if (std::filesystem::exists(found) && !std::filesystem::is_regular_file(found) && !folder && !poses)
+    throw BadInput(options.path.string() + ": no such file");
+  if (!options.format.empty()) return options.format;
+  if (folder) return format_of_folder(options.path);
   const std::string ending = options.path.extension().string();
   if (ending == ".csv") return format_of_csv(options.path);
   if (ending == ".bag") return "rosbag1";

@@ -1,9 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "tools/tumble/learnt_file.hpp"
 
+#include <fmt/format.h>
+
 #include <utility>
 
 #include "scenarios/errors.hpp"
+#include "scenarios/methods/bridge.hpp"
+#include "scenarios/recordings/replace_file.hpp"
 
 namespace tumble::tools {
 
@@ -11,6 +15,23 @@ LearntFile::LearntFile(std::filesystem::path path) : path_(std::move(path)) {
   if (path_.empty() || !std::filesystem::exists(path_)) return;
   if (!std::filesystem::is_regular_file(path_)) throw scenarios::BadInput(path_.string() + ": --learnt is no file");
   learning_.given = scenarios::read_learnt_rig(path_);
+}
+
+void LearntFile::require_place() const {
+  if (!path_.empty()) const scenarios::OutputFile tried(path_);
+}
+
+std::string LearntFile::caution(const sim::Sensors& sensors) const {
+  constexpr double kLeverArmOff_m = 0.1;  // of a mounting that is measured at all
+  if (!learning_.given || sensors.imus.empty()) return "";
+  const Eigen::Vector3d stated = scenarios::bridge::lever_arm_I_m(sensors.imus.front());
+  if (stated.isZero(0.0)) return "";  // nobody stated it
+  const double off_m = (learning_.given->calibration.constants.lever_arm_m - stated).norm();
+  if (off_m <= kLeverArmOff_m) return "";
+  return fmt::format(
+      "caution: {} holds a lever arm that is {:.2g} m off that of the recording: learnt of another rig? Rates beyond a "
+      "rail rest on it",
+      path_.string(), off_m);
 }
 
 std::string LearntFile::learning_methods() {

@@ -5,6 +5,7 @@
 #include <string>
 
 #include "scenarios/methods/rate_tumble.hpp"
+#include "sim/recording.hpp"
 #include "tools/tumble/session.hpp"
 
 namespace tumble::tools {
@@ -15,6 +16,14 @@ class LearntFile {
   /// An empty path: no option, nothing is read or kept. A file that is not there is none yet. Throws BadInput on one
   /// that cannot be read.
   explicit LearntFile(std::filesystem::path path);
+
+  /// Throws BadInput where the file could not be written: before a run has cost anything, and once its folder is there,
+  /// in which the file may be. Leaves nothing.
+  void require_place() const;
+
+  /// Whether what the file held is of another rig than the recording says its IMU is on: a caution, or "". Rates beyond
+  /// a rail rest on the lever arm, and what was learnt is believed to millimetres.
+  std::string caution(const sim::Sensors& sensors) const;
 
   /// Full names of the methods that learn of the rig, for the user.
   static std::string learning_methods();

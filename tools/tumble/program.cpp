@@ -11,6 +11,7 @@
 #include <new>
 #include <string>
 #include <string_view>
+#include <system_error>
 #include <vector>
 
 #include "scenarios/errors.hpp"
@@ -155,6 +156,9 @@ int run_program(int argc, const char* const* argv) {
   } catch (const sim::InvalidSituation& error) {
     return say("", error.what(), kBadInput);
   } catch (const std::filesystem::filesystem_error& error) {
+    return say("", error.what(), kBadInput);
+  } catch (const std::system_error& error) {
+    // the machine's trouble, not the program's: no process, pipe or thread is left to have
     return say("", error.what(), kBadInput);
   } catch (const sim::SimulationFailure& error) {
     return say("the draw is rejected: ", error.what(), kCheckFailed);

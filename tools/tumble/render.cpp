@@ -171,7 +171,7 @@ int render(const Session& session, const RenderOptions& options) {
   if (options.video) require_video(options);
   std::vector<std::filesystem::path> inputs = options.estimates;
   inputs.emplace_back(options.what);
-  prepare_output(options.output, inputs);
+  prepare_file(options.output, inputs);
   if (is_recording(options.what) && !options.seed.empty()) {
     throw BadInput("--seed is for a scenario; '" + options.what + "' is a recording, of one draw");
   }

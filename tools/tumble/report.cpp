@@ -10,6 +10,7 @@
 #include <fstream>
 #include <iterator>
 #include <memory>
+#include <nlohmann/json.hpp>
 
 #include "scenarios/certificate/certificate_text.hpp"
 #include "scenarios/errors.hpp"
@@ -182,7 +183,7 @@ void write_page(const Session& session, const ReportVerbOptions& options, Report
 
 int report(const Session& session, const ReportVerbOptions& options) {
   for (const std::filesystem::path& output : {options.page, options.badge}) {
-    if (!output.empty()) prepare_output(output, std::vector<std::filesystem::path>{options.database});
+    if (!output.empty()) prepare_file(output, std::vector<std::filesystem::path>{options.database});
   }
   if (!options.badge.empty() && options.badge == options.page)
     throw scenarios::BadInput("--badge and --output are one file, " + options.page.string());

@@ -206,6 +206,7 @@ int run(const Session& session, const RunOptions& given) {
   const std::vector<scenarios::Method> methods = scenarios::with_parameters(pointers(asked), options.parameters);
   std::optional<scenarios::OutputFolder> folder;
   if (!options.folder.empty()) folder.emplace(options.folder);
+  learnt.require_place();
 
   const scenarios::Setting setting = setting_of(data, options, seed);
   const scenarios::RunResult result = scenarios::run_situation(data, scenario, seed, pointers(methods), options.threads,
@@ -213,11 +214,12 @@ int run(const Session& session, const RunOptions& given) {
   if (folder) {
     leave_files(options.folder, result);
     leave_pictures(options.folder, result);
-    folder->keep();
   }
   learnt.keep(session);
+  if (folder) folder->keep();
   print_result(session, result, seed);
   say_troubles(session, result);
+  if (const std::string caution = learnt.caution(result.recording.sensors); !caution.empty()) session.note(caution);
   if (const std::string moving = end_in_motion(result.recording.truth); !moving.empty()) session.note(moving);
   if (first) say_what_next(session, options, result);
   return kDone;

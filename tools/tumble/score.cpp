@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "scenarios/errors.hpp"
@@ -93,6 +94,24 @@ Standing standing_of(const scenarios::Estimate& estimate, const sim::Truth& trut
     if (step_s <= kHoleShare * out.end_s) out.covered_s += step_s;
   }
   return out;
+}
+
+/// Of times in ms, us or ns that are read as seconds the first few fall into the recording, far apart, and would be
+/// scored. A long one of which the recording is a part has poses that are nearer to each other, or another length.
+void require_seconds(const ScoreOptions& options, const scenarios::Estimate& estimate, const Standing& standing) {
+  constexpr double kNear = 1.5, kLeastStep_s = 0.1;
+  if (estimate.poses.size() < 2 || !(standing.end_s > 0.0)) return;
+  const double length_s = 1e-9 * static_cast<double>(estimate.poses.back().time_ns - estimate.poses.front().time_ns);
+  if (length_s < kLeastStep_s * static_cast<double>(estimate.poses.size() - 1)) return;
+  const double factor = length_s / standing.end_s;
+  for (const auto& [unit, of_second] : {std::pair("ms", 1e3), std::pair("us", 1e6), std::pair("ns", 1e9)}) {
+    if (factor > kNear * of_second || kNear * factor < of_second) continue;
+    throw scenarios::BadInput(
+        fmt::format("{}: {} of its {} poses lie within {}, which is of {:.3f} s; they go on for {:.3f} s, {:.0f} times "
+                    "as long: another unit of time, {}? must be seconds",
+                    options.estimate.string(), standing.compared, standing.poses, options.recording.string(),
+                    standing.end_s, length_s, factor, unit));
+  }
 }
 
 /// A trajectory that shares next to nothing with the recording has no score: all of its errors would be zero.
@@ -197,6 +216,9 @@ Claim read_claim(const Session& session, const ScoreOptions& options) {
                                             frame_of(options.frame, !claim.truth.imus.empty()));
   require_own(options.estimate, options.recording, claim.sensors);
   claim.foreign = !std::filesystem::is_directory(options.estimate);
+  if (!claim.foreign && scenarios::estimated_sensors(options.estimate).empty())
+    session.note("caution: " + options.estimate.string() +
+                 " does not say which recording it was made from, so that one of another would not show");
   if (!claim.foreign && !options.kind.empty())
     throw scenarios::BadInput("--kind is for a TUM file; " + options.estimate.string() + " says what it is");
   if (claim.foreign) complete_foreign(session, options, claim);
@@ -246,6 +268,7 @@ int score_estimate(const Session& session, const ScoreOptions& options) {
   std::optional<Standing> standing;
   if (claim.foreign) {
     standing = standing_of(claim.estimate, claim.truth);
+    require_seconds(options, claim.estimate, *standing);
     require_compared(options, *standing);
   }
   const scenarios::ScoredEstimate scored(claim.estimate, {&claim.sensors, &claim.truth, surface.get()});

@@ -182,6 +182,39 @@ scenarios::SweepOptions sweep_options(const SweepVerbOptions& options, const std
   return out;
 }
 
+/// A database that a refused sweep has made goes again, unless draws are stored in it.
+class NewDatabase {
+ public:
+  explicit NewDatabase(const std::filesystem::path& path) : path_(path), is_new_(!exists_at(path)) {}
+  ~NewDatabase() {
+    if (!is_new_ || kept_ || holds_rows()) return;
+    std::error_code ignored;
+    std::filesystem::remove(path_, ignored);
+  }
+  NewDatabase(const NewDatabase&) = delete;
+  NewDatabase& operator=(const NewDatabase&) = delete;
+  void keep() { kept_ = true; }
+
+ private:
+  static bool exists_at(const std::filesystem::path& path) {
+    std::error_code ignored;
+    return std::filesystem::exists(std::filesystem::symlink_status(path, ignored));
+  }
+  /// What cannot be read is not removed, but where the disk had no room for the first byte.
+  bool holds_rows() const {
+    try {
+      const scenarios::Results results(path_, scenarios::Results::Mode::read_only);
+      return results.has_rows();
+    } catch (const std::exception&) {
+      std::error_code error;
+      return std::filesystem::file_size(path_, error) > 0 || error;
+    }
+  }
+
+  std::filesystem::path path_;
+  bool is_new_, kept_ = false;
+};
+
 /// Recorded in the results before anything runs. An empty word asks nothing.
 std::optional<scenarios::Question> ask(const SweepVerbOptions& options, const scenarios::DataRoot& data,
                                        const scenarios::Suite& suite) {
@@ -216,27 +249,31 @@ int run_sweep(const Session& session, const SweepVerbOptions& options) {
   say_what_it_holds(session, options, suite);
   if (options.database.has_parent_path()) make_folder(options.database.parent_path());
   const scenarios::DatabaseOwner owner(options.database);
+  NewDatabase made(options.database);
   if (!any) {
     // an empty database, so that all shards can be merged, with what they keep
     scenarios::Results results = scenarios::open_results(data, suite, options.database);
     if (options.keep != "none") results.set_note(scenarios::kKeepNote, options.keep);
+    made.keep();
     session.note("shard " + options.shard + " has no seeds: nothing to do");
     session.print({to_table({}, options.database.string())}, to_json({}, options.database.string()));
     return kDone;
   }
 
+  const InterruptFlag interrupt;
+  const scenarios::SweepOptions how = sweep_options(options, interrupt.raised());
+  scenarios::require_sound(suite, how);
   const std::optional<scenarios::Question> question = ask(options, data, suite);
   note_command(scenarios::open_results(data, suite, options.database), options);
-  const InterruptFlag interrupt;
   // it speaks of simulations
   if (suite.recordings.empty()) certify(session, data, options.database, interrupt.raised());
-  const scenarios::SweepOptions how = sweep_options(options, interrupt.raised());
   AskedSweep swept;
   if (question) {
     swept = sweep_until(session, data, suite, owner, how, *question);
   } else {
     swept.progress = sweep_with_progress(session, data, suite, owner, how);
   }
+  made.keep();
   const scenarios::SweepProgress& final = swept.progress;
   if (question && scenarios::all_answered(swept.answers))
     suite.last_seed = suite.first_seed + swept.progress.draws_total / suite.scenarios.size() - 1;

@@ -85,7 +85,8 @@ Status SweepTrajectory::build(const MotionState& start, std::span<const MotionSa
     return {Trouble::too_few, "imu time_ns", samples.empty() ? 0.0 : double(samples.back().time_ns), double(end_ns)};
   }
   if (samples.front().from_ns > start.time_ns) {
-    return {Trouble::gap, "imu window start", double(samples.front().from_ns), double(start.time_ns)};
+    // seconds, as of every gap
+    return {Trouble::gap, "imu window start", seconds(samples.front().from_ns - start.time_ns), 0.0};
   }
 
   const Eigen::Vector3d sigma = least_known(samples, end_ns);

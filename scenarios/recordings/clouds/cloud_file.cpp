@@ -8,6 +8,7 @@
 #include <cstring>
 #include <fstream>
 #include <string_view>
+#include <system_error>
 
 #include "scenarios/errors.hpp"
 #include "scenarios/recordings/clouds/pcl_reader.hpp"
@@ -157,6 +158,11 @@ const std::vector<double>* Cloud::find(const std::string& name) const {
 }
 
 Cloud read_cloud(const std::filesystem::path& path) {
+  std::error_code error;
+  const std::filesystem::file_status found = std::filesystem::status(path, error);
+  // asked first: to open a pipe that nobody writes to waits for ever
+  if (std::filesystem::exists(found) && !std::filesystem::is_regular_file(found))
+    throw BadInput(path.string() + ": no such file");
   const std::string ending = path.extension().string();
   if (ending == ".ply") return read_points(path, read_ply_header(path), PclFormat::ply);
   if (ending == ".pcd") return read_points(path, read_pcd_header(path), PclFormat::pcd);

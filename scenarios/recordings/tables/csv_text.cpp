@@ -5,6 +5,7 @@
 #include <cmath>
 #include <fstream>
 #include <iterator>
+#include <system_error>
 
 #include "scenarios/errors.hpp"
 #include "scenarios/text.hpp"
@@ -30,14 +31,30 @@ char likely_separator(std::string_view text) {
   return most;
 }
 
+/// Throws BadInput where the bytes are no lines of text in UTF-8, which is met before what it makes of columns.
+void require_lines(const std::string& name, std::string_view text) {
+  const std::string_view mark = text.substr(0, 2);
+  if (mark == "\xFF\xFE" || mark == "\xFE\xFF") throw BadInput(name + ": is text in UTF-16, must be in UTF-8");
+  if (const std::size_t zero = text.find('\0'); zero != std::string_view::npos) {
+    const auto line = std::count(text.begin(), text.begin() + static_cast<std::ptrdiff_t>(zero), '\n') + 1;
+    throw BadInput(name + ":" + std::to_string(line) + ": holds a byte 0: no text, or a file that is damaged");
+  }
+  if (text.find('\n') == std::string_view::npos && text.find('\r') != std::string_view::npos)
+    throw BadInput(name + ": its lines end in a carriage return alone, must end in a line feed");
+}
+
 }  // namespace
 
 CsvText::CsvText(const std::filesystem::path& path, char separator) : name_(path.string()), separator_(separator) {
+  // asked first: to open a pipe that nobody writes to waits for ever
+  std::error_code error;
+  if (!std::filesystem::is_regular_file(path, error)) throw BadInput(name_ + ": no such file");
   std::ifstream stream(path, std::ios::binary);
-  if (!stream || !std::filesystem::is_regular_file(path)) throw BadInput(name_ + ": no such file");
+  if (!stream) throw BadInput(name_ + ": cannot be read");
   text_.assign(std::istreambuf_iterator<char>(stream), std::istreambuf_iterator<char>());
   if (stream.bad()) throw BadInput(name_ + ": cannot be read");
   if (text_.empty()) throw BadInput(name_ + ": is empty");
+  require_lines(name_, text_);
   if (text_.back() != '\n') {
     const auto lines = std::count(text_.begin(), text_.end(), '\n') + 1;
     throw BadInput(name_ + ":" + std::to_string(lines) +

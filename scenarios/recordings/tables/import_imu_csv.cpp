@@ -55,16 +55,13 @@ Imported import_imu_csv(const std::filesystem::path& path, const sim::ImuRecord&
   Imported out;
   if (columns.stamp_form == StampForm::decimal) {
     const bool stated = columns.stamp_decimals.has_value();
-    if (!stated) columns.stamp_decimals = decimals_by_step(text, columns.stamp, path.string());
+    if (!stated) columns.stamp_decimals = decimals_by_step(text, columns.stamp, line.fields.size(), path.string());
     say_columns(columns, stated, out.notes);
   }
   sim::ImuRecord imu = without_readings(device);
   const std::size_t count = line.fields.size();
   const auto add = [&] {
-    if (line.fields.size() != count) {
-      throw BadInput(line.where + ": has " + std::to_string(line.fields.size()) + " columns, the first line " +
-                     std::to_string(count) + "; must be equal");
-    }
+    require_width(line, count);
     add_reading(line.where, stamp_ns(line, columns), scale_of(gyro_unit) * vector(line, columns.rate),
                 scale_of(unit) * vector(line, columns.force), imu);
   };

@@ -124,7 +124,8 @@ double number(const CsvLine& line, std::size_t column) {
 std::int64_t whole_number(const CsvLine& line, std::size_t column, std::int64_t largest) {
   const double value = number(line, column);
   if (value != std::floor(value) || value < 0.0 || value > static_cast<double>(largest)) {
-    fail(line, "column " + std::to_string(column) + " must be a whole number from 0 to " + std::to_string(largest));
+    fail(line, "column " + std::to_string(column) + " must be a whole number from 0 to " + std::to_string(largest) +
+                   ", is '" + std::string(line.fields[column]) + "'");
   }
   return static_cast<std::int64_t>(value);
 }
@@ -218,13 +219,20 @@ std::int64_t stamp_ns(const CsvLine& line, const ImuColumns& columns) {
          whole_number(line, columns.stamp_ns, kSecond_ns - 1);
 }
 
-int decimals_by_step(CsvText text, std::size_t stamp, const std::string& file) {
+void require_width(const CsvLine& line, std::size_t columns) {
+  if (line.fields.size() == columns) return;
+  fail(line, "has " + std::to_string(line.fields.size()) + " columns, the first line " + std::to_string(columns) +
+                 "; must be equal");
+}
+
+int decimals_by_step(CsvText text, std::size_t stamp, std::size_t columns, const std::string& file) {
   constexpr std::size_t kLooked = 1000;
   constexpr double kLeast_s = 0.9e-3, kMost_s = 0.1;
   std::vector<double> steps;
   CsvLine line;
   for (double last = 0.0; steps.size() <= kLooked && text.next(line);) {
-    const double now = stamp < line.fields.size() ? number(line, stamp) : last;
+    require_width(line, columns);
+    const double now = number(line, stamp);
     steps.push_back(now - last);
     last = now;
   }

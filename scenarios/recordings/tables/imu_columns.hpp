@@ -42,9 +42,13 @@ ImuColumns imu_columns(const CsvLine& first);
 /// Nanoseconds of a line's stamp. Throws BadInput with file, line and column.
 std::int64_t stamp_ns(const CsvLine& line, const ImuColumns& columns);
 
+/// Throws BadInput, the line's place before it, where a line has not as many columns as the first.
+void require_width(const CsvLine& line, std::size_t columns);
+
 /// Decimals of the unit of stamps that state none, of their first thousand steps: the one of s, ms, us and ns for which
 /// the IMU reads 10 to 1000 times a second, which at most one is: a slower or a faster one must say its unit. `text`
-/// stands before the first sample. Throws BadInput beginning with the file where none is.
-int decimals_by_step(CsvText text, std::size_t stamp, const std::string& file);
+/// stands before the first sample, whose lines must be of `columns`. Throws BadInput beginning with the file where none
+/// is.
+int decimals_by_step(CsvText text, std::size_t stamp, std::size_t columns, const std::string& file);
 
 }  // namespace tumble::scenarios

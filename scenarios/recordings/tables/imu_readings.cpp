@@ -48,6 +48,14 @@ void require_plausible_force(const std::string& where, const sim::ImuRecord& imu
 constexpr const char *kTakenInDegrees = " ('--gyro-unit deg/s' takes them so)",
                      *kTakenInRadians = " ('--gyro-unit rad/s' takes them so)";
 
+/// Of either triad [rad/s, m/s^2]: as the estimators bear.
+constexpr double kSensorReadingMax = 1e6;
+
+/// Not finite where one of them is not.
+double largest_of_triad(const Eigen::Vector3d& reading) {
+  return reading.allFinite() ? reading.cwiseAbs().maxCoeff() : std::nan("");
+}
+
 /// From 0.5 Hz to 50 kHz: what an IMU gives at all.
 constexpr double kLeastPeriod_s = 2e-5, kLargestPeriod_s = 2.0;
 
@@ -157,21 +165,37 @@ GravityRotation gravity_rotation(const sim::ImuRecord& imu, RotationWindows wind
   return turn;
 }
 
+namespace {
+
+bool tells_rotation(const GravityRotation& turn) {
+  return turn.windows >= kLeastWindows && std::abs(turn.correlation) >= kLeastCorrelation;
+}
+
+GravityRotation telling_rotation(const sim::ImuRecord& imu) {
+  const GravityRotation turn = gravity_rotation(imu, RotationWindows::even);
+  // a sphere that rolls turns too far within them
+  return tells_rotation(turn) ? turn : gravity_rotation(imu, RotationWindows::brisk);
+}
+
+/// Why the motion does not tell.
+std::string untold_text(const GravityRotation& turn) {
+  if (turn.windows < kLeastWindows) return "gravity turns too little in the accelerometer to show them";
+  return "the force turns in the accelerometer, but too little as the gyro says to show them (" +
+         std::to_string(turn.windows) + " windows, correlation " + rounded(turn.correlation) + ")";
+}
+
+}  // namespace
+
 std::string require_plausible_rates(const std::string& where, const sim::ImuRecord& imu, GyroUnit unit) {
   require_rates_in_range(where, imu, unit);
-  const auto tells = [](const GravityRotation& found) {
-    return found.windows >= kLeastWindows && std::abs(found.correlation) >= kLeastCorrelation;
-  };
-  GravityRotation turn = gravity_rotation(imu, RotationWindows::even);
-  // a sphere that rolls turns too far within them
-  if (!tells(turn)) turn = gravity_rotation(imu, RotationWindows::brisk);
+  const GravityRotation turn = telling_rotation(imu);
   const bool dead =
       std::all_of(imu.gyro_rad_s.begin(), imu.gyro_rad_s.end(), [](const auto& w) { return w.isZero(0.0); });
   if (dead) {
     return "caution: the gyro reads 0 on all axes in all " + std::to_string(imu.gyro_rad_s.size()) +
            " samples: is it dead, or not in what was recorded?";
   }
-  if (!tells(turn)) return "";
+  if (!tells_rotation(turn)) return "";
   const std::string seen = "gravity turns in the accelerometer " + rounded(turn.ratio) + " times as the gyro says (" +
                            std::to_string(turn.windows) + " windows, correlation " + rounded(turn.correlation) + ")";
   const bool as_deg = unit == GyroUnit::deg_s;
@@ -189,7 +213,7 @@ std::string rates_text(const std::string& where, const sim::ImuRecord& imu, Gyro
   const std::string told = require_plausible_rates(where, imu, unit);
   if (!told.empty()) return told;
   return std::string("rates taken in ") + (unit == GyroUnit::deg_s ? "deg/s" : "rad/s") +
-         ", senses and axes as they are: gravity turns too little in the accelerometer to show them";
+         ", senses and axes as they are: " + untold_text(telling_rotation(imu));
 }
 
 sim::ImuRecord without_readings(sim::ImuRecord device) {
@@ -201,7 +225,12 @@ sim::ImuRecord without_readings(sim::ImuRecord device) {
 
 void add_reading(const std::string& where, std::int64_t stamp_ns, const Eigen::Vector3d& rate_rad_s,
                  const Eigen::Vector3d& force_m_s2, sim::ImuRecord& imu) {
-  if (!rate_rad_s.allFinite() || !force_m_s2.allFinite()) throw BadInput(where + ": a reading is not finite");
+  for (const double value : {largest_of_triad(rate_rad_s), largest_of_triad(force_m_s2)}) {
+    if (!std::isfinite(value)) throw BadInput(where + ": a reading is not finite");
+    if (value > kSensorReadingMax)
+      throw BadInput(where + ": a reading is of size " + rounded(value) + " rad/s or m/s^2, must be at most " +
+                     rounded(kSensorReadingMax) + ": no sensor says that");
+  }
   if (!imu.time_ns.empty() && stamp_ns <= imu.time_ns.back()) {
     throw BadInput(where + ": stamp does not rise: " + std::to_string(stamp_ns - imu.time_ns.front()) +
                    " ns after the first, the one before " + std::to_string(imu.time_ns.back() - imu.time_ns.front()));

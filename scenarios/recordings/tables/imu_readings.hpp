@@ -11,7 +11,8 @@ namespace tumble::scenarios {
 /// The device without readings of some other recording.
 sim::ImuRecord without_readings(sim::ImuRecord device);
 
-/// Appends a reading. Throws BadInput beginning with `where`: not finite, a stamp that does not rise.
+/// Appends a reading. Throws BadInput beginning with `where`: not finite or beyond 1e6, a stamp that
+/// does not rise.
 void add_reading(const std::string& where, std::int64_t stamp_ns, const Eigen::Vector3d& rate_rad_s,
                  const Eigen::Vector3d& force_m_s2, sim::ImuRecord& imu);
 

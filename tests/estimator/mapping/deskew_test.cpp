@@ -129,6 +129,11 @@ TEST(SweepTrajectory, SaysWhatItLacks) {
   EXPECT_EQ(trajectory.build(start, samples, -1, test::kRoomGravity_m_s2).trouble, Trouble::time_order);
   start.time_ns = -1;
   EXPECT_EQ(trajectory.build(start, samples, 100'000'000, test::kRoomGravity_m_s2).trouble, Trouble::gap);
+  start.time_ns = samples.front().from_ns - 500'000'000;
+  const Status gap = trajectory.build(start, samples, 100'000'000, test::kRoomGravity_m_s2);
+  EXPECT_EQ(gap.trouble, Trouble::gap);
+  EXPECT_DOUBLE_EQ(gap.value, 0.5) << "seconds, as of every gap";
+  EXPECT_EQ(gap.bound, 0.0);
 }
 
 TEST(SweepTrajectory, CovarianceMatchesDifferences) {

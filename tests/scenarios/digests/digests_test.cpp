@@ -29,8 +29,8 @@ void PrintTo(const Kept& draw, std::ostream* out) {
   *out << draw.scenario << ' ' << draw.seed << ' ' << draw.lidars;
 }
 
-std::vector<Kept> kept() {
-  std::ifstream file((test::source_dir() / "tests/scenarios/digests/digests.txt").string());
+std::vector<Kept> kept(const char* name = "digests.txt") {
+  std::ifstream file((test::source_dir() / "tests/scenarios/digests" / name).string());
   std::vector<Kept> all;
   for (std::string line; std::getline(file, line);) {
     if (line.empty() || line.front() == '#') continue;
@@ -44,8 +44,7 @@ std::vector<Kept> kept() {
 
 class Digests : public testing::TestWithParam<Kept> {};
 
-TEST_P(Digests, AreTheKeptOnes) {
-  const Kept& draw = GetParam();
+void expect_the_kept_one(const Kept& draw) {
   const DataRoot data{test::source_dir()};
   const SimulatedDraw simulated = simulate_draw(data, load_scenario(data, draw.scenario), draw.seed, 1,
                                                 draw.lidars == "none" ? Lidars::left_out : Lidars::simulated);
@@ -54,18 +53,35 @@ TEST_P(Digests, AreTheKeptOnes) {
       << draw.scenario << ' ' << draw.seed << ' ' << draw.lidars << ' ' << simulated.recording_digest;
 }
 
-INSTANTIATE_TEST_SUITE_P(, Digests, testing::ValuesIn(kept()), [](const auto& of) {
-  return of.param.scenario + "_" + std::to_string(of.param.seed) + "_" + of.param.lidars;
-});
+TEST_P(Digests, AreTheKeptOnes) {
+  expect_the_kept_one(GetParam());
+}
 
-// every scenario of the catalogue has a draw here
+std::string name_of(const testing::TestParamInfo<Kept>& of) {
+  return of.param.scenario + "_" + std::to_string(of.param.seed) + "_" + of.param.lidars;
+}
+
+INSTANTIATE_TEST_SUITE_P(, Digests, testing::ValuesIn(kept()), name_of);
+
+// more draws of each scenario, which take minutes
+class DigestsSoak : public Digests {};
+
+TEST_P(DigestsSoak, AreTheKeptOnes) {
+  expect_the_kept_one(GetParam());
+}
+
+INSTANTIATE_TEST_SUITE_P(, DigestsSoak, testing::ValuesIn(kept("digests_soak.txt")), name_of);
+
+// every scenario of the catalogue has a draw here, and a dozen together with those of the long runs
 TEST(DigestsOf, TheWholeCatalogueAreKept) {
-  const std::vector<Kept> all = kept();
+  const std::vector<Kept> all = kept(), more = kept("digests_soak.txt");
   std::size_t with_lidars = 0;
   for (const Kept& each : all) with_lidars += each.lidars == "lidars";
   EXPECT_GE(with_lidars, 3u);
   for (const std::string& name : scenario_names({test::source_dir()})) {
     EXPECT_TRUE(std::any_of(all.begin(), all.end(), [&](const Kept& each) { return each.scenario == name; })) << name;
+    EXPECT_GE(std::count_if(more.begin(), more.end(), [&](const Kept& each) { return each.scenario == name; }), 11)
+        << name;
   }
 }
 

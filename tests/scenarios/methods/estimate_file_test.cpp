@@ -131,10 +131,19 @@ TEST_F(EstimateFile, ComplaintsNameFileAndLine) {
   EXPECT_NE(complaint(write("c.tum", "0 1 2 3 0 0 0 0\n")).find("c.tum:1: quaternion of norm"), std::string::npos);
   EXPECT_NE(complaint(write("d.tum", "1 1 2 3 0 0 0 1\n1 1 2 3 0 0 0 1\n")).find("d.tum:2: time stamps must rise"),
             std::string::npos);
+  EXPECT_NE(complaint(write("f.tum", "0 1 2 3 0 0 0 1\n1.-5 1 2 3 0 0 0 1\n")).find("f.tum:2: '1.-5' is not"),
+            std::string::npos);
   EXPECT_NE(complaint(write("e.tum", "")).find("no pose"), std::string::npos);
   EXPECT_NE(complaint(folder_).find("estimate.json"), std::string::npos);
   write("estimate.json", "{\"format\": 1, ");
   EXPECT_NE(complaint(folder_).find("estimate.json"), std::string::npos);
+}
+
+// a device that gives zeros for ever would be read into memory
+TEST_F(EstimateFile, ALineWithoutEndIsRefused) {
+  const std::string said = complaint(write("z.tum", "0 1 2 3 0 0 0 1\n" + std::string((1 << 20) + 1, '\0')));
+  EXPECT_NE(said.find("z.tum:2: has more than 1048576 bytes: no line of a table"), std::string::npos) << said;
+  EXPECT_NE(complaint("/dev/zero").find("/dev/zero:1: has more than"), std::string::npos);
 }
 
 TEST_F(EstimateFile, ATruncatedMapIsRecognised) {

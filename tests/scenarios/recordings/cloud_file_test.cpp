@@ -3,6 +3,7 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <sys/stat.h>
 
 #include <algorithm>
 #include <bit>
@@ -151,6 +152,15 @@ TEST_F(CloudFile, WhatAHeaderPromisesIsHeldAgainstTheFile) {
               HasSubstr("a.pcd:8"));
   EXPECT_THAT(complaint_of("a.pcd", pcd("5000000000", "binary")), HasSubstr("WIDTH is 5000000000, must be at most"));
   EXPECT_THAT(complaint_of("a.pcd", pcd("1", "zip")), HasSubstr("DATA is 'zip'"));
+}
+
+// to open it for reading waits for who writes to it
+TEST_F(CloudFile, APipeIsRefusedAndNotWaitedFor) {
+  for (const char* name : {"pipe.ply", "pipe.pcd", "pipe.bin", "pipe.vtk"}) {
+    ASSERT_EQ(mkfifo((folder_ / name).c_str(), 0600), 0);
+    EXPECT_THAT(fixture::complaint([&] { read_cloud(folder_ / name); }),
+                HasSubstr(std::string(name) + ": no such file"));
+  }
 }
 
 TEST_F(CloudFile, DamageIsOneClearLine) {

@@ -3,6 +3,7 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <sys/stat.h>
 
 #include <algorithm>
 #include <cmath>
@@ -279,7 +280,10 @@ TEST_F(ImportCsv, BadInputHasFileAndLine) {
   EXPECT_THAT(complaint_of(good + line("1,20000000", "0.5x")),
               HasSubstr("csv:4: column 8 must be a number, is '0.5x'"));
   EXPECT_THAT(complaint_of(good + line("1.5,0")), HasSubstr("csv:4: column 0 must be a whole number"));
-  EXPECT_THAT(complaint_of(good + line("1,1000000000")), HasSubstr("csv:4: column 1 must be a whole number"));
+  EXPECT_THAT(complaint_of(good + line("1,1000000000")),
+              HasSubstr("csv:4: column 1 must be a whole number from 0 to 999999999, is '1000000000'"));
+  EXPECT_THAT(complaint_of(good + line("1,20000000", "1e7")),
+              HasSubstr("csv:4: a reading is of size 1e+07 rad/s or m/s^2, must be at most 1e+06"));
   EXPECT_THAT(complaint_of(good + line("1e30,0")), HasSubstr("csv:4: column 0 must be a whole number"));
   EXPECT_EQ(complaint_of(good + "\n \r\n"), "") << "nothing follows";
   EXPECT_THAT(complaint_of(good + "\n" + line("1,20000000")), HasSubstr("csv:4: has 1 columns"));
@@ -291,6 +295,26 @@ TEST_F(ImportCsv, BadInputHasFileAndLine) {
   EXPECT_THAT(fixture::complaint([&] { import_imu_csv(folder_ / "none.csv", {}); }),
               HasSubstr("none.csv: no such file"));
   EXPECT_THAT(fixture::complaint([&] { import_imu_csv(folder_, {}); }), HasSubstr("no such file"));
+}
+
+TEST_F(ImportCsv, BytesThatAreNoLinesOfTextAreCalledSo) {
+  const std::string good = kHeader + line("1,0") + line("1,10000000");
+  std::string wide = "\xFF\xFE";
+  for (const char c : good) wide += {c, '\0'};
+  EXPECT_THAT(complaint_of(wide), HasSubstr("csv: is text in UTF-16, must be in UTF-8"));
+  std::string spoiled = good;
+  spoiled[good.size() - 40] = '\0';
+  EXPECT_THAT(complaint_of(spoiled), HasSubstr("csv:3: holds a byte 0"));
+  std::string returns = good;
+  std::replace(returns.begin(), returns.end(), '\n', '\r');
+  EXPECT_THAT(complaint_of(returns), HasSubstr("csv: its lines end in a carriage return alone"));
+}
+
+// to open it for reading waits for who writes to it
+TEST_F(ImportCsv, APipeIsRefusedAndNotWaitedFor) {
+  ASSERT_EQ(mkfifo((folder_ / "pipe.csv").c_str(), 0600), 0);
+  EXPECT_THAT(fixture::complaint([&] { import_imu_csv(folder_ / "pipe.csv", {}); }),
+              HasSubstr("pipe.csv: no such file"));
 }
 
 class ImportBroad : public fixture::Folder, public ::testing::WithParamInterface<test::DataFolder> {

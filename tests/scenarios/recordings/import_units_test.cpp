@@ -73,6 +73,14 @@ TEST_F(ImportSphere, AGyroThatReadsNothingIsSaid) {
   EXPECT_THAT(import(rolled(2.5, 1.0), 7.854).notes, testing::Not(testing::Contains(HasSubstr("caution"))));
 }
 
+// gravity turns, about another axis than the gyro says
+TEST_F(ImportSphere, WhatTurnsButNotAsTheGyroSaysIsNotCalledStill) {
+  std::string text = rolled(2.5, 1.0);
+  text.replace(0, text.find('\n'), "sec,nsec,wy,wx,wz,fx,fy,fz");
+  EXPECT_THAT(import(text, 7.854).notes,
+              testing::Contains(HasSubstr("the force turns in the accelerometer, but too little as the gyro says")));
+}
+
 TEST_F(ImportSphere, StampsInAnotherUnitAreMet) {
   // ms, and us, where seconds are looked for; us where nanoseconds are
   for (const std::int64_t step_ns : {4'000'000'000, 4'000'000'000'000})

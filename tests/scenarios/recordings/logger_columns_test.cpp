@@ -125,6 +125,13 @@ TEST_F(LoggerTable, StatedUnitsAreBelieved) {
               HasSubstr("log.csv:1: column 'ax [N]' is in a unit that is not known"));
 }
 
+// decimal commas in a table of commas: its first lines tell that before their times do
+TEST_F(LoggerTable, LinesOfAnotherWidthAreSaidBeforeTheirTimes) {
+  EXPECT_THAT(complaint_of(table("time,gyro_x,gyro_y,gyro_z,acc_x,acc_y,acc_z", {"12,5", "12,505", "12,51"},
+                                 ",0,1,0,2,0,3,-0,5,0,0,9,8")),
+              HasSubstr("csv:2: has 14 columns, the first line 7; must be equal"));
+}
+
 TEST_F(LoggerTable, WhatIsMissingOrThereTwiceIsSaid) {
   EXPECT_THAT(complaint_of(table("t,gx,gy,gz,ax,ay,temp", kSeconds, kRow)),
               HasSubstr("log.csv:1: columns are missing: accel_z"));

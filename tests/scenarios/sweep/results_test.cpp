@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 #include <signal.h>
 #include <sys/resource.h>
+#include <sys/stat.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -259,6 +260,25 @@ TEST_F(ResultsTest, ATruncatedDatabaseIsBadInput) {
         results.scores();
       },
       BadInput);
+}
+
+// a pipe would be waited for, for ever
+TEST_F(ResultsTest, APipeAndAFolderAreRefused) {
+  for (const bool pipe : {true, false}) {
+    std::filesystem::remove(path());
+    ASSERT_EQ(pipe ? mkfifo(path().c_str(), 0600) : mkdir(path().c_str(), 0700), 0);
+    for (const Results::Mode mode : {Results::Mode::read_only, Results::Mode::create_or_append})
+      EXPECT_NE(complaint(mode).find("not a results database, but a folder, a pipe or a device"), std::string::npos)
+          << complaint(mode);
+  }
+}
+
+TEST_F(ResultsTest, SaysWhetherItHoldsRows) {
+  Results results(path(), Results::Mode::create_or_append);
+  results.set_note("suite", "roll");
+  EXPECT_FALSE(results.has_rows());
+  results.store(RejectedDraw{"hill", 3, "cannot be drawn", {}});
+  EXPECT_TRUE(results.has_rows());
 }
 
 TEST_F(ResultsTest, AFolderThatIsNotThereIsBadInput) {

@@ -75,7 +75,7 @@ class SweepTrajectory {
 
   /// Integrates from `start` to `end_ns`. Samples must be in time order and follow each other; the first window must
   /// reach back to the start. Trouble: `too_few` (no sample, or they end before end_ns), `time_order` (end before
-  /// start), `gap` (the first window begins after the start). Reuses its memory.
+  /// start), `gap` (the first window begins after the start, by so many seconds). Reuses its memory.
   Status build(const MotionState& start, std::span<const MotionSample> samples, TimeNs end_ns,
                const Eigen::Vector3d& gravity_W_m_s2, const Deficit& deficit_rad_s = Deficit::Zero());
   /// The same with gravity of this magnitude along -z.

@@ -1,0 +1,56 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "scenarios/exchange/imu_notes.hpp"
+
+#include <optional>
+
+#include "scenarios/exchange/lidar_rotation.hpp"
+#include "scenarios/methods/bridge.hpp"
+#include "scenarios/recordings/number_text.hpp"
+#include "tumble/attitude/imu_plausibility.hpp"
+
+namespace tumble::scenarios {
+
+namespace {
+
+std::string labels_text(const AxisLabels& labels) {
+  SignedAxes axes;
+  for (std::size_t j = 0; j < 3; ++j) {
+    const auto read = static_cast<std::size_t>(labels.axis[j]);
+    axes.axis[read] = static_cast<int>(j);
+    axes.sign[read] = static_cast<int>(labels.sign[j]);
+  }
+  return "caution: gravity does not turn in the accelerometer as the gyro says, but as if the accelerometer's x, y, z "
+         "were " +
+         axes.text() + (labels.gyro_flipped ? " of a gyro of the other sense" : " of the gyro") +
+         ": senses or order of the axes?";
+}
+
+}  // namespace
+
+std::string imu_note(const sim::ImuRecord& imu, double gravity_m_s2) {
+  std::vector<ImuSample> samples;
+  // what is wrong with single readings is told where they are read
+  if (!bridge::imu_samples(imu, samples).ok()) return "";
+  ImuPlausibility::Params params;
+  params.gravity_m_s2 = gravity_m_s2;
+  const ImuPlausibility plausibility(params);
+  ImuPlausibility::State state;
+  for (const ImuSample& sample : samples) plausibility.step(sample, state);
+  if (const double frozen_s = plausibility.frozen_s(state); frozen_s > 0.0)
+    return "caution: gyro or accelerometer repeats one reading to the last digit for " + rounded(frozen_s) +
+           " s: did it freeze?";
+  if (const std::optional<AxisLabels> labels = plausibility.other_labels(state)) return labels_text(*labels);
+  const Status verdict = plausibility.verdict(state);
+  return verdict.ok() ? "" : "caution: the readings contradict each other or gravity: " + verdict.message();
+}
+
+std::vector<std::string> imu_notes(const Imported& recording) {
+  std::vector<std::string> out;
+  for (const sim::ImuRecord& imu : recording.sensors.imus) {
+    const std::string note = imu_note(imu, recording.sensors.gravity_m_s2);
+    if (!note.empty()) out.push_back(imu.name + ": " + note);
+  }
+  return out;
+}
+
+}  // namespace tumble::scenarios

@@ -1,0 +1,86 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// What an import says of readings that cannot be what they are called.
+#include "scenarios/exchange/imu_notes.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <functional>
+
+#include "tumble/common/so3.hpp"
+
+namespace tumble::scenarios {
+namespace {
+
+using testing::HasSubstr;
+
+constexpr double kGravity_m_s2 = 9.81;
+
+/// Twenty seconds at 100 Hz of a body that turns about all three axes, with the noise of readings, whose least digits
+/// move.
+sim::ImuRecord turning() {
+  sim::ImuRecord imu;
+  imu.name = "imu";
+  imu.period_ns = 10'000'000;
+  Eigen::Quaterniond q_WI = Eigen::Quaterniond::Identity();
+  for (int k = 0; k < 2000; ++k) {
+    const double t = 0.01 * k;
+    const Eigen::Vector3d rate(0.9 * std::sin(0.8 * t), 0.7 * std::cos(0.6 * t), 0.5 * std::sin(0.3 * t + 1.0));
+    q_WI = (q_WI * so3::exp(Eigen::Vector3d(0.01 * rate))).normalized();
+    imu.time_ns.push_back((k + 1) * imu.period_ns);
+    imu.gyro_rad_s.emplace_back(rate + 1e-3 * Eigen::Vector3d(std::sin(7.1 * k), std::cos(3.3 * k), std::sin(1.7 * k)));
+    imu.accel_m_s2.emplace_back(q_WI.conjugate() * Eigen::Vector3d(0.0, 0.0, kGravity_m_s2));
+    imu.clip_flags.push_back(0);
+  }
+  return imu;
+}
+
+std::string note_of(const std::function<void(sim::ImuRecord&)>& spoil) {
+  sim::ImuRecord imu = turning();
+  spoil(imu);
+  return imu_note(imu, kGravity_m_s2);
+}
+
+TEST(ImuNotes, OfASoundImuAreNone) {
+  EXPECT_EQ(note_of([](sim::ImuRecord&) {}), "");
+}
+
+TEST(ImuNotes, WhatFrozeIsSaid) {
+  EXPECT_THAT(note_of([](sim::ImuRecord& imu) {
+                for (std::size_t k = 600; k < 2000; ++k)
+                  imu.gyro_rad_s[k] = imu.gyro_rad_s[600], imu.accel_m_s2[k] = imu.accel_m_s2[600];
+              }),
+              HasSubstr("caution: gyro or accelerometer repeats one reading to the last digit for 14 s"));
+}
+
+TEST(ImuNotes, AxesThatGravityContradictsAreNamed) {
+  // the accelerometer's x reads what is the gyro's y, and so on
+  EXPECT_THAT(note_of([](sim::ImuRecord& imu) {
+                for (Eigen::Vector3d& f : imu.accel_m_s2) f = Eigen::Vector3d(f.y(), f.z(), f.x());
+              }),
+              HasSubstr("as if the accelerometer's x, y, z were (y, z, x) of the gyro"));
+  EXPECT_THAT(note_of([](sim::ImuRecord& imu) {
+                for (Eigen::Vector3d& f : imu.accel_m_s2) f.z() = -f.z();
+              }),
+              HasSubstr("caution: gravity does not turn in the accelerometer as the gyro says"));
+}
+
+TEST(ImuNotes, ForcesThatAreNotGravitysAreSaid) {
+  EXPECT_THAT(note_of([](sim::ImuRecord& imu) {
+                for (Eigen::Vector3d& f : imu.accel_m_s2) f *= 0.5;
+              }),
+              HasSubstr("caution: the readings contradict each other or gravity"));
+}
+
+TEST(ImuNotes, EachImuIsNamed) {
+  Imported imported;
+  imported.sensors.gravity_m_s2 = kGravity_m_s2;
+  imported.sensors.imus = {turning(), turning()};
+  imported.sensors.imus[1].name = "second";
+  for (Eigen::Vector3d& f : imported.sensors.imus[1].accel_m_s2) f *= 0.5;
+  EXPECT_THAT(imu_notes(imported), testing::ElementsAre(testing::StartsWith("second: caution: ")));
+}
+
+}  // namespace
+}  // namespace tumble::scenarios

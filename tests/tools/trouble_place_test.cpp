@@ -1,0 +1,66 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "tools/tumble/trouble_place.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "scenarios/methods/bridge.hpp"
+
+namespace tumble::tools {
+namespace {
+
+/// Two IMUs of 100 Hz, a second long.
+sim::Sensors sound() {
+  sim::Sensors sensors;
+  for (const char* name : {"left", "right"}) {
+    sim::ImuRecord& imu = sensors.imus.emplace_back();
+    imu.name = name;
+    imu.period_ns = 10'000'000;
+    imu.stated_gyro_range_rad_s = 10.0;
+    for (int k = 0; k < 100; ++k) {
+      imu.time_ns.push_back(k * imu.period_ns);
+      imu.gyro_rad_s.emplace_back(0.1, 0.0, 0.0);
+      imu.accel_m_s2.emplace_back(0.0, 0.0, 9.8);
+      imu.clip_flags.push_back(0);
+    }
+  }
+  return sensors;
+}
+
+/// Of the trouble that the second IMU's samples meet.
+std::string place_in(const sim::Sensors& sensors) {
+  std::vector<ImuSample> samples;
+  const Status status = scenarios::bridge::imu_samples(sensors.imus[1], samples);
+  EXPECT_FALSE(status.ok());
+  return trouble_place(status, sensors);
+}
+
+TEST(TroublePlace, NamesTheReading) {
+  sim::Sensors sensors = sound();
+  sensors.imus[1].gyro_rad_s[42].y() = std::nan("");
+  EXPECT_EQ(place_in(sensors), "reading 42 of right, at 0.420 s");
+  sensors = sound();
+  sensors.imus[1].accel_m_s2[7].z() = 1e200;
+  EXPECT_EQ(place_in(sensors), "reading 7 of right, at 0.070 s");
+  sensors = sound();
+  sensors.imus[1].gyro_rad_s[99].x() = 21.0;
+  EXPECT_EQ(place_in(sensors), "reading 99 of right, at 0.990 s") << "beyond twice the stated range";
+  sensors = sound();
+  sensors.imus[1].time_ns[3] = sensors.imus[1].time_ns[2];
+  EXPECT_EQ(place_in(sensors), "reading 3 of right, at 0.020 s");
+}
+
+TEST(TroublePlace, NamesTheLongestGap) {
+  sim::Sensors sensors = sound();
+  for (std::size_t k = 50; k < 100; ++k) sensors.imus[1].time_ns[k] += 2'000'000'000;
+  EXPECT_EQ(place_in(sensors), "right has no readings between 0.490 and 2.500 s");
+}
+
+TEST(TroublePlace, OfWhatIsNoReadingIsNone) {
+  EXPECT_EQ(trouble_place({Trouble::out_of_range, "median step of imu time_ns", 1.0, 2.0}, sound()), "");
+  EXPECT_EQ(trouble_place({Trouble::non_finite, "specific_force_m_s2", 1.0, 2.0}, sound()), "") << "none has it";
+}
+
+}  // namespace
+}  // namespace tumble::tools

@@ -1,0 +1,65 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "tools/tumble/trouble_place.hpp"
+
+#include <fmt/format.h>
+
+#include <cstdint>
+
+#include "scenarios/methods/bridge.hpp"
+#include "tumble/common/imu.hpp"
+
+namespace tumble::tools {
+
+namespace {
+
+double recording_time_s(std::int64_t time_ns) {
+  return 1e-9 * static_cast<double>(time_ns);
+}
+
+std::string place_of_gap(const sim::Sensors& sensors) {
+  std::int64_t longest_ns = 0;
+  std::string place;
+  for (const sim::ImuRecord& imu : sensors.imus) {
+    for (std::size_t k = 1; k < imu.time_ns.size(); ++k) {
+      const std::int64_t from_ns = imu.time_ns[k - 1], to_ns = imu.time_ns[k];
+      if (to_ns - from_ns <= longest_ns) continue;
+      longest_ns = to_ns - from_ns;
+      place = fmt::format("{} has no readings between {:.3f} and {:.3f} s", imu.name, recording_time_s(from_ns),
+                          recording_time_s(to_ns));
+    }
+  }
+  return place;
+}
+
+/// Whether a reading has that trouble by itself or after the one before.
+bool has_trouble(Trouble trouble, const sim::ImuRecord& imu, std::size_t k) {
+  if (trouble == Trouble::time_order) return k > 0 && imu.time_ns[k] <= imu.time_ns[k - 1];
+  ImuSample sample;
+  sample.angular_velocity_rad_s = imu.gyro_rad_s[k];
+  sample.specific_force_m_s2 = imu.accel_m_s2[k];
+  return check_sample(sample).trouble == trouble ||
+         scenarios::bridge::check_range(imu, sample.angular_velocity_rad_s, sample.specific_force_m_s2).trouble ==
+             trouble;
+}
+
+std::string place_of_reading(Trouble trouble, const sim::Sensors& sensors) {
+  for (const sim::ImuRecord& imu : sensors.imus) {
+    for (std::size_t k = 0; k < imu.time_ns.size(); ++k) {
+      if (has_trouble(trouble, imu, k))
+        return fmt::format("reading {} of {}, at {:.3f} s", k, imu.name, recording_time_s(imu.time_ns[k]));
+    }
+  }
+  return "";
+}
+
+}  // namespace
+
+std::string trouble_place(const Status& status, const sim::Sensors& sensors) {
+  if (status.trouble == Trouble::gap) return place_of_gap(sensors);
+  const std::string field = status.field;
+  const bool of_reading = field.starts_with("angular_velocity_rad_s") || field.starts_with("specific_force_m_s2") ||
+                          (status.trouble == Trouble::time_order && field == "time_ns");
+  return of_reading ? place_of_reading(status.trouble, sensors) : "";
+}
+
+}  // namespace tumble::tools
