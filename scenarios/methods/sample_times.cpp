@@ -2,7 +2,10 @@
 #include "scenarios/methods/sample_times.hpp"
 
 #include <algorithm>
-#include <optional>
+#include <cstddef>
+#include <cstdint>
+#include <utility>
+#include <vector>
 
 #include "tumble/common/sample_clock.hpp"
 
@@ -10,20 +13,17 @@ namespace tumble::scenarios {
 
 namespace {
 
-/// Times of the samples in the place of the record's stamps; the jitter that was mended [s]. Stamps that are no times
-/// (they go back) stay: the bridge refuses them.
-double mend(sim::ImuRecord& record) {
+/// Times of a record's samples, and the jitter that was mended [s]. Stamps that are no times (they go back) stay: the
+/// bridge refuses them.
+struct SampleTimes {
+  std::vector<std::int64_t> times_ns;
   double mended_s = 0.0;
-  (void)to_sample_times(SampleClock({}), record.time_ns, mended_s);
-  return mended_s;
-}
+};
 
-bool any_jitters(const sim::Sensors& sensors) {
-  return std::any_of(sensors.imus.begin(), sensors.imus.end(), [](const sim::ImuRecord& record) {
-    std::vector<std::int64_t> times_ns = record.time_ns;
-    double mended_s = 0.0;
-    return to_sample_times(SampleClock({}), times_ns, mended_s).ok() && mended_s > 0.0;
-  });
+SampleTimes sample_times(const sim::ImuRecord& record) {
+  SampleTimes out{.times_ns = record.time_ns};
+  (void)to_sample_times(SampleClock({}), out.times_ns, out.mended_s);
+  return out;
 }
 
 void restore_stamps(const sim::ImuRecord& timed, const sim::ImuRecord& stamped, std::vector<RateState>& rates) {
@@ -38,10 +38,13 @@ void restore_stamps(const sim::ImuRecord& timed, const sim::ImuRecord& stamped, 
 }  // namespace
 
 Estimate with_sample_times(const sim::Sensors& sensors, const std::function<Estimate(const sim::Sensors&)>& run) {
-  if (!any_jitters(sensors)) return run(sensors);
-  sim::Sensors timed = sensors;
+  std::vector<SampleTimes> times;
   double mended_s = 0.0;
-  for (sim::ImuRecord& record : timed.imus) mended_s = std::max(mended_s, mend(record));
+  for (const sim::ImuRecord& record : sensors.imus)
+    mended_s = std::max(mended_s, times.emplace_back(sample_times(record)).mended_s);
+  if (mended_s == 0.0) return run(sensors);
+  sim::Sensors timed = sensors;
+  for (std::size_t i = 0; i < times.size(); ++i) timed.imus[i].time_ns = std::move(times[i].times_ns);
   Estimate estimate = run(timed);
   restore_stamps(timed.imus.front(), sensors.imus.front(), estimate.rates);
   estimate.health["stamps_mended_s"] = mended_s;

@@ -83,7 +83,7 @@ class SampleClock {
 };
 
 /// Puts the times of SampleClock in the place of stamps, and gives the largest jitter that was mended [s]; 0: none, all
-/// stamps are as they were. `time_order` as push(); `samples` are then as they were. O(N).
+/// stamps are as they were. `time_order` as push(); `stamps_ns` are then as they were. O(N).
 Status to_sample_times(const SampleClock& clock, std::span<TimeNs> stamps_ns, double& mended_s);
 
 }  // namespace tumble
