@@ -44,6 +44,7 @@ Estimate run_sphere(const sim::Sensors& sensors, const sim::Values& parameters) 
     estimate.attitudes.push_back({sample.time_ns, state.q_WI, TumbleAttitude::attitude_covariance_rad2(state)});
     if (state.slipping) estimate.health["samples_slip"] += 1.0;
   }
+  tell_unknown_attitude(estimate);
   return estimate;
 }
 
@@ -54,10 +55,10 @@ Estimate run_rig(const sim::Sensors& sensors, const sim::Values& parameters) {
   estimate.status = bridge::primary_imu_samples(sensors, samples);
   if (!estimate.status.ok()) return estimate;
   (void)check_imu(sensors, samples, estimate);  // a warning: a body that is pushed about all the time may look so
-  (void)check_flights(sensors, samples, estimate);
   tell_frozen_axes(sensors, samples, estimate);
   const std::vector<ImuSample> read = samples;
   const RecoveredRates recovered = recover_in_time(sensors, samples, estimate.health);
+  (void)check_flights(sensors, read, estimate);
   TumbleAttitude::Params params = stated(sensors);
   attitude_tumble_settings().apply(parameters, params);
   const TumbleAttitude filter(params);
@@ -73,6 +74,7 @@ Estimate run_rig(const sim::Sensors& sensors, const sim::Values& parameters) {
     turned[k].covariance_rad2_s2 = recovered.covariances_rad2_s2[k];
     turned[k].source = recovered.sources[k];
   }
+  tell_unknown_attitude(estimate);
   (void)check_rotation_between_rests(sensors, read, turned, estimate);
   (void)check_rotation_about_pivots(sensors, read, turned, estimate);
   return estimate;
@@ -85,6 +87,17 @@ const Settings<TumbleAttitude::Params>& attitude_tumble_settings() {
       TumbleAttitude::Params{},
       {.stated = {"gravity_m_s2", "radius_m", "lever_arm_x_m", "lever_arm_y_m", "lever_arm_z_m"}});
   return all;
+}
+
+void tell_unknown_attitude(Estimate& estimate) {
+  constexpr double kUnknown_rad = 0.5;
+  double unknown_s = 0.0;
+  for (std::size_t k = 1; k < estimate.attitudes.size(); ++k) {
+    const AttitudeState &before = estimate.attitudes[k - 1], &here = estimate.attitudes[k];
+    const double variance_rad2 = here.covariance_rad2.diagonal().head<2>().maxCoeff();
+    if (variance_rad2 > kUnknown_rad * kUnknown_rad) unknown_s += seconds(here.time_ns - before.time_ns);
+  }
+  if (unknown_s > 0.0) add_doubt({Doubt::About::attitude, unknown_s}, estimate);
 }
 
 Estimate run_attitude_tumble(const sim::Sensors& sensors, const sim::Values& parameters) {

@@ -17,4 +17,8 @@ const Settings<TumbleAttitude::Params>& attitude_tumble_settings();
 /// of its IMUs as one. Trouble: that of the records and of the filter; the attitudes before it stay.
 Estimate run_attitude_tumble(const sim::Sensors& sensors, const sim::Values& parameters);
 
+/// Puts into the doubts for how long an estimate's inclination is not known to half a radian (two deviations within a
+/// quarter of a turn): after a gap of the IMU in a tumble, say (`attitude_unknown_s`).
+void tell_unknown_attitude(Estimate& estimate);
+
 }  // namespace tumble::scenarios

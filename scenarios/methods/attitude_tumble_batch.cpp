@@ -2,6 +2,7 @@
 #include <cstddef>
 #include <vector>
 
+#include "scenarios/methods/attitude_tumble.hpp"
 #include "scenarios/methods/bridge.hpp"
 #include "scenarios/methods/carried.hpp"
 #include "scenarios/methods/imu_check.hpp"
@@ -56,11 +57,11 @@ Estimate run_attitude_tumble_batch(const sim::Sensors& sensors, const sim::Value
   estimate.status = bridge::primary_imu_samples(sensors, samples);
   if (!estimate.status.ok()) return estimate;
   (void)check_imu(sensors, samples, estimate);  // a warning, as for the filters
-  (void)check_flights(sensors, samples, estimate);
   tell_frozen_axes(sensors, samples, estimate);
   std::vector<ImuSample> recovered = samples;
   RecoveredRates told;
   if (sensors.sphere_radius_m <= 0.0) told = recover_clipped(sensors, recovered, estimate.health);
+  (void)check_flights(sensors, samples, estimate);
   std::vector<RateState> rates;
   if (told.answered && told.carried < kCarried) {
     estimate.status = run_thrown(sensors, parameters, samples, recovered, told.covariances_rad2_s2, rates, estimate);
@@ -68,6 +69,7 @@ Estimate run_attitude_tumble_batch(const sim::Sensors& sensors, const sim::Value
     estimate.status = run_carried(sensors, parameters, rates, estimate.attitudes, estimate.health);
   }
   if (!estimate.status.ok()) return estimate;
+  tell_unknown_attitude(estimate);
   check_readings(sensors, samples, recovered, told, estimate);
   (void)check_rotation_about_pivots(sensors, samples, rates, estimate);
   return estimate;

@@ -27,6 +27,8 @@ const char* row_name(Doubt::About about) {
       return "rate_unit_suspect";
     case Doubt::About::force_unit:
       return "force_unit_suspect";
+    case Doubt::About::attitude:
+      return "attitude_unknown_s";
     case Doubt::About::place:
       return "localised";
     case Doubt::About::lidar_scale:

@@ -20,6 +20,7 @@ struct Doubt {
     stamps,          ///< rounded more coarsely than the IMU beats; value: to what [s]
     rate_unit,       ///< perhaps no rad/s
     force_unit,      ///< perhaps no m/s^2
+    attitude,        ///< its inclination is not known; value: for how long [s]
     place,           ///< where the run is on its map is not known; value: 0
     lidar_scale,     ///< ranges of another scale than the motion
     beyond_range,    ///< readings that the device cannot have measured; value: how many
@@ -36,10 +37,10 @@ struct Doubt {
 };
 
 inline constexpr std::array kAllDoubts = {
-    Doubt::About::readings,     Doubt::About::rates,      Doubt::About::flights,     Doubt::About::stamps,
-    Doubt::About::rate_unit,    Doubt::About::force_unit, Doubt::About::place,       Doubt::About::lidar_scale,
-    Doubt::About::beyond_range, Doubt::About::digest,     Doubt::About::unit_frozen, Doubt::About::unit_disagrees,
-    Doubt::About::unit_silent};
+    Doubt::About::readings,       Doubt::About::rates,        Doubt::About::flights,  Doubt::About::stamps,
+    Doubt::About::rate_unit,      Doubt::About::force_unit,   Doubt::About::attitude, Doubt::About::place,
+    Doubt::About::lidar_scale,    Doubt::About::beyond_range, Doubt::About::digest,   Doubt::About::unit_frozen,
+    Doubt::About::unit_disagrees, Doubt::About::unit_silent};
 
 /// Its row of the health: `imu_implausible`, `imu_2_frozen_since_s`. The only place that knows these names.
 std::string row_of(const Doubt& doubt);

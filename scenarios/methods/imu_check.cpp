@@ -23,6 +23,9 @@ constexpr double kArmShareMin = 0.5;  // 1: as the places say; 0: no relation; -
 // Further from 1, gyros or accelerometers have another scale than they say, which all units share: forces go with the
 // square of the rate, so that it is 3 % of a gyro's, three times a sheet's. Good runs of `slip`: 0.999 and 1.002.
 constexpr double kArmShareOff = 0.06;
+// Of a recording, by the regimes of its rates: held bodies 0.91 and more, thrown ones 0.25 and less, and mostly below
+// 0.6 where a sensor has axes of another sense (hill, throw, twirl, swing 99101, 99102).
+constexpr double kHeldShare = 0.8;
 
 Status told(Status status, Estimate& estimate) {
   if (!status.ok()) add_doubt({Doubt::About::readings}, estimate);
@@ -128,6 +131,9 @@ Status check_flights(const sim::Sensors& sensors, std::span<const ImuSample> sam
   FlightSense::Params params;
   params.lever_arm_m = bridge::lever_arm_I_m(sensors.imus.front());
   params.gyro_range_rad_s = sensors.imus.front().stated_gyro_range_rad_s;
+  const auto carried = estimate.health.find("regime_carried_share");
+  const bool thrown = carried != estimate.health.end() && carried->second < kHeldShare;
+  params.body = thrown ? FlightSense::Body::thrown : FlightSense::Body::perhaps_held;
   const FlightSense sense(params);
   FlightSense::State state;
   for (const ImuSample& sample : samples) sense.step(sample, state);

@@ -38,8 +38,9 @@ Status check_rotation_between_rests(const sim::Sensors& sensors, std::span<const
 Status check_rotation_about_pivots(const sim::Sensors& sensors, std::span<const ImuSample> samples,
                                    std::span<const RateState> rates, Estimate& estimate);
 
-/// Whether flights of a rig show forces of the other sense than its lever arm makes, or of twice the rate
-/// (FlightSense): `imu_implausible` and the seconds of it, as `imu_flight_against_s`. O(N).
+/// Whether flights of a rig show forces of another sensor than this at its lever arm (FlightSense): `imu_implausible`
+/// and the seconds of it, as `imu_flight_against_s`. Where the health says by `regime_carried_share` that nobody held
+/// the body, flipped and swapped axes of both sensors are told, and flights in which an axis clips count. O(N).
 Status check_flights(const sim::Sensors& sensors, std::span<const ImuSample> samples, Estimate& estimate);
 
 /// Single axes of the primary IMU that froze, whose samples these are: `imu_implausible`, and since when, as

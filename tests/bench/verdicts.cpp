@@ -3,11 +3,11 @@
 // (units, axes, signs, clocks, mountings, sensors that die, dust, people), and holds what it says of itself against
 // what is true. Wrong: ends further off than five of its standard deviations (slam: pose NEES, which is chi-square over
 // six, beyond 25; rate, attitude: a tenth of the samples that turn, or move, are off by more than five, or half of them
-// by a fifth of their rate, or by 0.5 rad of tilt). Told: the status, `localised`, or a key of its health that says so.
-// Who tells of trouble may widen the covariance with it, and then is wrong no more: rates are judged by the covariance
-// before that as well, and a pose of slam by the root of chi-square beside that of its mean. Prints a line per run and
-// the two rates of a classifier by each of these: wrong runs that say so, runs with inputs as they are that cry wolf.
-// Not a test: a minute a draw for `slam`, seconds for `position`.
+// by a fifth of their rate, or by 0.5 rad of tilt, unless it says `attitude_unknown_s`). Told: the status, `localised`,
+// or a key of its health that says so. Who tells of trouble may widen the covariance with it, and then is wrong no
+// more: rates are judged by the covariance before that as well, and a pose of slam by the root of chi-square beside
+// that of its mean. Prints a line per run and the two rates of a classifier by each of these: wrong runs that say so,
+// runs with inputs as they are that cry wolf. Not a test: a minute a draw for `slam`, seconds for `position`.
 #include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
@@ -101,7 +101,8 @@ Judgement judge_attitudes(const sim::Recording& recording, const scenarios::Esti
   }
   Judgement out{quantile(tilts, 5), quantile(deviations, 9)};
   out.before = out.deviations;
-  out.gross = !(out.error <= kWrongTilt_rad);
+  const bool says_so = has_doubt({scenarios::Doubt::About::attitude}, estimate);
+  out.gross = !says_so && !(out.error <= kWrongTilt_rad);
   return out;
 }
 
@@ -125,6 +126,17 @@ Judgement judgement_of(const scenarios::Method& method, const sim::Recording& tr
   return judge_rates(truth, scenarios::testing::rates_before_doubt(estimate), estimate);
 }
 
+/// Leaves of rows at the times of `all_ns` those at the times of `kept_ns`, which are some of them in their order.
+template <class Row>
+void keep_rows(const std::vector<std::int64_t>& all_ns, const std::vector<std::int64_t>& kept_ns,
+               std::vector<Row>& rows) {
+  std::size_t kept = 0;
+  for (std::size_t k = 0; k < rows.size() && kept < kept_ns.size(); ++k) {
+    if (all_ns[k] == kept_ns[kept]) rows[kept++] = rows[k];
+  }
+  rows.resize(kept);
+}
+
 /// The two rates of a classifier, as counts.
 struct Tally {
   int wrong = 0, wrong_told = 0, good = 0, good_told = 0;
@@ -146,6 +158,23 @@ struct Tallies {
   Tally reported, before, root_chi2;
 };
 
+/// What to score an answer to `given` by: of samples that are missing there the truth is missing too.
+scenarios::SimulatedDraw scored_at_kept(const scenarios::SimulatedDraw& draw, const scenarios::SimulatedDraw& given) {
+  scenarios::SimulatedDraw scored = scenarios::scored_by(draw, given);
+  for (std::size_t i = 0; i < given.recording.sensors.imus.size(); ++i) {
+    const std::vector<std::int64_t>& all_ns = draw.recording.sensors.imus[i].time_ns;
+    const std::vector<std::int64_t>& kept_ns = given.recording.sensors.imus[i].time_ns;
+    if (kept_ns.size() == all_ns.size()) continue;
+    const auto keep = [&](auto&... rows) { (keep_rows(all_ns, kept_ns, rows), ...); };
+    sim::ImuRecord& read = scored.recording.sensors.imus[i];
+    sim::ImuTruth& truth = scored.recording.truth.imus[i];
+    keep(read.gyro_rad_s, read.accel_m_s2, read.clip_flags, read.magnetic_field_t);
+    keep(truth.rate_rad_s, truth.specific_force_m_s2, truth.gyro_unclipped_rad_s, truth.accel_unclipped_m_s2);
+    keep(truth.gyro_bias_rad_s, truth.accel_bias_m_s2, truth.magnetic_field_t);
+  }
+  return scored;
+}
+
 void judge(const scenarios::Method& method, const scenarios::SimulatedDraw& draw, const sim::Surface* surface,
            const std::string& harm, Tallies& tallies) {
   scenarios::SimulatedDraw given = draw;
@@ -163,9 +192,10 @@ void judge(const scenarios::Method& method, const scenarios::SimulatedDraw& draw
   double overlap = std::nan(""), coverage = std::nan("");
   Judgement judged;
   if (answered) {
-    scenarios::assess(method, scenarios::scored_by(draw, given), surface, estimate, outcome);
+    const scenarios::SimulatedDraw scored = scored_at_kept(draw, given);
+    scenarios::assess(method, scored, surface, estimate, outcome);
     overlap = value_of(outcome.scores, "map_overlap"), coverage = value_of(outcome.scores, "map_coverage");
-    judged = judgement_of(method, draw.recording, estimate, outcome.scores);
+    judged = judgement_of(method, scored.recording, estimate, outcome.scores);
   }
   const auto is_wrong = [&](double deviations) {
     return answered && (!(deviations <= kWrongDeviations) || judged.gross);

@@ -14,15 +14,16 @@ const char* meaning(scenarios::Doubt::About about) {
     case About::readings:
       return "the IMU's readings contradict each other or gravity; the estimate is not to be trusted";
     case About::flights:
-      return "in flight the force is not what the turning makes: an accelerometer that is flipped, or a gyro that "
-             "reads "
-             "half";
+      return "in flight the force is not what the turning makes: axes that are flipped or swapped, or a gyro of "
+             "another scale";
     case About::stamps:
       return "stamps are rounded to this, more coarsely than the IMU beats; import evens them out";
     case About::rate_unit:
       return "the gyro's readings look as if they were of another unit";
     case About::force_unit:
       return "the accelerometer's readings look as if they were of another unit";
+    case About::attitude:
+      return "for so many seconds which way is up is not known, as after a gap of the IMU; the covariance says so";
     case About::place:
       return "where it is on its map is not known; the estimate is not to be trusted";
     case About::lidar_scale:

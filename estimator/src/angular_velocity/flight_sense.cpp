@@ -3,6 +3,8 @@
 
 #include <Eigen/Geometry>
 #include <algorithm>
+#include <array>
+#include <cmath>
 #include <cstddef>
 
 #include "tumble/angular_velocity/detail/rail_shares.hpp"
@@ -13,6 +15,88 @@ namespace {
 
 // Forces in a hand look like flight by twice the rate for 0.05 s at a time, flights of a gyro that reads half last.
 constexpr double kHalvedRun_s = 0.08;
+constexpr double kAcross = 0.05;    // of the lever arm squared, that lies across an axis whose rate it is to tell
+constexpr double kBelowRail = 0.1;  // by which a rate that the force tells may fall short of the rail
+
+/// Which reading of a triad is its x, y, z, and times what.
+struct Axes {
+  std::array<int, 3> axis;
+  std::array<double, 3> factor;
+
+  Eigen::Vector3d of(const Eigen::Vector3d& reading) const {
+    return {factor[0] * reading[axis[0]], factor[1] * reading[axis[1]], factor[2] * reading[axis[2]]};
+  }
+};
+
+constexpr Axes kAsRead{{0, 1, 2}, {1, 1, 1}}, kXFlipped{{0, 1, 2}, {-1, 1, 1}}, kYFlipped{{0, 1, 2}, {1, -1, 1}},
+    kZFlipped{{0, 1, 2}, {1, 1, -1}}, kFlipped{{0, 1, 2}, {-1, -1, -1}}, kXYSwapped{{1, 0, 2}, {1, 1, 1}},
+    kYZSwapped{{0, 2, 1}, {1, 1, 1}}, kZXSwapped{{2, 1, 0}, {1, 1, 1}}, kTwice{{0, 1, 2}, {2, 2, 2}},
+    kHalf{{0, 1, 2}, {0.5, 0.5, 0.5}};
+
+/// What a sensor of another sense would have to be read as.
+struct Sense {
+  Axes force, rate;
+  const char* told;
+};
+
+constexpr std::array<Sense, FlightSense::kSenses> kSensors = {{
+    {kAsRead, kAsRead, "seconds of flight"},
+    {kFlipped, kAsRead, "seconds of flight as a flipped accelerometer reads it"},
+    {kXFlipped, kAsRead, "seconds of flight as an accelerometer with x flipped reads it"},
+    {kYFlipped, kAsRead, "seconds of flight as an accelerometer with y flipped reads it"},
+    {kZFlipped, kAsRead, "seconds of flight as an accelerometer with z flipped reads it"},
+    {kXYSwapped, kAsRead, "seconds of flight as an accelerometer with x and y swapped reads it"},
+    {kYZSwapped, kAsRead, "seconds of flight as an accelerometer with y and z swapped reads it"},
+    {kZXSwapped, kAsRead, "seconds of flight as an accelerometer with z and x swapped reads it"},
+    {kAsRead, kFlipped, "seconds of flight as a flipped gyro reads it"},
+    {kAsRead, kXFlipped, "seconds of flight as a gyro with x flipped reads it"},
+    {kAsRead, kYFlipped, "seconds of flight as a gyro with y flipped reads it"},
+    {kAsRead, kZFlipped, "seconds of flight as a gyro with z flipped reads it"},
+    {kAsRead, kXYSwapped, "seconds of flight as a gyro with x and y swapped reads it"},
+    {kAsRead, kYZSwapped, "seconds of flight as a gyro with y and z swapped reads it"},
+    {kAsRead, kZXSwapped, "seconds of flight as a gyro with z and x swapped reads it"},
+    {kAsRead, kHalf, "seconds of flight as a gyro reads it that reads twice the rate"},
+    {kAsRead, kTwice, "seconds of flight as a gyro reads it that reads half the rate"},
+}};
+
+/// imu_merge.md (I29). A reading as a sensor of this sense would have given it; `known` where the rate of an axis at
+/// its rail follows of |w x t|^2 = -f t, and lies beyond the rail.
+FlightSense::Reading as_read(const FlightSense::Reading& reading, const Sense& sense, const Eigen::Vector3d& t) {
+  FlightSense::Reading out = reading;
+  out.rate_rad_s = sense.rate.of(reading.rate_rad_s);
+  out.force_m_s2 = sense.force.of(reading.force_m_s2);
+  out.at_rail = sense.rate.of(reading.at_rail);
+  if (!reading.known || reading.at_rail.isZero(0.0)) return out;
+  int axis = 0;
+  out.at_rail.cwiseAbs().maxCoeff(&axis);
+  const double sign = out.at_rail[axis];
+  Eigen::Vector3d others = out.rate_rad_s;
+  others[axis] = 0.0;
+  const Eigen::Vector3d unit = Eigen::Vector3d::Unit(axis).cross(t), rest = others.cross(t);
+  const double a = unit.squaredNorm(), b = unit.dot(rest), c = rest.squaredNorm() + out.force_m_s2.dot(t);
+  const double root = b * b - a * c;
+  out.known = reading.at_rail.cwiseAbs().sum() == 1.0 && a >= kAcross * t.squaredNorm() && root >= 0.0;
+  if (!out.known) return out;
+  const double rate = (-b + (sign > 0.0 ? 1.0 : -1.0) * std::sqrt(root)) / a, read = out.rate_rad_s[axis];
+  out.known = rate * read > 0.0 && std::abs(rate) >= (1.0 - kBelowRail) * std::abs(read);
+  out.rate_rad_s[axis] = rate;
+  return out;
+}
+
+/// imu_merge.md (I28). Whether the middle one of three readings is flight as a sensor of this sense reads it.
+bool flies(const Sense& sense, const std::array<FlightSense::Reading, 3>& readings, const FlightSense::Params& params) {
+  const Eigen::Vector3d& t = params.lever_arm_m;
+  const FlightSense::Reading first = as_read(readings[0], sense, t), middle = as_read(readings[1], sense, t),
+                             last = as_read(readings[2], sense, t);
+  if (!first.known || !middle.known || !last.known) return false;
+  const double dt_s = seconds(last.time_ns - first.time_ns);
+  const Eigen::Vector3d &w = middle.rate_rad_s, alpha = (last.rate_rad_s - first.rate_rad_s) / dt_s;
+  const Eigen::Vector3d expected = alpha.cross(t) + w.cross(w.cross(t));
+  const double size = expected.norm();
+  return size >= params.force_min_m_s2 && (middle.force_m_s2 - expected).norm() <= params.share * size;
+}
+
+constexpr std::size_t kFlippedForce = 1;  // of the senses
 
 }  // namespace
 
@@ -36,12 +120,20 @@ void FlightSense::step(const ImuSample& sample, State& state) const {
   state.average.add(sample, dt_s);
   if (!state.average.full(params_.reading_s, dt_s)) return;
   const ImuSample& mean = state.average.mean;
-  const double rail = (1.0 - kBesideRail) * params_.gyro_range_rad_s;
-  const bool in_range = params_.gyro_range_rad_s == 0.0 || state.average.rate_peak_rad_s < rail;
-  take({mean.time_ns, mean.angular_velocity_rad_s, mean.specific_force_m_s2,
-        in_range && (mean.device_clip_flags & kClipGyro) == 0},
-       state);
+  take(reading_of(mean, state.average.rate_peak_rad_s), state);
   state.average = {};
+}
+
+FlightSense::Reading FlightSense::reading_of(const ImuSample& mean, double rate_peak_rad_s) const {
+  Reading out{mean.time_ns, mean.angular_velocity_rad_s, mean.specific_force_m_s2, Eigen::Vector3d::Zero(), true};
+  const double rail = params_.gyro_range_rad_s == 0.0 ? kUnbounded : (1.0 - kBesideRail) * params_.gyro_range_rad_s;
+  for (int axis = 0; axis < 3; ++axis) {
+    const bool flagged = (mean.device_clip_flags & (kClipGyroX << axis)) != 0;
+    if (flagged || std::abs(out.rate_rad_s[axis]) >= rail) out.at_rail[axis] = out.rate_rad_s[axis] < 0.0 ? -1.0 : 1.0;
+  }
+  const bool by_the_force = params_.body == Body::thrown && !out.at_rail.isZero(0.0);
+  out.known = by_the_force || (rate_peak_rad_s < rail && out.at_rail.isZero(0.0));
+  return out;
 }
 
 /// Judges the reading before `now`, whose angular acceleration those beside it tell.
@@ -53,34 +145,31 @@ void FlightSense::take(const Reading& now, State& state) const {
     return;
   }
   const double dt_s = seconds(now.time_ns - first.time_ns);
-  const Eigen::Vector3d &t = params_.lever_arm_m, &w = middle.rate_rad_s;
-  const Eigen::Vector3d along = ((now.rate_rad_s - first.rate_rad_s) / dt_s).cross(t), about = w.cross(w.cross(t));
-  const std::array<Eigen::Vector3d, 3> expected = {along + about, -along - about, 2.0 * along + 4.0 * about};
-  const bool free = first.free && middle.free && now.free;
-  for (std::size_t sense = 0; sense < expected.size(); ++sense) {
-    const double size = expected[sense].norm();
-    const bool flies =
-        free && size >= params_.force_min_m_s2 && (middle.force_m_s2 - expected[sense]).norm() <= params_.share * size;
-    if (!flies) {
+  for (std::size_t sense = 0; sense < kSenses; ++sense) {
+    if (!flies(kSensors[sense], {first, middle, now}, params_)) {
       state.run_s[sense] = 0.0;
       continue;
     }
     state.run_s[sense] += 0.5 * dt_s;
-    if (state.run_s[sense] >= (sense == 2 ? std::max(kHalvedRun_s, params_.run_s) : params_.run_s))
+    if (state.run_s[sense] >= (sense == kHalved ? std::max(kHalvedRun_s, params_.run_s) : params_.run_s))
       state.flown_s[sense] += 0.5 * dt_s;
   }
 }
 
 Status FlightSense::verdict(const State& state) const {
-  const double sound_s = params_.against_with * state.flown_s[0];
-  const double against_s = std::max(params_.against_s, sound_s), halved_s = std::max(params_.halved_s, sound_s);
-  if (state.flown_s[1] > against_s)
-    return {Trouble::out_of_range, "seconds of flight in which the force is that of the other sense", state.flown_s[1],
-            against_s};
-  if (state.flown_s[2] > halved_s)
-    return {Trouble::out_of_range, "seconds of flight in which the force is that of twice the rate", state.flown_s[2],
-            halved_s};
-  return {};
+  const bool thrown = params_.body == Body::thrown;
+  const double sound_s = (thrown ? params_.thrown_with : params_.against_with) * state.flown_s[0];
+  std::size_t longest = 0;
+  double most_s = 0.0;
+  for (std::size_t sense = 1; sense < kSenses; ++sense) {
+    if (!thrown && sense != kFlippedForce && sense != kHalved) continue;
+    const double bound_s = std::max(sense == kHalved ? params_.halved_s : params_.against_s, sound_s);
+    if (state.flown_s[sense] <= bound_s || state.flown_s[sense] <= state.flown_s[longest]) continue;
+    longest = sense;
+    most_s = bound_s;
+  }
+  if (longest == 0) return {};
+  return {Trouble::out_of_range, kSensors[longest].told, state.flown_s[longest], most_s};
 }
 
 }  // namespace tumble

@@ -32,7 +32,8 @@ void members(Self& s, Visitor& visit) {
   visit("reading.time_ns", s.time_ns);
   visit("reading.rate_rad_s", s.rate_rad_s);
   visit("reading.force_m_s2", s.force_m_s2);
-  visit("reading.free", s.free);
+  visit("reading.at_rail", s.at_rail);
+  visit("reading.known", s.known);
 }
 
 template <StateOf<FlightSense::State> Self, class Visitor>

@@ -12,6 +12,8 @@ namespace tumble {
 namespace {
 
 constexpr double kStandstillRad2 = 1e-6;  // of a gyro beside a force that turned by `rotation_min_rad2`
+constexpr double kPushed = 0.5;           // of gravity, by which a force is no rest's
+constexpr double kPushedLeast_s = 0.2;    // and for so long: what moves a body so turns any gyro by more than a quantum
 constexpr double kWeightless = 0.05;      // of gravity in m/s^2, in whatever unit it comes: no direction below it
 
 auto least_unexplained(const ImuPlausibility::State& state) {
@@ -77,6 +79,7 @@ void ImuPlausibility::take(State& state) const {
   const Eigen::Vector3d turned = state.average.length_s * state.average.mean.angular_velocity_rad_s;
   const double length_s = state.average.length_s;
   state.average = {};
+  if (std::abs(force.norm() - params_.gravity_m_s2) > kPushed * params_.gravity_m_s2) state.pushed_s += length_s;
   if (state.open) {
     // forces stand in the middle of their averages, so the first and the last turn count by half: to first order the
     // same as all but the first
@@ -143,14 +146,15 @@ double ImuPlausibility::unexplained_share(const State& state) const {
   return turned(state) ? state.unexplained_rad2.front() / std::max(state.by_force_rad2, state.by_gyro_rad2) : 0.0;
 }
 
-/// A device that never moved has not shown that it does, but for a body that turns: by the force that the gyro leaves
-/// unexplained, or by the gyro while the accelerometer reads what not even free fall gives for so long.
+/// A device that never moved has not shown that it does, but for a body that moves: by the force that the gyro leaves
+/// unexplained or that is no rest's, or by the gyro while the accelerometer reads what not even free fall gives for so
+/// long.
 double ImuPlausibility::frozen_s(const State& state) const {
   const auto never_moved = [&](const Hold& hold) {
     return hold.moved_s == 0.0 && hold.held_s >= params_.expert.frozen.repeats_s;
   };
   const bool rotates_unseen = unexplained_share(state) >= params_.expert.frozen.unexplained_least;
-  const bool gyro = never_moved(state.gyro) && rotates_unseen;
+  const bool gyro = never_moved(state.gyro) && (rotates_unseen || state.pushed_s >= kPushedLeast_s);
   const bool accel = never_moved(state.accel) && state.accel.reading.isZero(0.0) &&
                      state.gyro.moved_s >= params_.expert.frozen.repeats_s;
   return std::max(

@@ -56,6 +56,11 @@ Status TumbleAttitude::step(const ImuSample& sample, const Eigen::Matrix3d& rate
     double dt_s = 0.0;
     if (const Status bad = elapsed(sample.time_ns, state.last_time_ns, params_.expert.gap_max_s, dt_s); !bad.ok())
       return bad;
+    if (dt_s > params_.expert.gap.least_s) {
+      bridge_gap(sample, rate_covariance_rad2_s2, dt_s, state);
+      state.last_time_ns = sample.time_ns;
+      return {};
+    }
     // of the average so far the attitude before it is turned on
     if (state.average.readings == 0) {
       state.q_taken_WI = state.q_WI;
@@ -123,6 +128,35 @@ void TumbleAttitude::integrate(const ImuSample& sample, double dt_s, State& stat
   state.rotated_rad2_s += dt_s * rate.squaredNorm();
   state.rate_rad_s = rate;
   state.node_s += dt_s;
+}
+
+/// attitude.md (A8c), (A8d).
+void TumbleAttitude::bridge_gap(const ImuSample& after, const Eigen::Matrix3d& rate_covariance_rad2_s2, double gap_s,
+                                State& state) const {
+  if (state.average.readings > 0) take_average(state);
+  state.at_rest = rests_.observe(after, state.rest, state.bias_rad_s) && rotates_by_bias_alone(state);
+  const Eigen::Vector3d from = state.rate_rad_s;
+  Eigen::Vector3d to = after.angular_velocity_rad_s - state.bias_rad_s;
+  if (state.at_rest) to.setZero();
+  ImuSample straight = after;  // a force of gravity alone: the velocity goes on
+  straight.angular_velocity_rad_s = 0.5 * (from + to) + state.bias_rad_s;
+  const Eigen::Quaterniond q_mid = state.q_WI * so3::exp(0.25 * gap_s * (from + to));
+  straight.specific_force_m_s2 = q_mid.conjugate() * Eigen::Vector3d(0.0, 0.0, params_.gravity_m_s2);
+  integrate(straight, gap_s, state);
+  state.rate_rad_s = to;
+  state.recovered_rad2_s2 = rate_covariance_rad2_s2;
+  add_recovered(gap_s, state);
+  if (!state.at_rest) {
+    const AttitudeGapParams& gap = params_.expert.gap;
+    const double turn =
+        squared(gap_s) / 12.0 * ((to - from).squaredNorm() / 3.0 + squared(gap.rate_walk_rad_s_sqrts) * gap_s);
+    state.recovered_rad2.array() += turn;
+    state.covariance.diagonal().segment<2>(kVelocity).array() += squared(gap.velocity_walk_m_s_sqrts) * gap_s;
+  }
+  predict_node(state);
+  // a sphere that grips has the velocity of its rolling again, and has not slipped for having changed it
+  if (params_.radius_m > 0.0 && !state.slipping) state.v_W_m_s = velocity_of_rotation(state);
+  correct_node(state);
 }
 
 /// attitude.md (A8a).
@@ -213,13 +247,17 @@ void TumbleAttitude::correct_body(const Eigen::Vector2d& turned_m_s, State& stat
   }
 }
 
+/// Of the IMU by the turning of the body: about the centre, and of the centre that rolls. attitude.md (A9).
+Eigen::Vector2d TumbleAttitude::velocity_of_rotation(const State& state) const {
+  const Eigen::Vector3d w_W = state.q_WI * state.rate_rad_s;
+  const Eigen::Vector3d arm_W = state.q_WI * params_.lever_arm_m + params_.radius_m * Eigen::Vector3d::UnitZ();
+  return w_W.cross(arm_W).head<2>();
+}
+
 /// The velocity of a sphere or of a body at rest, and the bias at rest. attitude.md (A9), (A10).
 void TumbleAttitude::correct_node(State& state) const {
   const double h = state.node_s;
-  // velocity of the IMU by the turning of the body: about the centre, and of the centre that rolls
-  const Eigen::Vector3d w_W = state.q_WI * state.rate_rad_s;
-  const Eigen::Vector3d arm_W = state.q_WI * params_.lever_arm_m + params_.radius_m * Eigen::Vector3d::UnitZ();
-  const Eigen::Vector2d turned = w_W.cross(arm_W).head<2>();
+  const Eigen::Vector2d turned = velocity_of_rotation(state);
   const bool rolls = params_.radius_m > 0.0;
   if (state.at_rest) {
     if (rolls) watch_slip(turned - state.v_W_m_s, state);

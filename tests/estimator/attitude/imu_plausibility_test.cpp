@@ -348,5 +348,21 @@ TEST(ImuPlausibility, ATriadThatNeverMovedIsDeadWhereTheOtherTellsATurn) {
                "seconds for which a triad repeats one reading");
 }
 
+TEST(ImuPlausibility, AGyroThatNeverMovedIsDeadWhereTheBodyIsPushed) {
+  const auto frozen_s = [](double push_m_s2, double rate_rad_s) {
+    const ImuPlausibility plausibility({});
+    ImuPlausibility::State state;
+    for (int k = 0; k < 500; ++k) {
+      const double up = 9.81 + (k >= 200 && k < 260 ? push_m_s2 : 0.0);
+      const double rate = k % 2 == 0 ? rate_rad_s : 0.0;
+      plausibility.step({k * TimeNs{10'000'000}, {rate, 0.0, 0.0}, {0.0, 0.0, up}, 0}, state);
+    }
+    return plausibility.frozen_s(state);
+  };
+  EXPECT_GT(frozen_s(20.0, 0.0), 4.0);
+  EXPECT_EQ(frozen_s(20.0, 0.001), 0.0) << "it moves";
+  EXPECT_EQ(frozen_s(2.0, 0.0), 0.0) << "a device that rests with a coarse quantum";
+}
+
 }  // namespace
 }  // namespace tumble

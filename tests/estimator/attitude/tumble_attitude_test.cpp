@@ -8,6 +8,7 @@
 #include <cmath>
 #include <limits>
 #include <numbers>
+#include <random>
 #include <type_traits>
 #include <vector>
 
@@ -237,6 +238,87 @@ TEST(TumbleAttitude, CovarianceShrinksWhereTheForceIsThatOfABodyInPlace) {
   EXPECT_LT(in_place, 0.02);
   // negative control: of one that goes 4 m to and fro less is known
   EXPECT_GT(deviation(6.0), 1.5 * in_place);
+}
+
+/// A body spins at `before`, is struck at a time within a gap of the readings, and spins at `after`: the true attitude
+/// behind it.
+struct Struck {
+  Eigen::Vector3d before_rad_s, after_rad_s;
+  double share = 0.5;  ///< of the gap, when it is struck
+};
+
+struct BehindGap {
+  Eigen::Vector2d tilt_rad = Eigen::Vector2d::Zero();  ///< true less estimated, axes of W
+  double variance_rad2 = 0.0;                          ///< of one of them
+  bool at_rest = false;
+};
+
+BehindGap behind_gap(const Struck& struck, double gap_s) {
+  const TumbleAttitude filter({});
+  TumbleAttitude::State state;
+  Eigen::Quaterniond q = Eigen::Quaterniond::Identity();
+  TimeNs time_ns = 0;
+  const auto step = [&](const Eigen::Vector3d& rate_rad_s) {
+    const Eigen::Vector3d up = q.conjugate() * Eigen::Vector3d::UnitZ();
+    EXPECT_TRUE(filter.step({time_ns, rate_rad_s, kGravity_m_s2 * up, 0}, state).ok());
+  };
+  constexpr double kPeriod_s = 4e-3;
+  step(struck.before_rad_s);
+  for (int k = 0; k < 25; ++k) {
+    time_ns += 4'000'000;
+    q = (q * so3::exp(kPeriod_s * struck.before_rad_s)).normalized();
+    step(struck.before_rad_s);
+  }
+  time_ns += static_cast<TimeNs>(1e9 * gap_s);
+  q = q * so3::exp(struck.share * gap_s * struck.before_rad_s) *
+      so3::exp((1.0 - struck.share) * gap_s * struck.after_rad_s);
+  step(struck.after_rad_s);
+  const Eigen::Vector3d off = so3::log(q * state.q_WI.conjugate());
+  return {off.head<2>(), TumbleAttitude::attitude_covariance_rad2(state).diagonal().head<2>().mean(), state.at_rest};
+}
+
+// A strike at any time of a gap turns a body by what no reading tells; attitude.md (A8c).
+TEST(TumbleAttitude, OverAGapTheCovarianceHoldsWhatAStrikeMakes) {
+  std::mt19937 random(11);
+  std::normal_distribution<double> rate(0.0, 5.0);
+  std::uniform_real_distribution<double> share(0.0, 1.0);
+  for (const double gap_s : {0.12, 0.3}) {
+    int beyond = 0;
+    double sum = 0.0;
+    constexpr int kStrikes = 300;
+    for (int k = 0; k < kStrikes; ++k) {
+      const auto drawn = [&] { return Eigen::Vector3d(rate(random), rate(random), rate(random)); };
+      const BehindGap found = behind_gap({drawn(), drawn(), share(random)}, gap_s);
+      const double chi2 = found.tilt_rad.squaredNorm() / found.variance_rad2;
+      beyond += chi2 > 11.83 ? 1 : 0;  // 99.73 % of two degrees
+      sum += chi2;
+    }
+    EXPECT_LE(beyond, 3) << gap_s;  // measured 0
+    EXPECT_GT(sum / kStrikes, 0.4) << gap_s << ": far too wide";
+  }
+}
+
+// In a straight line: where the rate does not change nothing is wrong, and the variance is that of the walk.
+TEST(TumbleAttitude, OverAGapTheRateGoesOnAndTheVarianceIsThatOfAWalk) {
+  constexpr double kGap_s = 0.3;
+  const BehindGap found = behind_gap({{3.0, -2.0, 1.0}, {3.0, -2.0, 1.0}}, kGap_s);
+  EXPECT_LT(found.tilt_rad.norm(), 0.02);
+  const double walk = TumbleAttitude::Params{}.expert.gap.rate_walk_rad_s_sqrts;
+  EXPECT_NEAR(found.variance_rad2, walk * walk * kGap_s * kGap_s * kGap_s / 12.0, 0.1 * found.variance_rad2);
+}
+
+TEST(TumbleAttitude, ABodyThatRestsOnBothSidesOfAGapHasRested) {
+  const TumbleAttitude filter({});
+  TumbleAttitude::State state;
+  const auto step = [&](TimeNs time_ns) {
+    ASSERT_TRUE(filter.step({time_ns, Eigen::Vector3d::Zero(), {0.0, 0.0, kGravity_m_s2}, 0}, state).ok());
+  };
+  for (int k = 0; k <= 1000; ++k) step(k * kPeriod_ns);
+  ASSERT_TRUE(state.at_rest);
+  const double before = TumbleAttitude::attitude_covariance_rad2(state)(0, 0);
+  step(1000 * kPeriod_ns + 500'000'000);
+  EXPECT_TRUE(state.at_rest);
+  EXPECT_LT(TumbleAttitude::attitude_covariance_rad2(state)(0, 0), before + 1e-4);
 }
 
 }  // namespace

@@ -9,6 +9,7 @@
 
 #include "scenarios/draw/scenario.hpp"
 #include "scenarios/methods/method.hpp"
+#include "scenarios/scoring/truth_track.hpp"
 #include "scenarios/sweep/evaluate.hpp"
 #include "tests/scenarios/methods/rates_before_doubt.hpp"
 #include "tests/scenarios/methods/wrong_inputs.hpp"
@@ -180,6 +181,39 @@ TEST(Verdicts, RatesTellAGyroOfAnotherSenseAndAnAxisThatFroze) {
   const SaidOfRates frozen = rates_of(draw, "gyro_z_frozen");
   EXPECT_TRUE(frozen.implausible);
   EXPECT_TRUE(frozen.z_frozen);
+}
+
+// Of a gyro that clips in its flights too: neither the right sense nor another had any flight while readings at a rail
+// did not count (docs/maths/imu_merge.md (I29)).
+TEST(Verdicts, FlightsTellAxesWhileTheGyroClips) {
+  const DataRoot data{test::source_dir()};
+  const SimulatedDraw draw = simulate_draw(data, load_scenario(data, "throw"), 99101, 1, Lidars::left_out);
+  EXPECT_FALSE(rates_of(draw, "none").other_sense);
+  for (const char* wrong : {"accel_flipped", "accel_z_flipped", "accel_x_y_swapped", "gyro_x_flipped"})
+    EXPECT_TRUE(rates_of(draw, wrong).other_sense) << wrong;
+}
+
+// An attitude behind a gap in a tumble: off by radians and sure of it before gaps were bridged (attitude.md (A8c)).
+TEST(Verdicts, AttitudesSayThatAGapLeavesThemWithoutUp) {
+  const DataRoot data{test::source_dir()};
+  const SimulatedDraw draw = simulate_draw(data, load_scenario(data, "hill"), 99101, 1, Lidars::left_out);
+  const auto run = [&](const std::string& wrong) {
+    SimulatedDraw given = draw;
+    testing::wrong_inputs().at(wrong)(given.recording.sensors);
+    Outcome outcome;
+    return run_method(*find_methods("attitude/tumble").at(0), given, outcome);
+  };
+  EXPECT_FALSE(has_doubt({Doubt::About::attitude}, run("none")));
+  const Estimate estimate = run("imus_silent_300_ms");
+  EXPECT_TRUE(has_doubt({Doubt::About::attitude}, estimate));
+  const TruthTrack truth(draw.recording.truth, estimate.frame);
+  double beyond = 0.0;
+  for (const AttitudeState& attitude : estimate.attitudes) {
+    const Eigen::Vector2d off = tilt_error_rad(attitude.q_WA, truth.pose(attitude.time_ns).q_WA);
+    beyond += off.norm() > 3.0 * std::sqrt(attitude.covariance_rad2.topLeftCorner<2, 2>().trace()) ? 1.0 : 0.0;
+  }
+  // nine of ten samples that move were off by up to 20 deviations
+  EXPECT_LT(beyond, 0.01 * static_cast<double>(estimate.attitudes.size()));
 }
 
 // It never rests, and no window of a held force tells it.

@@ -60,7 +60,8 @@ struct ImuPlausibilityParams {
 /// A gyro or an accelerometer that repeats one reading to the last bit, for a second and ten times as long as ever
 /// before, is frozen: it has shown that its readings move. One that held its readings as long before (a coarse quantum
 /// at rest, a simulation without noise) is not told from that. One that never moved is frozen when the other one says
-/// that the body turns: a gyro by the turning of gravity, an accelerometer that reads nothing but 0 by the gyro.
+/// that the body moves: a gyro by the turning of gravity, or by forces that are far from gravity's for long enough, an
+/// accelerometer that reads nothing but 0 by the gyro.
 ///
 /// Not seen: an accelerometer with all three axes flipped, which is the mirrored world (ImuMerge::arm_share() tells it,
 /// with several IMUs), errors of some per cent, axes about which the body does not turn, or a body that is pushed about
@@ -85,6 +86,7 @@ class ImuPlausibility {
     bool open = false, steady = false;
     bool in_range = true;  ///< of all samples of the window and of the average that is open
     double force_sum_m_s2 = 0.0, windows = 0.0;
+    double pushed_s = 0.0;                               ///< time of forces that are no rest's
     std::array<double, kAxisLabels> unexplained_rad2{};  ///< by how axes are named; the first: as they are
     double by_force_rad2 = 0.0, by_gyro_rad2 = 0.0;      ///< where the force turned, in
     double rotated_windows = 0.0;                        ///< windows

@@ -70,7 +70,9 @@ struct TumbleAttitudeParams {
 /// does not fit opens a slip: corrections are frozen until it fits again, for slip_timeout_s at the most.
 ///
 /// Readings count by their time: those of a fast IMU are averaged to reading_s before anything is decided by them, and
-/// the attitude between two averages is the last one, turned on.
+/// the attitude between two averages is the last one, turned on. Over a gap (a time longer than `gap_least_s`) the rate
+/// goes from the last reading to the next in a straight line and the velocity goes on, with variances that say how
+/// little that is; a body that rests before and after rested meanwhile.
 ///
 /// Not modelled: accelerometer bias and scale (they are the tilt error that is left at rest), heading reference.
 class TumbleAttitude {
@@ -129,9 +131,12 @@ class TumbleAttitude {
   void take_average(State& state) const;
   bool rotates_by_bias_alone(const State& state) const;
   void integrate(const ImuSample& sample, double dt_s, State& state) const;
+  void bridge_gap(const ImuSample& after, const Eigen::Matrix3d& rate_covariance_rad2_s2, double gap_s,
+                  State& state) const;
   void add_recovered(double dt_s, State& state) const;
   void predict_node(State& state) const;
   void correct_node(State& state) const;
+  Eigen::Vector2d velocity_of_rotation(const State& state) const;
   void correct_body(const Eigen::Vector2d& turned_m_s, State& state) const;
   double own_motion(const Eigen::Vector2d& misfit, int index, double sigma_sqrts, double power, State& state) const;
   bool watch_slip(const Eigen::Vector2d& misfit_m_s, State& state) const;

@@ -43,6 +43,23 @@ struct AttitudeRollingParams {
   }
 };
 
+/// What a body may do while no reading comes.
+struct AttitudeGapParams {
+  double least_s = 0.05;  ///< a longer time between two samples is a gap: neither of them tells the motion inside
+  /// Walks of the true rate and velocity of a body that tumbles down hills, stairs and cliffs, over 0.05 to 0.5 s:
+  /// 3.0 to 11.4 rad/s and 2.4 to 4.1 m/s per sqrt(s) (docs/figures.md, "Gaps of the IMU").
+  double rate_walk_rad_s_sqrts = 7.0, velocity_walk_m_s_sqrts = 3.3;
+
+  template <class Self, class Visitor>
+  static void fields(Self& p, Visitor& visit) {
+    visit(p.least_s, {"gap_least_s", "s", 1e-6, 1e4, "a longer time between two samples is a gap of the IMU"});
+    visit(p.rate_walk_rad_s_sqrts, {"gap_rate_walk_rad_s_sqrts", "rad/s/sqrt(s)", 0.0, 1e4,
+                                    "random walk of the rate while no reading comes, known at both ends"});
+    visit(p.velocity_walk_m_s_sqrts, {"gap_velocity_walk_m_s_sqrts", "m/s/sqrt(s)", 0.0, 1e4,
+                                      "random walk of the velocity while no reading comes"});
+  }
+};
+
 /// What few need of TumbleAttitudeParams, by meaning. Fields bear the names that they have in tables and on command
 /// lines.
 struct TumbleAttitudeExpertParams {
@@ -63,6 +80,7 @@ struct TumbleAttitudeExpertParams {
                                .memory_s = 1.0};
   AttitudeRestParams at_rest = {};
   AttitudeRollingParams rolling = {};
+  AttitudeGapParams gap = {};
 
   template <class Self, class Visitor>
   static void fields(Self& p, Visitor& visit) {
@@ -77,6 +95,7 @@ struct TumbleAttitudeExpertParams {
     visit.group("rest_", p.rest);
     visit.group("", p.at_rest);
     visit.group("", p.rolling);
+    visit.group("", p.gap);
   }
 };
 
