@@ -345,7 +345,7 @@ TEST(TumblingOdometry, TellsAnAccelerometerOfTheOtherSense) {
     ASSERT_TRUE(mirrored.add_imu(sample).ok());
   }
   EXPECT_TRUE(sound.doubt().ok()) << sound.doubt().message();
-  EXPECT_NE(mirrored.doubt().message().find("other sense"), std::string::npos) << mirrored.doubt().message();
+  EXPECT_NE(mirrored.doubt().message().find("flipped accelerometer"), std::string::npos) << mirrored.doubt().message();
 }
 
 // Its reading stands still from within the flight on, as that of a sensor that has died.

@@ -58,7 +58,7 @@ Estimate run_rig(const sim::Sensors& sensors, const sim::Values& parameters) {
   tell_frozen_axes(sensors, samples, estimate);
   const std::vector<ImuSample> read = samples;
   const RecoveredRates recovered = recover_in_time(sensors, samples, estimate.health);
-  (void)check_flights(sensors, read, estimate);
+  (void)check_flights(sensors, read, recovered.carried.share, estimate);
   TumbleAttitude::Params params = stated(sensors);
   attitude_tumble_settings().apply(parameters, params);
   const TumbleAttitude filter(params);

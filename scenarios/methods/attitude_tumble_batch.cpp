@@ -61,9 +61,9 @@ Estimate run_attitude_tumble_batch(const sim::Sensors& sensors, const sim::Value
   std::vector<ImuSample> recovered = samples;
   RecoveredRates told;
   if (sensors.sphere_radius_m <= 0.0) told = recover_clipped(sensors, recovered, estimate.health);
-  (void)check_flights(sensors, samples, estimate);
+  (void)check_flights(sensors, samples, told.carried.share, estimate);
   std::vector<RateState> rates;
-  if (told.answered && told.carried < kCarried) {
+  if (told.answered && told.carried.clipped_max < kCarried) {
     estimate.status = run_thrown(sensors, parameters, samples, recovered, told.covariances_rad2_s2, rates, estimate);
   } else {
     estimate.status = run_carried(sensors, parameters, rates, estimate.attitudes, estimate.health);

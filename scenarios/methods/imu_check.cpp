@@ -126,13 +126,13 @@ Status check_imus(const sim::Sensors& sensors, const MergedImus& imus, Estimate&
       estimate);
 }
 
-Status check_flights(const sim::Sensors& sensors, std::span<const ImuSample> samples, Estimate& estimate) {
+Status check_flights(const sim::Sensors& sensors, std::span<const ImuSample> samples,
+                     std::optional<double> carried_share, Estimate& estimate) {
   if (sensors.sphere_radius_m > 0.0) return {};
   FlightSense::Params params;
   params.lever_arm_m = bridge::lever_arm_I_m(sensors.imus.front());
   params.gyro_range_rad_s = sensors.imus.front().stated_gyro_range_rad_s;
-  const auto carried = estimate.health.find("regime_carried_share");
-  const bool thrown = carried != estimate.health.end() && carried->second < kHeldShare;
+  const bool thrown = carried_share && *carried_share < kHeldShare;
   params.body = thrown ? FlightSense::Body::thrown : FlightSense::Body::perhaps_held;
   const FlightSense sense(params);
   FlightSense::State state;
@@ -170,8 +170,9 @@ Status check_rotation_about_pivots(const sim::Sensors& sensors, std::span<const 
   return told(pivots.verdict(found), estimate);
 }
 
-void check_rates(const sim::Sensors& sensors, std::span<const ImuSample> samples, Estimate& estimate) {
-  const Status of_flights = check_flights(sensors, samples, estimate);
+void check_rates(const sim::Sensors& sensors, std::span<const ImuSample> samples, std::optional<double> carried_share,
+                 Estimate& estimate) {
+  const Status of_flights = check_flights(sensors, samples, carried_share, estimate);
   const Status of_readings = check_imu(sensors, samples, estimate);
   const Status of_rates = check_rotation_between_rests(sensors, samples, estimate.rates, estimate);
   const Status of_pivots = check_rotation_about_pivots(sensors, samples, estimate.rates, estimate);

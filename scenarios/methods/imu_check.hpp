@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <optional>
 #include <span>
 
 #include "scenarios/methods/method.hpp"
@@ -23,7 +24,8 @@ Status check_imus(const sim::Sensors& sensors, const MergedImus& imus, Estimate&
 /// says of them (check_rotation_between_rests) and what its turning about a point does (check_rotation_about_pivots).
 /// Where one of them speaks against the readings, the covariance of every rate grows by the square of the rate
 /// (`imu_rates_doubted`). O(N).
-void check_rates(const sim::Sensors& sensors, std::span<const ImuSample> samples, Estimate& estimate);
+void check_rates(const sim::Sensors& sensors, std::span<const ImuSample> samples, std::optional<double> carried_share,
+                 Estimate& estimate);
 
 /// Whether `rates`, one for each sample, those of an estimate of rates or what an attitude was turned by, lead gravity
 /// from one rest to the next (RestGravity): `rest_gravity_missed_rad` with its deviation, `rest_velocity_share` with
@@ -39,9 +41,11 @@ Status check_rotation_about_pivots(const sim::Sensors& sensors, std::span<const 
                                    std::span<const RateState> rates, Estimate& estimate);
 
 /// Whether flights of a rig show forces of another sensor than this at its lever arm (FlightSense): `imu_implausible`
-/// and the seconds of it, as `imu_flight_against_s`. Where the health says by `regime_carried_share` that nobody held
-/// the body, flipped and swapped axes of both sensors are told, and flights in which an axis clips count. O(N).
-Status check_flights(const sim::Sensors& sensors, std::span<const ImuSample> samples, Estimate& estimate);
+/// and the seconds of it, as `imu_flight_against_s`. Where `carried_share`, of the samples by the regimes of
+/// their rates, says that nobody held the body, flipped and swapped axes of both sensors are told, and flights in which
+/// an axis clips count. O(N).
+Status check_flights(const sim::Sensors& sensors, std::span<const ImuSample> samples,
+                     std::optional<double> carried_share, Estimate& estimate);
 
 /// Single axes of the primary IMU that froze, whose samples these are: `imu_implausible`, and since when, as
 /// `imu_gyro_z_frozen_since_s`. Of a gyro's axis nothing is known meanwhile but that it turns no faster than any

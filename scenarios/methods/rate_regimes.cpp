@@ -10,8 +10,8 @@
 
 namespace tumble::scenarios {
 
-double join_regimes(const sim::Sensors& sensors, std::span<const ImuSample> samples, const RateReport& report,
-                    std::vector<RateState>& rates, std::map<std::string, double>& health) {
+CarriedBody join_regimes(const sim::Sensors& sensors, std::span<const ImuSample> samples, const RateReport& report,
+                         std::vector<RateState>& rates, std::map<std::string, double>& health) {
   RegimeSmoother::Params params;
   params.rate.model.nominal.lever_arm_m = bridge::lever_arm_I_m(sensors.imus.front());
   params.rate.rails = stated_rails(sensors.imus.front());
@@ -19,17 +19,18 @@ double join_regimes(const sim::Sensors& sensors, std::span<const ImuSample> samp
   RegimeSmoother::Report told;
   told.rate = report;
   RegimeSmoother(params).join(samples, rates, told);
-  if (!told.judged) return 0.0;
+  if (!told.judged) return {};
   health["regime_flight_share"] = told.shares.flight;
   health["regime_contact_share"] = told.shares.contact;
   health["regime_carried_share"] = told.shares.carried;
   health["regime_carried_clipped_max"] = told.carried_clipped_max;
   health["regime_carried_asked"] = told.carried_asked ? 1.0 : 0.0;
-  if (!told.carried_asked) return told.carried_clipped_max;
+  const CarriedBody out{told.carried_clipped_max, told.shares.carried};
+  if (!told.carried_asked) return out;
   std::map<std::string, double> of_carried;
   report_carried(told.carried, of_carried);
   for (const auto& [name, value] : of_carried) health["carried_" + name] = value;
-  return told.carried_clipped_max;
+  return out;
 }
 
 }  // namespace tumble::scenarios

@@ -184,8 +184,7 @@ Status tumble_rates(const sim::Sensors& sensors, std::span<const ImuSample> samp
   if (status.ok()) {
     report_health(out.report, told);
     // further IMUs tell the rate whoever holds the body; the other smoother does not know them
-    if (auxiliary_imus.empty())
-      out.carried_clipped_max = join_regimes(sensors, samples, out.report, out.rates, told.health);
+    if (auxiliary_imus.empty()) out.carried = join_regimes(sensors, samples, out.report, out.rates, told.health);
   }
   return status;
 }
@@ -204,7 +203,7 @@ Estimate rates_of_batch(const sim::Sensors& sensors, const sim::Values& paramete
     estimate.status = tumble_rates(sensors, samples, params, smoothed, estimate);
     estimate.rates = std::move(smoothed.rates);
     if (estimate.status.ok()) {
-      check_rates(sensors, samples, estimate);
+      check_rates(sensors, samples, smoothed.carried.share, estimate);
       tell_frozen_axes(sensors, samples, estimate);
     }
     estimate.health["imus"] = 1.0 + static_cast<double>(smoothed.auxiliary_imus);

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "scenarios/methods/method.hpp"
+#include "scenarios/methods/rate_regimes.hpp"
 #include "scenarios/methods/rig_calibration_file.hpp"
 #include "scenarios/methods/settings.hpp"
 #include "sim/parameters.hpp"
@@ -34,7 +35,7 @@ RateSmoother::Params smoother_params(const sim::ImuRecord& record, const Setting
 struct SmoothedRates {
   std::vector<RateState> rates;  ///< one per sample
   RateReport report;
-  double carried_clipped_max = 0.0;  ///< as join_regimes returns it
+  CarriedBody carried;  ///< as join_regimes returns it
   std::size_t auxiliary_imus = 0;
 };
 

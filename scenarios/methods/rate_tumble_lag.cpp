@@ -110,11 +110,13 @@ Estimate rates_of_stream(const sim::Sensors& sensors, const sim::Values& paramet
   estimate.health["rig_resets"] = static_cast<double>(state.rig_resets);
   estimate.health["device_unlike"] = state.device.front().open.unlike;
   estimate.health["steps_skipped"] = static_cast<double>(state.failures);
+  std::optional<double> carried_share;
   if (all.given > 0) {
     const double each = 1.0 / static_cast<double>(all.given);
     estimate.health["regime_flight_share"] = each * all.sum.flight;
     estimate.health["regime_contact_share"] = each * all.sum.contact;
-    estimate.health["regime_carried_share"] = each * all.sum.carried;
+    carried_share = each * all.sum.carried;
+    estimate.health["regime_carried_share"] = *carried_share;
   }
   estimate.health["regime_carried_joined"] = static_cast<double>(all.joined);
   estimate.health["regime_carried_starts"] = static_cast<double>(all.starts);
@@ -124,7 +126,7 @@ Estimate rates_of_stream(const sim::Sensors& sensors, const sim::Values& paramet
     if (given != nullptr) (*found)->device_errors = given->device_errors;  // the stream does not estimate them
   }
   if (estimate.status.ok()) {
-    check_rates(sensors, samples, estimate);
+    check_rates(sensors, samples, carried_share, estimate);
     tell_frozen_axes(sensors, samples, estimate);
   }
   count_sources(estimate.rates, estimate.health);

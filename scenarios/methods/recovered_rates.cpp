@@ -44,8 +44,7 @@ Eigen::Vector3d bias_rad_s(const std::vector<ImuSample>& samples, const std::vec
 struct Recovery {
   std::vector<RateState> rates;
   Eigen::Vector3d bias_rad_s = Eigen::Vector3d::Zero();
-  double carried = 0.0;
-  std::optional<double> carried_share;
+  CarriedBody carried;
 
   void put(std::size_t k, std::vector<ImuSample>& samples, std::vector<Eigen::Matrix3d>& covariances_rad2_s2) const {
     samples[k].angular_velocity_rad_s = rates[k].w_WI_I_rad_s + bias_rad_s;
@@ -62,9 +61,7 @@ Recovery recovery_of(const sim::Sensors& sensors, const std::vector<ImuSample>& 
   Estimate of_rates;
   SmoothedRates smoothed;
   if (!tumble_rates(sensors, samples, params, smoothed, of_rates).ok()) return out;
-  out.carried = smoothed.carried_clipped_max;
-  if (const auto share = of_rates.health.find("regime_carried_share"); share != of_rates.health.end())
-    out.carried_share = share->second;
+  out.carried = smoothed.carried;
   out.bias_rad_s = bias_rad_s(samples, smoothed.rates, stands);
   out.rates = std::move(smoothed.rates);
   return out;
@@ -78,7 +75,6 @@ RecoveredRates recover(const Recovery& recovery, Stands stands, std::vector<ImuS
   out.carried = recovery.carried;
   out.answered = !recovery.rates.empty();
   if (!out.answered) return out;
-  if (recovery.carried_share) health["regime_carried_share"] = *recovery.carried_share;
   double recovered = 0.0;
   for (std::size_t k = 0; k < samples.size(); ++k) {
     out.sources[k] = recovery.rates[k].source;

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "scenarios/methods/rate_regimes.hpp"
 #include "sim/recording.hpp"
 #include "tumble/angular_velocity/rate_state.hpp"
 #include "tumble/common/imu.hpp"
@@ -17,8 +18,7 @@ struct RecoveredRates {
   std::vector<Eigen::Matrix3d> covariances_rad2_s2;  ///< one per sample, sensor axes; zero of those that are as read
   std::vector<RateSource> sources;                   ///< one per sample, of rate/tumble; all `measured` without it
   bool answered = false;                             ///< a reading clips, and rate/tumble has an answer
-  /// Largest probability that a hand held the body throughout a segment of clipped samples; 0 where nothing was asked.
-  double carried = 0.0;
+  CarriedBody carried;                               ///< of rate/tumble
 };
 
 /// Puts what rate/tumble says in place of readings that the rail made wrong, all three axes of them: while one clips, a

@@ -161,7 +161,7 @@ Estimate run_slam_tumble_lag(const sim::Sensors& sensors, const sim::Values& par
     return estimate;
   }
   (void)check_imu(sensors, samples, estimate);  // a warning, as for attitudes
-  (void)check_flights(sensors, samples, estimate);
+  (void)check_flights(sensors, samples, std::nullopt, estimate);
   tell_frozen_axes(sensors, samples, estimate);
   const TumblingOdometry::Params params = stated_params(sensors, parameters);
   TumblingOdometry odometry(params);
