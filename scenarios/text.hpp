@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <charconv>
+#include <cstddef>
 #include <string>
 #include <string_view>
 #include <system_error>
@@ -14,6 +15,11 @@ template <typename Number>
 bool read_number(std::string_view text, Number& value) {
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
   return error == std::errc() && end == text.data() + text.size();
+}
+
+/// A text of a file as a message has room for it: of a longer one the beginning.
+inline std::string shortened(std::string_view text, std::size_t most = 120) {
+  return text.size() <= most ? std::string(text) : std::string(text.substr(0, most)) + "...";
 }
 
 /// A message as it may stand in one line of a table.

@@ -14,6 +14,7 @@
 #include <system_error>
 
 #include "scenarios/errors.hpp"
+#include "scenarios/regular_file.hpp"
 #include "sim/parameters.hpp"
 
 namespace tumble::scenarios {
@@ -76,14 +77,13 @@ const char* kind_of(const YAML::Node& node) {
 }  // namespace
 
 std::string read_text_file(const std::filesystem::path& path) {
+  std::ifstream stream = open_regular_file(path);
   std::error_code error;
-  if (!std::filesystem::is_regular_file(path, error)) throw BadInput(path.string() + ": no such file");
   if (std::filesystem::file_size(path, error) > kLargestFile || error) {
     throw BadInput(path.string() + ": larger than 4 MiB");
   }
-  std::ifstream stream(path, std::ios::binary);
   std::string text((std::istreambuf_iterator<char>(stream)), std::istreambuf_iterator<char>());
-  if (stream.bad() || !stream.is_open()) throw BadInput(path.string() + ": cannot be read");
+  if (stream.bad()) throw BadInput(path.string() + ": cannot be read");
   return text;
 }
 

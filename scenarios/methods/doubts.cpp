@@ -37,6 +37,8 @@ const char* row_name(Doubt::About about) {
       return "imu_readings_beyond_range";
     case Doubt::About::digest:
       return "recording_without_digest";
+    case Doubt::About::learnt_rig:
+      return "learnt_rig_contradicted";
     case Doubt::About::unit_frozen:
       return "_frozen_since_s";
     case Doubt::About::unit_disagrees:

@@ -25,6 +25,7 @@ struct Doubt {
     lidar_scale,     ///< ranges of another scale than the motion
     beyond_range,    ///< readings that the device cannot have measured; value: how many
     digest,          ///< the recording states none
+    learnt_rig,      ///< what was learnt before is not of this rig; value: how far off [deviations]
     unit_frozen,     ///< `unit` repeats one reading; value: since when from the start [s], as of the next two
     unit_disagrees,  ///< `unit` is off from the others
     unit_silent,     ///< `unit` has no readings
@@ -37,10 +38,10 @@ struct Doubt {
 };
 
 inline constexpr std::array kAllDoubts = {
-    Doubt::About::readings,       Doubt::About::rates,        Doubt::About::flights,  Doubt::About::stamps,
-    Doubt::About::rate_unit,      Doubt::About::force_unit,   Doubt::About::attitude, Doubt::About::place,
-    Doubt::About::lidar_scale,    Doubt::About::beyond_range, Doubt::About::digest,   Doubt::About::unit_frozen,
-    Doubt::About::unit_disagrees, Doubt::About::unit_silent};
+    Doubt::About::readings,    Doubt::About::rates,          Doubt::About::flights,    Doubt::About::stamps,
+    Doubt::About::rate_unit,   Doubt::About::force_unit,     Doubt::About::attitude,   Doubt::About::place,
+    Doubt::About::lidar_scale, Doubt::About::beyond_range,   Doubt::About::digest,     Doubt::About::learnt_rig,
+    Doubt::About::unit_frozen, Doubt::About::unit_disagrees, Doubt::About::unit_silent};
 
 /// Its row of the health: `imu_implausible`, `imu_2_frozen_since_s`. The only place that knows these names.
 std::string row_of(const Doubt& doubt);

@@ -11,9 +11,11 @@
 
 #include "scenarios/errors.hpp"
 #include "scenarios/methods/covariance_file.hpp"
+#include "scenarios/methods/json_members.hpp"
 #include "scenarios/methods/map_file.hpp"
 #include "scenarios/recordings/replace_file.hpp"
 #include "scenarios/recordings/table_file.hpp"
+#include "scenarios/regular_file.hpp"
 
 namespace tumble::scenarios {
 
@@ -286,35 +288,28 @@ json header_of(const std::string& method, Kind kind, const Estimate& estimate, c
           {"sensors_digest", sensors_digest}};
 }
 
-template <typename Enum>
-Enum enum_named(const std::string& name, Enum last, const std::filesystem::path& path) {
-  for (int k = 0; k <= static_cast<int>(last); ++k) {
-    if (name == to_string(static_cast<Enum>(k))) return static_cast<Enum>(k);
-  }
-  throw BadInput(path.string() + ": unknown name '" + name + "'");
-}
-
 void read_header(const std::filesystem::path& path, Kind& kind, std::string& method, Estimate& estimate) {
-  std::ifstream file(path);
-  if (!file) throw BadInput(path.string() + ": cannot be read; not a folder of an estimate");
-  try {
-    const json header = json::parse(file);
-    if (header.at("format").get<int>() != kFormatVersion) {
-      throw BadInput(path.string() + ": format " + header.at("format").dump() + ", must be 1");
-    }
-    method = header.at("method").get<std::string>();
-    kind = enum_named(header.at("kind").get<std::string>(), Kind::slam, path);
-    estimate.frame = enum_named(header.at("frame").get<std::string>(), Frame::centre, path);
-    estimate.status.trouble = enum_named(header.at("status").at("trouble").get<std::string>(), Trouble::diverged, path);
-    // a Status holds a static string, so which field it was stays in the file's message
-    if (!estimate.status.ok()) estimate.status.field = "estimate.json";
-    for (const auto& [name, value] : header.at("health").items())
-      estimate.health[name] = value.is_number() ? value.get<double>() : std::nan("");
-    estimate.doubts = doubts_in(estimate.health);
-    if (header.contains("parameters"))
-      estimate.parameters = header.at("parameters").get<std::map<std::string, double>>();
-  } catch (const json::exception& error) {
-    throw BadInput(path.string() + ": " + error.what());
+  if (std::error_code error; !std::filesystem::exists(path, error))
+    throw BadInput(path.string() + ": no such file; not a folder of an estimate");
+  std::ifstream file = open_regular_file(path);
+  const json header = json::parse(file, nullptr, false);
+  if (!header.is_object()) throw BadInput(path.string() + ": not a JSON object");
+  const JsonMembers reader(path, header);
+  if (reader.member("format") != kFormatVersion) reader.complain("format", std::to_string(kFormatVersion));
+  method = reader.text("method");
+  kind = reader.named("kind", Kind::slam);
+  estimate.frame = reader.named("frame", Frame::centre);
+  const json& status = reader.object("status");
+  estimate.status.trouble = JsonMembers(path, status).named("trouble", Trouble::diverged);
+  // a Status holds a static string, so which field it was stays in the file's message
+  if (!estimate.status.ok()) estimate.status.field = "estimate.json";
+  for (const auto& [name, value] : reader.object("health").items())
+    estimate.health[name] = value.is_number() ? value.get<double>() : std::nan("");
+  estimate.doubts = doubts_in(estimate.health);
+  if (!header.contains("parameters")) return;
+  for (const auto& [name, value] : reader.object("parameters").items()) {
+    if (!value.is_number()) JsonMembers(path, header.at("parameters")).complain(name.c_str(), "a number");
+    estimate.parameters[name] = value.get<double>();
   }
 }
 

@@ -11,6 +11,8 @@
 
 #include "scenarios/errors.hpp"
 #include "scenarios/recordings/replace_file.hpp"
+#include "scenarios/regular_file.hpp"
+#include "scenarios/text.hpp"
 
 namespace tumble::scenarios {
 
@@ -42,7 +44,8 @@ std::size_t read_header(std::istream& file, const std::filesystem::path& path) {
       const auto [stop, error] = std::from_chars(found.data() + prefix.size(), end, points);
       if (error == std::errc() && stop == end) continue;
     }
-    if (found != line) throw BadInput(path.string() + ": '" + found + "' in the header, must be '" + line + "'");
+    if (found != line)
+      throw BadInput(path.string() + ": '" + shortened(found) + "' in the header, must be '" + line + "'");
   }
   return points;
 }
@@ -63,8 +66,7 @@ void write_map(const std::filesystem::path& path, std::span<const MapPoint> map)
 }
 
 std::vector<MapPoint> read_map(const std::filesystem::path& path) {
-  std::ifstream file(path, std::ios::binary);
-  if (!file) throw BadInput(path.string() + ": cannot be read");
+  std::ifstream file = open_regular_file(path);
   const std::size_t points = read_header(file, path);
   const auto data = file.tellg();
   file.seekg(0, std::ios::end);

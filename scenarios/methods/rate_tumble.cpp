@@ -149,6 +149,33 @@ const LearntRig* Learning::found() const {
   return of_stream ? &*of_stream : nullptr;
 }
 
+double distance_of_rigs(const RigCalibration& before, const RigCalibration& now, double trust) {
+  const RigConstants::Vector apart = now.constants.vector() - before.constants.vector();
+  const RigConstants::Matrix spread = trust * before.covariance + now.covariance;
+  const auto of = [&]<int kFirst, int kCount>() {
+    const Eigen::Matrix<double, kCount, 1> part = apart.segment<kCount>(kFirst);
+    const Eigen::Matrix<double, kCount, kCount> block = spread.block<kCount, kCount>(kFirst, kFirst);
+    return std::sqrt(part.dot(block.llt().solve(part)) / kCount);
+  };
+  constexpr int kInertia = 9, kInertias = RigConstants::kElements - kInertia;
+  return std::max(of.operator()<0, 3>(), of.operator()<kInertia, kInertias>());
+}
+
+namespace {
+
+/// Of a rig that a run starts from, by what another one tells that does not; whether it may be this one's.
+bool may_be_of_this_rig(const LearntRig& given, const std::optional<LearntRig>& fresh, Estimate& told) {
+  constexpr double kDistanceMax = 2.0;  // distance_of_rigs says what was seen
+  tell_undoubted(Doubt::About::learnt_rig, told);
+  if (!fresh) return true;
+  const double distance = distance_of_rigs(given.calibration, fresh->calibration, kTrust);
+  if (distance <= kDistanceMax) return true;
+  add_doubt({Doubt::About::learnt_rig, distance}, told);
+  return false;
+}
+
+}  // namespace
+
 Method learning_method(const Method& method, Learning& learning) {
   const std::string name = full_name(method.info);
   const bool batch = name == "rate/tumble";
@@ -162,8 +189,15 @@ Method learning_method(const Method& method, Learning& learning) {
     std::optional<LearntRig> rig;
     try {
       const sim::Values parameters = resolve_settings("method " + name, given, info.settings);
-      Estimate estimate = (batch ? run_rate_tumble : run_rate_tumble_lag)(sensors, parameters, start, &rig);
-      if (rig) (batch ? learning.of_batch : learning.of_stream) = rig;
+      const auto run = batch ? run_rate_tumble : run_rate_tumble_lag;
+      Estimate estimate = run(sensors, parameters, start, &rig);
+      bool of_this_rig = true;
+      if (start != nullptr && estimate.status.ok()) {
+        std::optional<LearntRig> fresh;
+        run(sensors, parameters, nullptr, &fresh);
+        of_this_rig = may_be_of_this_rig(*start, fresh, estimate);
+      }
+      if (rig && of_this_rig) (batch ? learning.of_batch : learning.of_stream) = rig;
       return estimate;
     } catch (const sim::InvalidSituation& error) {
       throw BadInput(error.what());

@@ -11,6 +11,7 @@
 
 #include "scenarios/errors.hpp"
 #include "scenarios/recordings/replace_file.hpp"
+#include "scenarios/regular_file.hpp"
 
 namespace tumble::scenarios {
 
@@ -259,8 +260,7 @@ void read_device_errors(const CalibrationReader& reader, const json& object, Lea
 }  // namespace
 
 LearntRig read_learnt_rig(const std::filesystem::path& path) {
-  std::ifstream file(path);
-  if (!file) throw BadInput(path.string() + ": cannot be read");
+  std::ifstream file = open_regular_file(path);
   const json object = json::parse(file, nullptr, false);
   if (!object.is_object()) throw BadInput(path.string() + ": not a JSON object");
   const CalibrationReader reader(path, object);

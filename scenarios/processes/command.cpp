@@ -29,6 +29,7 @@ void limit(int resource, double value) {
 /// In the child. Returns only when the program cannot be started; `problem` then says why.
 void become(const Command& command, std::string& problem) {
   signal(SIGINT, SIG_DFL);
+  signal(SIGHUP, SIG_DFL);
   signal(SIGPIPE, SIG_DFL);
   if (chdir(command.folder.c_str()) != 0) {
     problem = command.folder.string() + ": " + strerror(errno);

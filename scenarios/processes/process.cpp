@@ -27,8 +27,10 @@ namespace {
   if (getppid() != parent) _exit(1);
   const rlimit no_core{0, 0};
   setrlimit(RLIMIT_CORE, &no_core);
-  // the caller's handlers (Ctrl-C) are not the child's business; a vanished reader is an error of write()
+  // the caller's handlers (Ctrl-C, a terminal that closes) are not the child's business; a vanished reader is an error
+  // of write()
   signal(SIGINT, SIG_IGN);
+  signal(SIGHUP, SIG_IGN);
   signal(SIGTERM, SIG_DFL);
   signal(SIGPIPE, SIG_IGN);
   int code = 0;

@@ -13,6 +13,7 @@
 
 #include "scenarios/errors.hpp"
 #include "scenarios/recordings/hdf5_survey.hpp"
+#include "scenarios/regular_file.hpp"
 
 namespace tumble::scenarios::hdf5 {
 
@@ -21,15 +22,12 @@ namespace {
 constexpr std::size_t kSuperblockBytes = 48;
 
 Handle open_file(const std::filesystem::path& path) {
-  std::error_code error;
-  const auto status = std::filesystem::status(path, error);
-  if (!std::filesystem::exists(status)) throw BadInput(path.string() + ": no such file");
-  if (!std::filesystem::is_regular_file(status)) throw BadInput(path.string() + ": is not a regular file");
+  open_regular_file(path);  // HDF5 would call damaged what may not be read
   require_survivable(path);
   Handle file(H5Fopen(path.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT), H5Fclose);
   if (file.valid()) return file;
   const std::string reason = last_error();
-  if (std::filesystem::file_size(path, error) == 0) throw BadInput(path.string() + ": is empty");
+  if (std::error_code error; std::filesystem::file_size(path, error) == 0) throw BadInput(path.string() + ": is empty");
   throw BadInput(path.string() + ": truncated, damaged or not an HDF5 file" + reason);
 }
 

@@ -13,6 +13,8 @@
 
 #include "scenarios/errors.hpp"
 #include "scenarios/recordings/whole_seconds.hpp"
+#include "scenarios/regular_file.hpp"
+#include "scenarios/text.hpp"
 
 namespace tumble::scenarios {
 
@@ -108,6 +110,7 @@ void TableWriter::close() {
 }
 
 Table Table::read(const std::filesystem::path& path, char separator, const std::string& header, std::size_t columns) {
+  require_file(path);
   std::ifstream file(path);
   if (!file) throw BadInput(path.string() + ": cannot be read");
   Table table{path, {}};
@@ -120,7 +123,8 @@ Table Table::read(const std::filesystem::path& path, char separator, const std::
     if (!line.empty() && line.back() == '\r') line.pop_back();
     if (separator == ' ') std::replace(line.begin(), line.end(), '\t', ' ');
     if (header_due) {
-      if (line != header) throw BadInput(path.string() + ":1: header is '" + line + "', must be '" + header + "'");
+      if (line != header)
+        throw BadInput(path.string() + ":1: header is '" + shortened(line) + "', must be '" + header + "'");
       header_due = false;
       continue;
     }
@@ -139,7 +143,8 @@ Table Table::read(const std::filesystem::path& path, char separator, const std::
 double Table::number(const Row& row, std::size_t column) const {
   double value = 0.0;
   if (!parse(row.cells[column], value)) {
-    throw BadInput(path.string() + ":" + std::to_string(row.line) + ": '" + row.cells[column] + "' is not a number");
+    throw BadInput(path.string() + ":" + std::to_string(row.line) + ": '" + shortened(row.cells[column]) +
+                   "' is not a number");
   }
   return value;
 }
@@ -147,7 +152,8 @@ double Table::number(const Row& row, std::size_t column) const {
 std::int64_t Table::integer(const Row& row, std::size_t column) const {
   std::int64_t value = 0;
   if (!parse(row.cells[column], value)) {
-    throw BadInput(path.string() + ":" + std::to_string(row.line) + ": '" + row.cells[column] + "' is not an integer");
+    throw BadInput(path.string() + ":" + std::to_string(row.line) + ": '" + shortened(row.cells[column]) +
+                   "' is not an integer");
   }
   return value;
 }
@@ -169,7 +175,8 @@ std::int64_t Table::time_ns(const Row& row, std::size_t column) const {
   }
   const double value_s = number(row, column);
   if (!std::isfinite(value_s) || std::abs(value_s) > static_cast<double>(kSecondsMax)) {
-    throw BadInput(path.string() + ":" + std::to_string(row.line) + ": '" + text + "' is not a time in seconds");
+    throw BadInput(path.string() + ":" + std::to_string(row.line) + ": '" + shortened(text) +
+                   "' is not a time in seconds");
   }
   return static_cast<std::int64_t>(std::llround(value_s * 1e9));
 }

@@ -63,6 +63,7 @@ bool is_at(const fs::path& path, int fd) {
 }  // namespace
 
 DatabaseOwner::DatabaseOwner(const fs::path& database) : database_(database), lock_(lock_of(database)) {
+  const SignalsWait until_listed;
   for (int attempt = 0; attempt < 100; ++attempt) {
     const int fd = open(lock_.c_str(), O_RDWR | O_CREAT | O_CLOEXEC | O_NOFOLLOW, 0666);
     if (fd < 0) fail_to_lock(lock_, errno);
@@ -80,12 +81,14 @@ DatabaseOwner::DatabaseOwner(const fs::path& database) : database_(database), lo
     close(fd);
   }
   if (fd_ < 0) fail_to_lock(lock_, EAGAIN);
+  on_signal_.emplace(lock_, Unfinished::Kind::file);
   const std::string text = who_we_are() + "\n";
   // the lock is held whether or not it can be said by whom
   if (ftruncate(fd_, 0) == 0 && pwrite(fd_, text.data(), text.size(), 0) < 0) return;
 }
 
 DatabaseOwner::~DatabaseOwner() {
+  on_signal_.reset();
   unlink(lock_.c_str());
   close(fd_);
 }

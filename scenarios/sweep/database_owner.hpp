@@ -2,12 +2,16 @@
 #pragma once
 
 #include <filesystem>
+#include <optional>
+
+#include "scenarios/recordings/unfinished.hpp"
 
 namespace tumble::scenarios {
 
 /// The one that writes to a results database: a second sweep on it, or a merge into it, says so and leaves. The lock
 /// (flock) is on FILE.lock beside it, which says who holds it; the system lets go of it when the process ends, however
-/// it ends, and a file that a killed one has left behind is taken over. Reading needs no owner. Where the file system
+/// it ends. A signal that ends the program takes the file away (unfinished.hpp); one that a killed program has left
+/// behind is taken over. Reading needs no owner. Where the file system
 /// is shared, it holds between machines as far as its locks do.
 class DatabaseOwner {
  public:
@@ -22,6 +26,7 @@ class DatabaseOwner {
 
  private:
   std::filesystem::path database_, lock_;
+  std::optional<Unfinished> on_signal_;
   int fd_ = -1;
 };
 

@@ -8,6 +8,7 @@
 #include <system_error>
 
 #include "scenarios/errors.hpp"
+#include "scenarios/regular_file.hpp"
 #include "scenarios/sweep/results_database.hpp"
 
 namespace tumble::scenarios {
@@ -66,10 +67,7 @@ void Results::Impl::store(const std::string& kind, const Outcome& outcome) {
 Results::Results(const std::filesystem::path& path, Mode mode) {
   std::error_code ignored;
   const std::filesystem::file_status found = std::filesystem::status(path, ignored);
-  if (mode == Mode::read_only && !std::filesystem::exists(found)) throw BadInput(path.string() + ": no such file");
-  // to open a pipe that nobody writes to waits for ever
-  if (std::filesystem::exists(found) && !std::filesystem::is_regular_file(found))
-    throw BadInput(path.string() + ": not a results database, but a folder, a pipe or a device");
+  if (mode == Mode::read_only || std::filesystem::exists(found)) require_regular_file(path);
   try {
     impl_ = std::make_unique<Impl>(path, mode);
     if (mode != Mode::read_only && impl_->is_empty()) impl_->create();

@@ -28,6 +28,17 @@ json comparable(json report) {
   return report;
 }
 
+/// Whatever of it has ended by then is stored: waits for outcomes of a second draw, which say that the first is
+/// complete.
+void wait_for_a_draw(Running& running, const fs::path& database) {
+  for (int i = 0; i < 1200 && !running.has_ended(); ++i) {
+    std::this_thread::sleep_for(std::chrono::milliseconds(100));
+    if (!fs::exists(database)) continue;
+    const Ended report = run_shortened({"report", database.string(), "--json"});
+    if (report.status == 0 && json_of(report)["draws"]["roll"] >= 2) break;
+  }
+}
+
 TEST(Sweep, InterruptedKeepsWhatIsDoneAndGoesOn) {
   const fs::path folder = test_folder();
   const fs::path database = folder / "stopped.db";
@@ -35,14 +46,8 @@ TEST(Sweep, InterruptedKeepsWhatIsDoneAndGoesOn) {
   std::vector<std::string> arguments = sweep_arguments(database, "1..500");
   arguments.insert(arguments.end(), {"--jobs", "1"});
   Running running(arguments, in_short_catalogue());
-  // one draw at a time: outcomes of a second draw say that the first is complete; they give the signal, however fast
-  // the machine is
-  for (int i = 0; i < 1200 && !running.has_ended(); ++i) {
-    std::this_thread::sleep_for(std::chrono::milliseconds(100));
-    if (!fs::exists(database)) continue;
-    const Ended report = run_shortened({"report", database.string(), "--json"});
-    if (report.status == 0 && json_of(report)["draws"]["roll"] >= 2) break;
-  }
+  // one draw at a time; they give the signal, however fast the machine is
+  wait_for_a_draw(running, database);
   ASSERT_FALSE(running.has_ended()) << running.wait().err;
   running.signal(SIGINT);
   const Ended stopped = running.wait();
@@ -66,6 +71,58 @@ TEST(Sweep, InterruptedKeepsWhatIsDoneAndGoesOn) {
   const fs::path whole = folder / "whole.db";
   ASSERT_EQ(run_shortened(sweep_arguments(whole, "1.." + std::to_string(done + 1))).status, 0);
   EXPECT_EQ(comparable(report_json(database)), comparable(report_json(whole)));
+}
+
+// of a terminal that closes the shell and the system tell one after the other; nohup leaves it ignored
+TEST(Sweep, ASignalStopsItAndTheLockIsLetGo) {
+  const fs::path folder = test_folder();
+  for (const int number : {SIGHUP, SIGTERM}) {
+    const fs::path database = folder / (std::to_string(number) + ".db"), lock = database.string() + ".lock";
+    std::vector<std::string> arguments = sweep_arguments(database, "1..500");
+    arguments.insert(arguments.end(), {"--jobs", "1"});
+    Running running(arguments, in_short_catalogue());
+    wait_for_a_draw(running, database);
+    ASSERT_FALSE(running.has_ended()) << running.wait().err;
+    EXPECT_TRUE(fs::exists(lock));
+    running.signal(number);
+    if (number == SIGHUP) running.signal(number);
+    const Ended stopped = running.wait();
+    EXPECT_EQ(stopped.status, 1) << stopped.err;
+    EXPECT_THAT(stopped.err, HasSubstr(" of 500 draws stored, run again to go on"));
+    EXPECT_GE(report_json(database)["draws"]["roll"], 1);
+    EXPECT_FALSE(fs::exists(lock));
+  }
+}
+
+TEST(Sweep, ThatEndsAtOnceLetsTheLockGoToo) {
+  const fs::path database = test_folder() / "s.db", lock = database.string() + ".lock";
+  const auto prepare = in_short_catalogue();
+  std::vector<std::string> arguments = sweep_arguments(database, "1..500");
+  arguments.insert(arguments.end(), {"--jobs", "1"});
+  Running running(arguments, prepare);
+  while (!fs::exists(lock) && !running.has_ended()) std::this_thread::sleep_for(std::chrono::milliseconds(1));
+  // the first is heeded at the end of a draw, the second is not waited for
+  for (int signals = 0; !running.has_ended() && signals < 100; ++signals) {
+    running.signal(SIGTERM);
+    std::this_thread::sleep_for(std::chrono::milliseconds(20));
+  }
+  EXPECT_EQ(running.wait().status, 128 + SIGTERM);
+  EXPECT_FALSE(fs::exists(lock));
+}
+
+TEST(Sweep, GoesOnUnderNohup) {
+  const fs::path database = test_folder() / "s.db";
+  const auto prepare = in_short_catalogue();
+  Running running(sweep_arguments(database, "1..2"), [&] {
+    prepare();
+    signal(SIGHUP, SIG_IGN);
+  });
+  while (!fs::exists(database.string() + ".lock") && !running.has_ended())
+    std::this_thread::sleep_for(std::chrono::milliseconds(1));
+  running.signal(SIGHUP);
+  const Ended ended = running.wait();
+  EXPECT_EQ(ended.status, 0) << ended.err;
+  EXPECT_EQ(json_of(ended)["draws_done"], 2);
 }
 
 TEST(Sweep, ShardsMergeToTheWhole) {

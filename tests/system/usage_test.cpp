@@ -100,9 +100,13 @@ INSTANTIATE_TEST_SUITE_P(
               {"list", "suites", "--format", "jsno"},
               "unknown format of tables 'jsno'; known: csv md"},
         Wrong{"format of tables by number", {"list", "suites", "--format", "0"}, "unknown format of tables '0'; known"},
-        Wrong{"format of an export", {"export", "/dev/null", "--format", "tmu", "-o", "x"}, "'tum'"},
+        Wrong{"format of an export", {"export", "/proc/version", "--format", "tmu", "-o", "x"}, "'tum'"},
         Wrong{"export of nothing", {"export", "absent.h5", "--format", "tum", "-o", "x"}, "absent.h5"},
         Wrong{"import of nothing", {"import", "absent.csv", "-o", "x.h5"}, "absent.csv"},
+        Wrong{"a device for a recording",
+              {"export", "/dev/null", "--format", "tum", "-o", "x"},
+              "/dev/null: is a device"},
+        Wrong{"a folder of TUM's poses", {"import", "/proc", "--format", "tum", "-o", "x.h5"}, "/proc: is a folder"},
         Wrong{"import without format", {"import", "absent.dat", "-o", "x.h5"}, "--format"},
         Wrong{"device of an import", {"import", "absent.csv", "--device", "mti3", "-o", "x.h5"}, "mti30"},
         Wrong{"shrink without a name",
@@ -137,13 +141,21 @@ INSTANTIATE_TEST_SUITE_P(
         Wrong{"seeds that are empty", {"sweep", "demo", "--seeds", "", "--db", "x.db"}, "--seeds"},
         Wrong{"learnt in a folder",
               {"run", "hill", "--seed", "1", "--method", "rate/tumble", "--learnt", "/"},
-              "no file"},
+              "is a folder, must be a file"},
         Wrong{"methods that do not apply",
               {"run", "roll", "--seed", "1", "--method", "slam/icp"},
               "does not apply to the robot 'sphere'"},
         Wrong{"a map without a lidar", {"run", "twirl", "--seed", "1", "--method", "slam/icp"}, "needs a lidar"},
         Wrong{"output that is a device", {"record", "roll", "--seed", "1", "-o", "/dev/null"}, "no regular file"},
         Wrong{"render without seed", {"render", "hill", "-o", "x.png"}, "--seed"}));
+
+TEST(Message, IsOfALengthThatCanBeRead) {
+  const Ended ended = run_program({"import", std::string(100'000, 'x') + ".csv", "-o", "x.h5"});
+  EXPECT_EQ(ended.status, 2);
+  EXPECT_THAT(ended.err, HasSubstr("File name too long"));
+  EXPECT_EQ(line_count(ended.err), 1u);
+  EXPECT_LT(ended.err.size(), 2500u);
+}
 
 TEST(FirstMinutes, TheProgramAloneShowsTheWay) {
   const Ended ended = run_program({});

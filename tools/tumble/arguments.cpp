@@ -9,6 +9,7 @@
 #include "scenarios/errors.hpp"
 #include "scenarios/methods/external_method.hpp"
 #include "scenarios/recordings/replace_file.hpp"
+#include "scenarios/regular_file.hpp"
 #include "scenarios/scoring/score.hpp"
 #include "scenarios/sweep/sweep.hpp"
 #include "scenarios/text.hpp"
@@ -122,8 +123,7 @@ std::function<void(const std::string&)> a_suite(const Session& session) {
 }
 
 void a_recording(const std::string& file) {
-  std::error_code ignored;
-  if (!std::filesystem::exists(file, ignored)) throw BadInput(file + ": no such file");
+  scenarios::require_regular_file(file);
 }
 
 int available_processors() {

@@ -11,6 +11,7 @@
 #include "scenarios/draw/data_sheet.hpp"
 #include "scenarios/errors.hpp"
 #include "scenarios/recordings/trajectories/reference.hpp"
+#include "scenarios/regular_file.hpp"
 #include "tools/tumble/arguments.hpp"
 
 namespace tumble::tools {
@@ -202,11 +203,9 @@ std::string format_of(const ImportOptions& options) {
   if (!options.format.empty()) require_known("format", options.format, kFormats);
   std::error_code error;
   const bool folder = std::filesystem::is_directory(options.path, error);
-  // to open a pipe that nobody writes to waits for ever; poses are read once, from wherever they come
-  const bool poses = options.format == "tum" || options.format == "kitti" || options.format == "odometry";
-  const std::filesystem::file_status found = std::filesystem::status(options.path, error);
-  if (std::filesystem::exists(found) && !std::filesystem::is_regular_file(found) && !folder && !poses)
-    throw BadInput(options.path.string() + ": no such file");
+  // TUM's poses are read once, from wherever they come
+  if (!folder && options.format != "tum" && std::filesystem::exists(options.path, error))
+    scenarios::require_regular_file(options.path);
   if (!options.format.empty()) return options.format;
   if (folder) return format_of_folder(options.path);
   const std::string ending = options.path.extension().string();

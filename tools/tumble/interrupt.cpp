@@ -12,12 +12,12 @@ std::atomic<bool> raised_by_signal{false};
 static_assert(std::atomic<bool>::is_always_lock_free, "a signal handler must not lock");
 
 // what the signals did before
-struct sigaction interrupt_before = {}, terminate_before = {};
+struct sigaction interrupt_before = {}, terminate_before = {}, hang_up_before = {};
 
-/// The second one has its usual effect.
+/// The second one has its usual effect, but for a terminal's.
 extern "C" void raise_flag(int number) {
   raised_by_signal.store(true);
-  sigaction(number, number == SIGINT ? &interrupt_before : &terminate_before, nullptr);
+  if (number != SIGHUP) sigaction(number, number == SIGINT ? &interrupt_before : &terminate_before, nullptr);
 }
 
 }  // namespace
@@ -31,11 +31,14 @@ InterruptFlag::InterruptFlag() {
   sigaction(SIGTERM, nullptr, &terminate_before);
   sigaction(SIGINT, &action, nullptr);
   sigaction(SIGTERM, &action, nullptr);
+  sigaction(SIGHUP, nullptr, &hang_up_before);
+  if (hang_up_before.sa_handler != SIG_IGN) sigaction(SIGHUP, &action, nullptr);
 }
 
 InterruptFlag::~InterruptFlag() {
   sigaction(SIGINT, &interrupt_before, nullptr);
   sigaction(SIGTERM, &terminate_before, nullptr);
+  sigaction(SIGHUP, &hang_up_before, nullptr);
 }
 
 const std::atomic<bool>& InterruptFlag::raised() const {

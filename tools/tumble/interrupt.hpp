@@ -6,7 +6,8 @@
 namespace tumble::tools {
 
 /// While it lives, the first Ctrl-C (SIGINT) or SIGTERM sets a flag instead of ending the program; the second one ends
-/// it. One at a time.
+/// it. SIGHUP, of a terminal that closes, sets it however often it comes (shell and system both send it), unless it is
+/// ignored (nohup). One at a time.
 class InterruptFlag {
  public:
   InterruptFlag();

@@ -8,12 +8,13 @@
 #include "scenarios/errors.hpp"
 #include "scenarios/methods/bridge.hpp"
 #include "scenarios/recordings/replace_file.hpp"
+#include "scenarios/regular_file.hpp"
 
 namespace tumble::tools {
 
 LearntFile::LearntFile(std::filesystem::path path) : path_(std::move(path)) {
   if (path_.empty() || !std::filesystem::exists(path_)) return;
-  if (!std::filesystem::is_regular_file(path_)) throw scenarios::BadInput(path_.string() + ": --learnt is no file");
+  scenarios::require_regular_file(path_);
   learning_.given = scenarios::read_learnt_rig(path_);
 }
 
@@ -51,7 +52,7 @@ void LearntFile::keep(const Session& session) const {
   if (learning_.found() != nullptr) return scenarios::write_learnt_rig(path_, *learning_.found());
   session.note(path_.string() + (std::filesystem::exists(path_) ? ": stays as it is" : ": not written") +
                ": nothing was learnt of the rig, which was held to what was known before: no free flight or contact "
-               "told more of it, or the run failed");
+               "told more of it, what was known is not of this rig, or the run failed");
 }
 
 }  // namespace tumble::tools

@@ -79,7 +79,11 @@ std::string usage_line(const CLI::App& app, const CLI::ParseError& error) {
 }
 
 int say(const char* prefix, const std::string& line, int status) {
-  std::string shown = terminal_text(line);
+  // what a file has in place of a word may be megabytes
+  constexpr std::size_t kBegin = 1500, kEnd = 300;
+  std::string shown =
+      line.size() <= kBegin + kEnd ? line : line.substr(0, kBegin) + " ... " + line.substr(line.size() - kEnd);
+  shown = terminal_text(shown);
   std::replace(shown.begin(), shown.end(), '\n', ' ');
   std::fprintf(stderr, "tumble: %s%s\n", prefix, shown.c_str());
   return status;

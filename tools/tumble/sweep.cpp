@@ -248,6 +248,7 @@ int run_sweep(const Session& session, const SweepVerbOptions& options) {
   const bool any = select(data, options, suite);
   say_what_it_holds(session, options, suite);
   if (options.database.has_parent_path()) make_folder(options.database.parent_path());
+  const InterruptFlag interrupt;
   const scenarios::DatabaseOwner owner(options.database);
   NewDatabase made(options.database);
   if (!any) {
@@ -260,7 +261,6 @@ int run_sweep(const Session& session, const SweepVerbOptions& options) {
     return kDone;
   }
 
-  const InterruptFlag interrupt;
   const scenarios::SweepOptions how = sweep_options(options, interrupt.raised());
   scenarios::require_sound(suite, how);
   const std::optional<scenarios::Question> question = ask(options, data, suite);

@@ -32,6 +32,9 @@ const char* meaning(scenarios::Doubt::About about) {
       return "readings that the device cannot have measured are left out";
     case About::digest:
       return "the recording states no digest of its data, so that damage would not show";
+    case About::learnt_rig:
+      return "deviations between the lever arm or inertia that --learnt brought and what this run tells by itself: "
+             "learnt of another rig? Rates beyond a rail rest on it; the file stays as it is";
     case About::unit_frozen:
       return "repeats one reading from then on";
     case About::unit_disagrees:

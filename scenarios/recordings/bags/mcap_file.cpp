@@ -7,6 +7,7 @@
 
 #include "scenarios/errors.hpp"
 #include "scenarios/recordings/bags/packed.hpp"
+#include "scenarios/regular_file.hpp"
 
 namespace tumble::scenarios::mcap {
 
@@ -32,8 +33,7 @@ bool agree(const ChunkIndex& a, const ChunkIndex& b) {
 
 }  // namespace
 
-File::File(const std::filesystem::path& path) : path_(path), stream_(path, std::ios::binary) {
-  if (!stream_ || !std::filesystem::is_regular_file(path)) throw BadInput(path.string() + ": no such file");
+File::File(const std::filesystem::path& path) : path_(path), stream_(open_regular_file(path)) {
   bytes_ = std::filesystem::file_size(path);
   open_ends();
   check_data();

@@ -13,6 +13,7 @@
 #include "scenarios/errors.hpp"
 #include "scenarios/recordings/bags/packed.hpp"
 #include "scenarios/recordings/scratch_folder.hpp"
+#include "scenarios/regular_file.hpp"
 
 namespace tumble::scenarios {
 
@@ -38,8 +39,7 @@ void unpack(const path& file, const path& to) {
   const auto fail = [&](const std::string& what) { throw BadInput(file.string() + ": " + what); };
   const std::unique_ptr<ZSTD_DCtx, std::size_t (*)(ZSTD_DCtx*)> context(ZSTD_createDCtx(), ZSTD_freeDCtx);
   if (!context) throw std::bad_alloc();
-  std::ifstream source(file, std::ios::binary);
-  if (!source) fail("cannot be read");
+  std::ifstream source = open_regular_file(file);
   std::ofstream unpacked(to, std::ios::binary);
   std::string taken(ZSTD_DStreamInSize(), '\0'), given(ZSTD_DStreamOutSize(), '\0');
   const std::uint64_t most = most_bytes(file, to.parent_path());
@@ -70,7 +70,6 @@ class UnpackedFiles : public BagReader {
                 const std::function<std::unique_ptr<BagReader>(const std::vector<path>&)>& open) {
     std::vector<path> unpacked;
     for (const path& file : files) {
-      if (!std::filesystem::is_regular_file(file)) throw BadInput(file.string() + ": no such file");
       unpacked.push_back(folder_.path() / file.stem());
       unpack(file, unpacked.back());
     }

@@ -10,6 +10,7 @@
 #include "scenarios/errors.hpp"
 #include "scenarios/recordings/bags/bag_storage.hpp"
 #include "scenarios/recordings/bags/ros1_ops.hpp"
+#include "scenarios/regular_file.hpp"
 
 namespace tumble::scenarios {
 
@@ -29,8 +30,7 @@ struct CheckedRecord {
 /// A file that is asked for segments of itself; nothing beyond its end is read.
 class Walk {
  public:
-  explicit Walk(const std::filesystem::path& path) : path_(path), stream_(path, std::ios::binary) {
-    if (!stream_ || !std::filesystem::is_regular_file(path)) throw BadInput(path.string() + ": no such file");
+  explicit Walk(const std::filesystem::path& path) : path_(path), stream_(open_regular_file(path)) {
     bytes_ = std::filesystem::file_size(path);
   }
 

@@ -17,6 +17,7 @@
 #include "scenarios/recordings/bags/ros2_definitions.hpp"
 #include "scenarios/recordings/bags/ros2_metadata.hpp"
 #include "scenarios/recordings/replace_file.hpp"
+#include "scenarios/regular_file.hpp"
 
 namespace tumble::scenarios {
 
@@ -196,9 +197,7 @@ StoredBag storage_of(const path& bag) {
 class Ros2BagReader : public BagReader {
  public:
   explicit Ros2BagReader(std::vector<path> files) : files_(std::move(files)) {
-    for (const path& file : files_) {
-      if (!std::filesystem::is_regular_file(file)) fail_at(file, "no such file");
-    }
+    for (const path& file : files_) require_regular_file(file);
   }
 
   std::vector<BagTopic> topics() override {

@@ -13,6 +13,7 @@
 #include "scenarios/errors.hpp"
 #include "scenarios/recordings/clouds/pcl_reader.hpp"
 #include "scenarios/recordings/clouds/vtk_file.hpp"
+#include "scenarios/regular_file.hpp"
 
 namespace tumble::scenarios {
 
@@ -131,8 +132,7 @@ Cloud read_points(const std::filesystem::path& path, const CloudHeader& header, 
 }
 
 Cloud read_kitti(const std::filesystem::path& path) {
-  std::ifstream stream(path, std::ios::binary);
-  if (!stream || !std::filesystem::is_regular_file(path)) throw BadInput(path.string() + ": no such file");
+  std::ifstream stream = open_regular_file(path);
   const std::uint64_t bytes = std::filesystem::file_size(path);
   constexpr std::uint64_t kPointBytes = kKittiColumns * sizeof(float);
   if (bytes % kPointBytes != 0) {
@@ -158,11 +158,6 @@ const std::vector<double>* Cloud::find(const std::string& name) const {
 }
 
 Cloud read_cloud(const std::filesystem::path& path) {
-  std::error_code error;
-  const std::filesystem::file_status found = std::filesystem::status(path, error);
-  // asked first: to open a pipe that nobody writes to waits for ever
-  if (std::filesystem::exists(found) && !std::filesystem::is_regular_file(found))
-    throw BadInput(path.string() + ": no such file");
   const std::string ending = path.extension().string();
   if (ending == ".ply") return read_points(path, read_ply_header(path), PclFormat::ply);
   if (ending == ".pcd") return read_points(path, read_pcd_header(path), PclFormat::pcd);

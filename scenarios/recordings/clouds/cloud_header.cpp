@@ -9,6 +9,7 @@
 
 #include "scenarios/errors.hpp"
 #include "scenarios/recordings/clouds/cloud_file.hpp"
+#include "scenarios/regular_file.hpp"
 #include "scenarios/text.hpp"
 
 namespace tumble::scenarios {
@@ -23,8 +24,7 @@ constexpr std::size_t kCloudHeaderMax = 65536;
 /// The lines of a header, with their place.
 class HeaderLines {
  public:
-  explicit HeaderLines(const std::filesystem::path& path) : path_(path), stream_(path, std::ios::binary) {
-    if (!stream_ || !std::filesystem::is_regular_file(path)) throw BadInput(path.string() + ": no such file");
+  explicit HeaderLines(const std::filesystem::path& path) : path_(path), stream_(open_regular_file(path)) {
     bytes_in_file_ = std::filesystem::file_size(path);
   }
 

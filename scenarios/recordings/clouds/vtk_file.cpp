@@ -8,23 +8,18 @@
 #include <string_view>
 
 #include "scenarios/errors.hpp"
+#include "scenarios/regular_file.hpp"
 #include "scenarios/text.hpp"
 
 namespace tumble::scenarios {
 
 namespace {
 
-/// As much of a word as a message has room for.
-std::string shortened(std::string_view word) {
-  return std::string(word.substr(0, 40));
-}
-
 /// The words of a text, and the lines on which they stand.
 class VtkWords {
  public:
   explicit VtkWords(const std::filesystem::path& path) : name_(path.string()) {
-    std::ifstream stream(path, std::ios::binary);
-    if (!stream || !std::filesystem::is_regular_file(path)) throw BadInput(name_ + ": no such file");
+    std::ifstream stream = open_regular_file(path);
     text_.assign(std::istreambuf_iterator<char>(stream), std::istreambuf_iterator<char>());
   }
 

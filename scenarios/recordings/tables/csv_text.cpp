@@ -8,6 +8,7 @@
 #include <system_error>
 
 #include "scenarios/errors.hpp"
+#include "scenarios/regular_file.hpp"
 #include "scenarios/text.hpp"
 
 namespace tumble::scenarios {
@@ -46,11 +47,7 @@ void require_lines(const std::string& name, std::string_view text) {
 }  // namespace
 
 CsvText::CsvText(const std::filesystem::path& path, char separator) : name_(path.string()), separator_(separator) {
-  // asked first: to open a pipe that nobody writes to waits for ever
-  std::error_code error;
-  if (!std::filesystem::is_regular_file(path, error)) throw BadInput(name_ + ": no such file");
-  std::ifstream stream(path, std::ios::binary);
-  if (!stream) throw BadInput(name_ + ": cannot be read");
+  std::ifstream stream = open_regular_file(path);
   text_.assign(std::istreambuf_iterator<char>(stream), std::istreambuf_iterator<char>());
   if (stream.bad()) throw BadInput(name_ + ": cannot be read");
   if (text_.empty()) throw BadInput(name_ + ": is empty");

@@ -3,12 +3,14 @@
 #include <array>
 #include <fstream>
 #include <string>
+#include <system_error>
 #include <vector>
 
 #include "scenarios/errors.hpp"
 #include "scenarios/recordings/table_file.hpp"
 #include "scenarios/recordings/trajectories/reference.hpp"
 #include "scenarios/recordings/whole_seconds.hpp"
+#include "scenarios/regular_file.hpp"
 
 namespace tumble::scenarios {
 
@@ -31,11 +33,14 @@ constexpr std::array<const char*, 9> kOdometryColumns = {
     "pose.pose.orientation.w",
 };
 
-/// Of a longer line one byte more than a header may have: a file without line ends is not read whole for it.
+/// Empty where no regular file is. Of a longer line one byte more than a header may have: a file without line ends is
+/// not read whole for it.
 std::string odometry_header(const std::filesystem::path& file) {
+  std::error_code error;
+  if (!std::filesystem::is_regular_file(file, error)) return "";
   std::ifstream stream(file, std::ios::binary);
   std::string line(kHeaderMax_bytes + 2, '\0');
-  if (std::filesystem::is_regular_file(file)) stream.getline(line.data(), static_cast<std::streamsize>(line.size()));
+  stream.getline(line.data(), static_cast<std::streamsize>(line.size()));
   line.resize(std::min(line.find('\0'), line.size()));
   if (line.ends_with('\r')) line.pop_back();
   return line;
@@ -74,6 +79,7 @@ bool is_odometry(const std::filesystem::path& file) {
 }
 
 std::vector<ReferencePose> read_odometry_poses(const std::filesystem::path& file) {
+  require_regular_file(file);
   const std::string header = odometry_header(file);
   if (header.size() > kHeaderMax_bytes) {
     throw BadInput(file.string() + ":1: the header has more than " + std::to_string(kHeaderMax_bytes) + " bytes");

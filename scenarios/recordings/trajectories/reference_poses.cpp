@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <fstream>
@@ -9,6 +11,7 @@
 #include "scenarios/errors.hpp"
 #include "scenarios/recordings/table_file.hpp"
 #include "scenarios/recordings/trajectories/reference.hpp"
+#include "scenarios/regular_file.hpp"
 
 namespace tumble::scenarios {
 
@@ -54,6 +57,9 @@ Eigen::Matrix<double, 3, 4> kitti_matrix(const Table& table, const Table::Row& r
 
 std::string problem_of(ReferencePose& pose, const ReferencePose* before) {
   if (!pose.p_WA_m.allFinite() || !pose.q_WA.coeffs().allFinite()) return "the pose is not finite";
+  constexpr double kFurthest_m = 1e9;  // beyond any place on Earth, by whatever origin it is counted
+  if (const double far_m = pose.p_WA_m.cwiseAbs().maxCoeff(); far_m > kFurthest_m)
+    return fmt::format("a position of {:.3g} m, must be within {:.0g} m of the origin", far_m, kFurthest_m);
   const double norm = pose.q_WA.norm();
   if (!(std::abs(norm - 1.0) <= kReferenceNormTolerance))
     return "quaternion of norm " + std::to_string(norm) + ", must be 1 within a percent";
@@ -65,8 +71,7 @@ std::string problem_of(ReferencePose& pose, const ReferencePose* before) {
 }
 
 std::string pose_format(const std::filesystem::path& file) {
-  std::ifstream stream(file);
-  if (!stream || !std::filesystem::is_regular_file(file)) throw BadInput(file.string() + ": no such file");
+  std::ifstream stream = open_regular_file(file);
   if (is_odometry(file)) return "odometry";
   std::string line;
   while (std::getline(stream, line) && (line.empty() || line.front() == '#' || line.front() == '\r')) {

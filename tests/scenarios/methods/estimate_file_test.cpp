@@ -119,7 +119,7 @@ TEST_F(EstimateFile, ReadsATumFileOfSomebodyElse) {
 }
 
 TEST_F(EstimateFile, ComplaintsNameFileAndLine) {
-  EXPECT_NE(complaint(folder_ / "absent.tum").find("absent.tum: cannot be read"), std::string::npos);
+  EXPECT_NE(complaint(folder_ / "absent.tum").find("absent.tum: no such file"), std::string::npos);
   EXPECT_NE(complaint(write("a.tum", "0 1 2 3 0 0 0 1\n0.1 1 2 3 0 0 0\n")).find("a.tum:2: 7 columns, must be 8"),
             std::string::npos);
   EXPECT_NE(complaint(write("b.tum", "0 1 2 x 0 0 0 1\n")).find("b.tum:1: 'x' is not a number"), std::string::npos);
@@ -135,6 +135,19 @@ TEST_F(EstimateFile, ComplaintsNameFileAndLine) {
             std::string::npos);
   EXPECT_NE(complaint(write("e.tum", "")).find("no pose"), std::string::npos);
   EXPECT_NE(complaint(folder_).find("estimate.json"), std::string::npos);
+  for (const auto& [text, says] : std::vector<std::pair<std::string, std::string>>{
+           {"null", "not a JSON object"},
+           {R"({"format": "1"})", R"('format' is "1", must be 1)"},
+           {R"({"format": 1})", "'method' is missing"},
+           {R"({"format": 1, "method": 5})", "'method' is 5, must be a text"},
+           {R"({"format": 1, "method": "a", "kind": "slan"})",
+            R"('kind' is "slan", must be one of rate, attitude, position, slam)"},
+           {R"({"format": 1, "method": "a", "kind": "rate", "frame": "imu", "status": null})",
+            "'status' is null, must be an object"},
+           {R"({"format": 1, "method": "a", "kind": "rate", "frame": "imu", "status": {}})", "'trouble' is missing"}}) {
+    write("estimate.json", text);
+    EXPECT_NE(complaint(folder_).find("estimate.json: " + says), std::string::npos) << complaint(folder_);
+  }
   write("estimate.json", "{\"format\": 1, ");
   EXPECT_NE(complaint(folder_).find("estimate.json"), std::string::npos);
 }

@@ -2,14 +2,20 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cstdint>
 #include <limits>
 #include <string>
 
+#include "scenarios/draw/distribution.hpp"
+#include "scenarios/draw/scenario.hpp"
 #include "scenarios/errors.hpp"
 #include "scenarios/methods/bridge.hpp"
+#include "scenarios/methods/doubts.hpp"
 #include "scenarios/methods/rate_tumble.hpp"
 #include "scenarios/methods/registry.hpp"
 #include "scenarios/methods/synthetic_recording.hpp"
+#include "scenarios/sweep/evaluate.hpp"
+#include "tests/tree.hpp"
 
 namespace tumble::scenarios {
 namespace {
@@ -86,8 +92,47 @@ TEST(RateLearnt, BatchAndStreamStartFromWhatEitherHasLearnt) {
     // in the middle of the first rest the rate is the reading less the bias: that of the other run is forgotten
     EXPECT_LT(informed.rates[150].w_WI_I_rad_s.norm(), 1e-3) << name;
     const bool held = informed.health.at("calibration_at_prior") > 0.5, batch = std::string(name) == "rate/tumble";
-    EXPECT_EQ((batch ? learning.of_batch : learning.of_stream).has_value(), !held) << name;
+    const bool doubted = has_doubt({Doubt::About::learnt_rig}, informed);
+    EXPECT_EQ((batch ? learning.of_batch : learning.of_stream).has_value(), !held && !doubted) << name;
     EXPECT_FALSE((batch ? learning.of_stream : learning.of_batch).has_value()) << name;
+  }
+}
+
+/// Draws of `hill` with one rig for all of them.
+sim::Sensors hill_of_one_rig(std::uint64_t seed) {
+  constexpr std::uint64_t kRig = 96001;
+  const DataRoot data{test::source_dir()};
+  Scenario scenario = load_scenario(data, "hill");
+  for (auto& [name, number] : scenario.robot.numbers) {
+    const double value = draw_number(number, kRig, "robot." + name);
+    number = {};
+    number.numbers = {value};
+  }
+  return simulate_draw(data, scenario, seed, 1, Lidars::left_out).recording.sensors;
+}
+
+// the estimator is sure of what it was given, and takes what contradicts it for contact
+TEST(RateLearnt, AnotherRigsInertiaIsDoubtedAndNotPassedOn) {
+  const Method& batch = *find_methods("rate/tumble").front();
+  Learning first;
+  learning_method(batch, first).run(hill_of_one_rig(96100), {}, {});
+  ASSERT_TRUE(first.of_batch);
+  for (std::uint64_t seed = 96101; seed <= 96108; ++seed) {
+    Learning right{first.of_batch, {}, {}};
+    const Estimate estimate = learning_method(batch, right).run(hill_of_one_rig(seed), {}, {});
+    EXPECT_FALSE(has_doubt({Doubt::About::learnt_rig}, estimate)) << seed << ' ' << estimate.doubts.front().value;
+    EXPECT_EQ(estimate.health.at("learnt_rig_contradicted"), 0.0);
+  }
+  const sim::Sensors sensors = hill_of_one_rig(96101);
+  for (const char* const name : {"rate/tumble", "rate/tumble_lag"}) {
+    for (const int shape : {0, 2, 4}) {
+      Learning other{first.of_batch, {}, {}};
+      other.given->calibration.constants.inertia[shape] += 0.3;
+      const Estimate estimate = learning_method(*find_methods(name).front(), other).run(sensors, {}, {});
+      EXPECT_TRUE(has_doubt({Doubt::About::learnt_rig}, estimate)) << name << ' ' << shape;
+      EXPECT_GT(estimate.health.at("learnt_rig_contradicted"), 2.0);
+      EXPECT_EQ(other.found(), nullptr) << "the file stays as it is";
+    }
   }
 }
 

@@ -294,7 +294,7 @@ TEST_F(ImportCsv, BadInputHasFileAndLine) {
       << "a last number may be cut in its middle";
   EXPECT_THAT(fixture::complaint([&] { import_imu_csv(folder_ / "none.csv", {}); }),
               HasSubstr("none.csv: no such file"));
-  EXPECT_THAT(fixture::complaint([&] { import_imu_csv(folder_, {}); }), HasSubstr("no such file"));
+  EXPECT_THAT(fixture::complaint([&] { import_imu_csv(folder_, {}); }), HasSubstr("is a folder, must be a file"));
 }
 
 TEST_F(ImportCsv, BytesThatAreNoLinesOfTextAreCalledSo) {
@@ -314,7 +314,7 @@ TEST_F(ImportCsv, BytesThatAreNoLinesOfTextAreCalledSo) {
 TEST_F(ImportCsv, APipeIsRefusedAndNotWaitedFor) {
   ASSERT_EQ(mkfifo((folder_ / "pipe.csv").c_str(), 0600), 0);
   EXPECT_THAT(fixture::complaint([&] { import_imu_csv(folder_ / "pipe.csv", {}); }),
-              HasSubstr("pipe.csv: no such file"));
+              HasSubstr("pipe.csv: is a pipe, must be a regular file"));
 }
 
 class ImportBroad : public fixture::Folder, public ::testing::WithParamInterface<test::DataFolder> {

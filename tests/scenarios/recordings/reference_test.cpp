@@ -118,6 +118,8 @@ TEST_F(Reference, BadLinesAreNamed) {
   EXPECT_THAT(complaint(good + "1.5 1 0 0 0 0 0 1\n"), HasSubstr("a.txt:4: stamp 1500000000 ns does not rise"));
   EXPECT_THAT(complaint(good + "1.2 1 0 0 0 0 0 1\n"), HasSubstr("a.txt:4: stamp 1200000000 ns does not rise"));
   EXPECT_THAT(complaint(good + "1.6 nan 0 0 0 0 0 1\n"), HasSubstr("a.txt:4: the pose is not finite"));
+  EXPECT_THAT(complaint(good + "1.6 0 -1e308 0 0 0 0 1\n"),
+              HasSubstr("a.txt:4: a position of 1e+308 m, must be within 1e+09 m of the origin"));
   EXPECT_THAT(complaint(good + "1.6 0 0 0 0 0 0 2\n"), HasSubstr("a.txt:4: quaternion of norm 2.0"));
   EXPECT_THAT(complaint(good + "1.6 0 0 0 0 0 0\n"), HasSubstr("a.txt:4: 7 columns, must be 8"));
   EXPECT_THAT(complaint("1.0 0 0 0 0 0 0 1\n"), HasSubstr("holds 1 poses, needs 2"));

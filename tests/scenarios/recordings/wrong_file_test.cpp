@@ -78,7 +78,7 @@ TEST_F(WrongFile, AbsentForeignOrFolder) {
     return fixture::complaint([&] { read_sensors(path); });
   };
   EXPECT_EQ(complaint_of(folder_ / "none.h5"), (folder_ / "none.h5").string() + ": no such file");
-  EXPECT_EQ(complaint_of(folder_), folder_.string() + ": is not a regular file");
+  EXPECT_EQ(complaint_of(folder_), folder_.string() + ": is a folder, must be a file");
   fixture::put(folder_ / "text.h5", "scenario: hill\n");
   EXPECT_THAT(complaint_of(folder_ / "text.h5"), HasSubstr("text.h5: truncated, damaged or not an HDF5 file"));
   const hid_t foreign = H5Fcreate((folder_ / "foreign.h5").c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, H5P_DEFAULT);

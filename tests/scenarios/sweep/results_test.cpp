@@ -268,7 +268,8 @@ TEST_F(ResultsTest, APipeAndAFolderAreRefused) {
     std::filesystem::remove(path());
     ASSERT_EQ(pipe ? mkfifo(path().c_str(), 0600) : mkdir(path().c_str(), 0700), 0);
     for (const Results::Mode mode : {Results::Mode::read_only, Results::Mode::create_or_append})
-      EXPECT_NE(complaint(mode).find("not a results database, but a folder, a pipe or a device"), std::string::npos)
+      EXPECT_NE(complaint(mode).find(pipe ? "is a pipe, must be a regular file" : "is a folder, must be a file"),
+                std::string::npos)
           << complaint(mode);
   }
 }

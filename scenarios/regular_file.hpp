@@ -1,0 +1,52 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <cerrno>
+#include <cstring>
+#include <filesystem>
+#include <fstream>
+#include <string>
+#include <system_error>
+
+#include "scenarios/errors.hpp"
+
+namespace tumble::scenarios {
+
+/// Throws BadInput unless something stands at `path`, symbolic links followed, that is no folder: what is read once,
+/// from its beginning to its end, may be a pipe.
+inline std::filesystem::file_status require_file(const std::filesystem::path& path) {
+  std::error_code error;
+  const std::filesystem::file_status found = std::filesystem::status(path, error);
+  // a path that leads through a file, and a link to nothing, are absent too
+  if (found.type() == std::filesystem::file_type::not_found) throw BadInput(path.string() + ": no such file");
+  if (error) throw BadInput(path.string() + ": cannot be read: " + error.message());
+  if (std::filesystem::is_directory(found)) throw BadInput(path.string() + ": is a folder, must be a file");
+  return found;
+}
+
+/// Throws BadInput unless a regular file stands at `path`, symbolic links followed; the message says what does instead.
+/// Asked before a file is opened: to open a pipe that nobody writes to waits for ever, and devices have no end.
+inline void require_regular_file(const std::filesystem::path& path) {
+  switch (require_file(path).type()) {
+    case std::filesystem::file_type::regular:
+      return;
+    case std::filesystem::file_type::fifo:
+      throw BadInput(path.string() + ": is a pipe, must be a regular file");
+    case std::filesystem::file_type::socket:
+      throw BadInput(path.string() + ": is a socket, must be a regular file");
+    default:
+      throw BadInput(path.string() + ": is a device, must be a regular file");
+  }
+}
+
+/// A regular file, opened to be read by bytes. Throws BadInput: no regular file (above), or no permission.
+inline std::ifstream open_regular_file(const std::filesystem::path& path) {
+  require_regular_file(path);
+  errno = 0;
+  std::ifstream stream(path, std::ios::binary);
+  if (!stream)
+    throw BadInput(path.string() + ": cannot be read" + (errno ? std::string(": ") + std::strerror(errno) : ""));
+  return stream;
+}
+
+}  // namespace tumble::scenarios
