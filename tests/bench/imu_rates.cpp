@@ -1,22 +1,27 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // imu_rates SCENARIO FIRST LAST KIND/METHOD... [--rate HZ]... [--set NUMBER=VALUE]... [--keep FOLDER] [--draws]: the
 // same draws with IMUs of other rates, and with other numbers of a data sheet (`gyro_range_rad_s=8.7`; SCENARIO may be
-// the path of a file, with other devices). A line per method and rate: its error (rate: median at clipped samples;
-// attitude: inclination; position: at the end; slam: ate_m; median and mean over the draws), both against the
-// scenario's own rate, the share within three reported deviations (slam: of the draws whose last pose lies within the
-// 99.7 % of its NEES), that of the worst draw, and the CPU time against the length of the recording. FOLDER keeps the
-// recordings (of one set of numbers); --draws prints a line a draw too. Not a test: 2 to 10 s a draw and rate.
+// the path of a file, with other devices). A line per method and rate: how many draws have a figure; the error (rate:
+// median at clipped samples; attitude: inclination; position: at the end; slam: ate_m), median and mean over the draws;
+// both against the scenario's own rate; pair by pair, the median over the draws of a draw's error against its own at
+// that rate, with its 95 % interval (BCa, statistics.md (S1) to (S4)); the same median of the oracle of that kind,
+// where it is among the methods: what the sensor allows; the share within three deviations (slam: of the draws whose
+// last pose lies within the 99.7 % of its NEES), that of the worst draw, and the CPU time against the length of the
+// recording. FOLDER keeps the recordings (of one set of numbers); --draws prints a line a draw too. Not a test: 2 to
+// 10 s a draw and rate.
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
 #include <filesystem>
+#include <map>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include "scenarios/draw/scenario.hpp"
 #include "scenarios/draw/without_lidars.hpp"
+#include "scenarios/statistics/bootstrap.hpp"
 #include "scenarios/statistics/statistics.hpp"
 #include "scenarios/sweep/evaluate.hpp"
 #include "tests/bench/kept_recording.hpp"
@@ -110,10 +115,28 @@ Metrics metrics_of(Kind kind) {
 
 /// One method at one rate, over the draws.
 struct Pool {
-  std::vector<double> error, coverage;
+  std::map<std::uint64_t, double> error_of;  ///< by seed: of the draws that have one
+  std::vector<double> coverage;
   double cpu_s = 0.0, length_s = 0.0;
   int failed = 0;
 };
+
+std::vector<double> errors(const Pool& pool) {
+  std::vector<double> out;
+  for (const auto& [seed, error] : pool.error_of) out.push_back(error);
+  return out;
+}
+
+/// Of each draw that has an error at both rates, the one against the other; median with its interval.
+scenarios::Interval paired(const Pool& pool, const Pool& own) {
+  std::vector<double> ratios;
+  for (const auto& [seed, error] : pool.error_of) {
+    const auto other = own.error_of.find(seed);
+    if (other != own.error_of.end() && other->second > 0.0) ratios.push_back(error / other->second);
+  }
+  if (ratios.empty()) return {std::nan(""), std::nan(""), std::nan("")};
+  return scenarios::MedianBootstrap(ratios.size()).interval(ratios);
+}
 
 double mean(const std::vector<double>& values) {
   double sum = 0.0;
@@ -136,7 +159,7 @@ void add(const scenarios::Method& method, const scenarios::SimulatedDraw& draw, 
   const Metrics metrics = metrics_of(method.info.kind);
   for (const scenarios::Score& score : outcome.scores) {
     if (std::isnan(score.value)) continue;
-    if (score.metric == metrics.error) pool.error.push_back(score.value);
+    if (score.metric == metrics.error) pool.error_of[draw.seed] = score.value;
     if (score.metric != metrics.coverage) continue;
     const bool nees = method.info.kind == Kind::slam;
     pool.coverage.push_back(nees ? static_cast<double>(score.value <= kPoseNees) : score.value);
@@ -149,11 +172,15 @@ void add(const scenarios::Method& method, const scenarios::SimulatedDraw& draw, 
   std::printf("\n");
 }
 
-void print(const std::string& name, double rate_hz, const Pool& pool, const Pool& own) {
-  const double median = scenarios::quantile(pool.error, 0.5);
-  std::printf("%-22s %6.0f %9.5f %9.5f %7.2f %7.2f %8.2f %7.2f %7.2f", name.c_str(), rate_hz, median, mean(pool.error),
-              median / scenarios::quantile(own.error, 0.5), mean(pool.error) / mean(own.error),
-              100.0 * mean(pool.coverage), 100.0 * scenarios::quantile(pool.coverage, 0.0), pool.cpu_s / pool.length_s);
+/// `oracle`: the oracle's median of pairs, NaN where there is none.
+void print(const std::string& name, double rate_hz, const Pool& pool, const Pool& own, double oracle) {
+  const std::vector<double> error = errors(pool), own_error = errors(own);
+  const double median = scenarios::quantile(error, 0.5);
+  const scenarios::Interval pairs = paired(pool, own);
+  std::printf("%-22s %6.0f %3zu %9.5f %9.5f %7.2f %7.2f  %5.2f (%4.2f to %4.2f) %6.2f %8.2f %7.2f %7.2f", name.c_str(),
+              rate_hz, error.size(), median, mean(error), median / scenarios::quantile(own_error, 0.5),
+              mean(error) / mean(own_error), pairs.value, pairs.low, pairs.high, oracle, 100.0 * mean(pool.coverage),
+              100.0 * scenarios::quantile(pool.coverage, 0.0), pool.cpu_s / pool.length_s);
   if (pool.failed > 0) std::printf("  not ok: %d", pool.failed);
   std::printf("\n");
   std::fflush(stdout);
@@ -167,8 +194,8 @@ int run(const Request& request) {
       std::any_of(methods.begin(), methods.end(), [](const auto& method) { return method->info.kind == Kind::slam; });
   std::printf("%s, draws %llu to %llu; 0 Hz: as the scenario has it\n", request.scenario.c_str(),
               static_cast<unsigned long long>(request.first), static_cast<unsigned long long>(request.last));
-  std::printf("%-22s %6s %9s %9s %7s %7s %8s %7s %7s\n", "method", "Hz", "median", "mean", "against", "against",
-              "within", "worst", "cpu");
+  std::printf("%-22s %6s %3s %9s %9s %7s %7s  %-20s %6s %8s %7s %7s\n", "method", "Hz", "n", "median", "mean",
+              "against", "against", "pairs", "oracle", "within", "worst", "cpu");
   std::vector<Pool> own(methods.size());
   std::vector<double> rates_hz = {0.0};
   rates_hz.insert(rates_hz.end(), request.rates_hz.begin(), request.rates_hz.end());
@@ -179,7 +206,14 @@ int run(const Request& request) {
       for (std::size_t m = 0; m < methods.size(); ++m) add(*methods[m], draw, request.draws, pools[m]);
     });
     if (rate_hz == 0.0) own = pools;
-    for (std::size_t m = 0; m < methods.size(); ++m) print(request.methods[m], rate_hz, pools[m], own[m]);
+    for (std::size_t m = 0; m < methods.size(); ++m) {
+      double oracle = std::nan("");
+      for (std::size_t o = 0; o < methods.size(); ++o) {
+        if (methods[o]->info.kind != methods[m]->info.kind || methods[o]->info.name != "oracle") continue;
+        oracle = paired(pools[o], own[o]).value;
+      }
+      print(request.methods[m], rate_hz, pools[m], own[m], oracle);
+    }
   }
   return 0;
 }
