@@ -204,6 +204,18 @@ Door restored_door(std::span<const std::byte> bytes) {
   return out;
 }
 
+void bind_unit(nb::module_& m) {
+  using U = ImuMergeUnit;
+  nb::class_<U>(m, "SphereUnit", "What the IMUs of a sphere say of one of them. Of one alone nothing is said.")
+      .def_ro("frozen", &U::frozen, "it repeats itself while the others move")
+      .def_ro("disagrees", &U::disagrees, "it is off from the others for long, and left out")
+      .def_ro("left_out", &U::left_out, "windows in which it was left out of the force")
+      .def_ro("absent", &U::absent, "samples that were not finite")
+      .def_prop_ro("time_offset_s", &U::offset_s, "of its clock about the mean of all")
+      .def_prop_ro(
+          "rate_bias_rad_s", [](const U& u) { return whole<3>(u.x.data()); }, "(3,), about the mean of all");
+}
+
 void bind_door(nb::module_& m) {
   using Object = Guarded<Door>;
   nb::class_<Object> bound(
@@ -268,6 +280,19 @@ void bind_door(nb::module_& m) {
       .def(
           "reset", [](Object& self) { self.run([](Door& door) { door.odometry.reset(); }); },
           "Begins a new run: at the origin, at rest.")
+      .def_prop_ro(
+          "mended_jitter_s",
+          [](Object& self) { return self.run([](Door& door) { return door.odometry.mended_jitter_s(); }); },
+          "standard deviation of the stamps about a regular clock, while that clock's times count for them; else None")
+      .def_prop_ro(
+          "units",
+          [](Object& self) {
+            return self.run([](Door& door) {
+              const auto& all = door.odometry.units().units;
+              return std::vector<ImuMergeUnit>(all.begin(), all.begin() + static_cast<std::ptrdiff_t>(door.units));
+            });
+          },
+          "What the units say of each other, in their order.")
       .def_static("parameters", [] { return list_fields(RollingOdometry::Params{}, kOfTheDoor); });
   bind_copy<Object>(bound);
   bind_saving<Door>(bound, &restored_door);
@@ -284,6 +309,7 @@ void bind_rolling(nb::module_& m) {
       .value("rough", RollingMode::rough, "it stands still, the floor goes up and down");
   bind_filter(m);
   bind_rolling_smoother(m);
+  bind_unit(m);
   bind_door(m);
 }
 

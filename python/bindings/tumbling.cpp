@@ -146,6 +146,16 @@ void bind_talk(Class& bound) {
           },
           "T_IL, the clocks' offset and gravity as estimated so far.")
       .def(
+          "calibration_covariance",
+          [](TumblingDoor& self) {
+            const auto P =
+                self.run([](TumblingOdometry& odometry) { return odometry.mapper().calibration_covariance(); });
+            constexpr int kErrors = SweepCalibration::kErrors;
+            const nb::object all = nb::cast(owned(std::vector<double>(P.data(), P.data() + P.size())));
+            return nb::cast<Doubles>(all.attr("reshape")(kErrors, kErrors).attr("copy")());
+          },
+          "(N, N), of its errors; 0 where not estimated.")
+      .def(
           "open_trajectory",
           [](TumblingDoor& self) {
             return joined(self.run([](TumblingOdometry& odometry) { return odometry.mapper().open_trajectories(); }));
@@ -167,6 +177,29 @@ void bind_talk(Class& bound) {
           "gaps",
           [](TumblingDoor& self) { return self.run([](TumblingOdometry& odometry) { return odometry.gaps(); }); },
           "of the IMU, after which the rates began anew")
+      .def_prop_ro(
+          "refused_samples",
+          [](TumblingDoor& self) {
+            return self.run([](TumblingOdometry& odometry) { return odometry.refused_samples(); });
+          },
+          "that the mapper did not take with their rates: 0 unless something is wrong")
+      .def_prop_ro(
+          "newest_ns",
+          [](TumblingDoor& self) { return self.run([](TumblingOdometry& odometry) { return odometry.newest_ns(); }); },
+          "time of the newest sample that was taken in; None before the first")
+      .def_prop_ro(
+          "mended_jitter_s",
+          [](TumblingDoor& self) {
+            return self.run([](TumblingOdometry& odometry) { return odometry.mended_jitter_s(); });
+          },
+          "standard deviation of the IMU's stamps about a regular clock, while that clock's times count for them; else "
+          "None")
+      .def_prop_ro(
+          "sweep_scale",
+          [](TumblingDoor& self) {
+            return self.run([](TumblingOdometry& odometry) { return odometry.sweep_scale(); });
+          },
+          "by how much the lidar's ranges are longer than the IMU has it, as far as the motion told")
       .def_prop_ro(
           "passed_again",
           [](TumblingDoor& self) {
@@ -192,6 +225,11 @@ void bind_tumbling(nb::module_& m) {
           "placed", [](const Sweep& s) { return !s.report.trajectory.empty(); },
           "whether it has poses; one that begins before the IMU has none")
       .def_ro("report", &Sweep::report);
+  nb::class_<SweepScale>(m, "SweepScale", "By how much ways between sweeps are longer than the IMU has it.")
+      .def_ro("scale", &SweepScale::scale)
+      .def_ro("sigma", &SweepScale::sigma, "its standard deviation; infinite while nothing was compared")
+      .def_ro("changes", &SweepScale::changes, "of velocity that were compared")
+      .def_prop_ro("is_off", &SweepScale::is_off, "further from 1 than 2 % and than five of its deviations");
   nb::class_<TumblingDoor> bound(
       m, "TumblingOdometry",
       "Pose, velocity and map of a body that tumbles, from one IMU whose gyro may clip and a lidar whose sweeps are "

@@ -175,6 +175,10 @@ Status RollingOdometry::leave_out_frozen(const Frozen& states, std::span<ImuSamp
   return any && !heard ? doubt(states) : Status{};
 }
 
+std::optional<double> RollingOdometry::mended_jitter_s() const {
+  return clock_.mends(stamps_) ? SampleClock::jitter_s(stamps_) : std::nullopt;
+}
+
 Status RollingOdometry::doubt(const Frozen& frozen) const {
   for (std::size_t unit = 0; unit < watches_.size(); ++unit) {
     Status status = watches_[unit].verdict(frozen[unit]);

@@ -109,6 +109,9 @@ class RollingOdometry {
   /// What the IMUs say of each other: frozen, disagreeing, late ones.
   const ImuMerge::State& units() const { return *merge_state_; }
 
+  /// As TumblingOdometry::mended_jitter_s: of the stamps [s].
+  std::optional<double> mended_jitter_s() const;
+
   /// As TumblingOdometry::save and load: a state of up to a megabyte, less at rest, and what the lag holds.
   std::vector<std::byte> save() const;
   Status load(std::span<const std::byte> bytes);
