@@ -74,8 +74,8 @@ struct Learning {
 };
 
 /// How far what two runs have learnt of a rig is apart, in deviations of the difference per root of the unknowns: of
-/// lever arm and inertia, the larger. Of one rig 0.3 to 1.0 in eighteen pairs of runs down a hill, 2.3 and more with an
-/// inertia of 30 % off. `trust` as start_from has it, of `before`.
+/// lever arm and inertia, the larger. Of one rig 0.14 to 1.0 in eighteen pairs of runs down a hill, 2.3 and more with
+/// an inertia of 30 % off. `trust` as start_from has it, of `before`.
 double distance_of_rigs(const RigCalibration& before, const RigCalibration& now, double trust);
 
 /// `method` as a method that starts from and adds to `learning`, which must outlive it. One that starts from something
