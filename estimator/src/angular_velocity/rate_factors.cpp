@@ -159,21 +159,4 @@ RateFactor euler_factor(const RateKnot& knot, const RigConstants& rig) {
   return f;
 }
 
-// rate_smoother.md (R18c), (R18d)
-Vector3d flight_in_window(const RateKnot& knot, const RigConstants& rig) {
-  const Vector3d &w = knot.rate_rad_s, &alpha = knot.acceleration_rad_s2, &t = rig.lever_arm_m;
-  const Vector3d j = jerk_of(knot, rig).value, along = alpha.cross(t);
-  return w.cross(j.cross(t)) - w.cross(j).cross(t) - w.cross(w.cross(alpha).cross(t)) + 1.5 * w.cross(w.cross(along)) -
-         0.5 * w.squaredNorm() * w.cross(w.cross(t));
-}
-
-// rate_smoother.md (R18e)
-Vector3d euler_in_window(const RateKnot& knot, const RigConstants& rig) {
-  const Vector3d &w = knot.rate_rad_s, &alpha = knot.acceleration_rad_s2;
-  const Jerk jerk = jerk_of(knot, rig);
-  const Vector3d coning = w.cross(alpha);
-  return alpha.cross(jerk.Ja) - jerk.J * w.cross(jerk.value) - coning.cross(jerk.Jw) -
-         w.cross(Vector3d(jerk.J * coning));
-}
-
 }  // namespace tumble

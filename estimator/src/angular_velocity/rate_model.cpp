@@ -139,7 +139,6 @@ RateModel::RateModel(const RateModelParams& params, double period_s) : params_(p
   gyro_sigma_rad_s_ = params.gyro_noise_density * std::sqrt(bandwidth_hz);  // rate_smoother.md (R5)
   accel_noise_m_s2_ = params.accel_noise_density * std::sqrt(bandwidth_hz);
   accel_sigma_m_s2_ = std::hypot(params.expert.flight.sigma_m_s2, accel_noise_m_s2_);
-  window_s2_ = params.expert.readings.integrated_share * period_s * period_s / 12.0;
   share_ = std::min(1.0, period_s / params.expert.model_error_s);
   exact_ = params.errors == SensorErrors{};
   prior_constants_ = params.calibration ? params.calibration->constants : params.nominal;
@@ -156,7 +155,7 @@ void RateModel::weigh(const RateObservation& observation, const RigConstants& ri
                       RateEstimate& estimate) const {
   RateFactor flight = flight_by_rig(observation, estimate.knot, rig);
   const Vector3d hidden = read_accel_elements(observation, flight);
-  const RateFactor euler = this->euler(observation, estimate.knot, rig);
+  const RateFactor euler = euler_factor(estimate.knot, rig);
   const double r2 = normalised(flight, flight_spread(flight, rig_covariance), accel_sigma_m_s2(observation), hidden) +
                     normalised(euler, euler_spread(euler, rig_covariance), params_.expert.flight.euler_sigma_rad_s2) +
                     jump;
@@ -247,7 +246,7 @@ void RateModel::add_sample(const RateObservation& observation, const RateEstimat
   }
 
   auto [flight, flight_information] = force_factor(observation, estimate, rig);
-  RateFactor euler = this->euler(observation, estimate.knot, rig);
+  RateFactor euler = euler_factor(estimate.knot, rig);
   Eigen::Matrix3d of_flight = flight_information.asDiagonal(), of_euler = euler_information(estimate);
   if (doubted != nullptr) {
     of_flight = with_doubt(of_flight, flight_spread(flight, *doubted));

@@ -41,26 +41,15 @@ Vector3d RateModel::corrected_rate(const RateObservation& observation, const Rat
          params_.errors.felt_s_m * observation.sample.specific_force_m_s2;
 }
 
-// Of what a window adds: the variance of its instants, less where it turns too far for a series, none of readings that
-// a triad says twice: their windows are its own, and plain means. rate_smoother.md (R18f)
-double RateModel::window_s2(const RateObservation& observation, const RateKnot& knot) const {
-  if (observation.gyro_repeats || observation.gyro_age_s > 0.0 || observation.accel_age_s > 0.0) return 0.0;
-  return window_s2_ / (1.0 + window_s2_ * knot.rate_rad_s.squaredNorm());
-}
-
 RateFactor RateModel::flight(const RateObservation& observation, const RateKnot& knot, const RigConstants& rig,
                              Vector3d* by_delay) const {
   const Vector3d& reading = observation.sample.specific_force_m_s2;
   const double delay_s = params_.errors.accel_delay_s + observation.accel_age_s;
-  RateFactor out;
-  if (exact_ && delay_s == 0.0 && by_delay == nullptr) {
-    out = flight_factor(knot, rig, reading);
-  } else {
-    out = late_flight_factor(knot, rig, reading - params_.errors.accel * reading, delay_s, by_delay);
-    // small beside the rest, so that its derivatives may be left out: rate_smoother.md (R17)
-    out.residual += 0.5 * params_.errors.accel_blur_s2 * flight_curvature(knot, rig);
-  }
-  out.residual += window_s2(observation, knot) * flight_in_window(knot, rig);  // likewise
+  if (exact_ && delay_s == 0.0 && by_delay == nullptr) return flight_factor(knot, rig, reading);
+  const Vector3d force = reading - params_.errors.accel * reading;
+  RateFactor out = late_flight_factor(knot, rig, force, delay_s, by_delay);
+  // small beside the rest, so that its derivatives may be left out: rate_smoother.md (R17)
+  out.residual += 0.5 * params_.errors.accel_blur_s2 * flight_curvature(knot, rig);
   return out;
 }
 
@@ -68,20 +57,9 @@ RateFactor RateModel::flight_by_rig(const RateObservation& observation, const Ra
                                     const RigConstants& rig) const {
   const Vector3d& reading = observation.sample.specific_force_m_s2;
   const double delay_s = params_.errors.accel_delay_s + observation.accel_age_s;
-  RateFactor out;
-  if (exact_ && delay_s == 0.0) {
-    out = flight_factor(knot, rig, reading);
-  } else {
-    out = late_flight_by_rig(knot, rig, reading - params_.errors.accel * reading, delay_s);
-    out.residual += 0.5 * params_.errors.accel_blur_s2 * flight_curvature(knot, rig);
-  }
-  out.residual += window_s2(observation, knot) * flight_in_window(knot, rig);
-  return out;
-}
-
-RateFactor RateModel::euler(const RateObservation& observation, const RateKnot& knot, const RigConstants& rig) const {
-  RateFactor out = euler_factor(knot, rig);
-  out.residual += window_s2(observation, knot) * euler_in_window(knot, rig);
+  if (exact_ && delay_s == 0.0) return flight_factor(knot, rig, reading);
+  RateFactor out = late_flight_by_rig(knot, rig, reading - params_.errors.accel * reading, delay_s);
+  out.residual += 0.5 * params_.errors.accel_blur_s2 * flight_curvature(knot, rig);
   return out;
 }
 

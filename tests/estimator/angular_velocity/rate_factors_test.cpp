@@ -118,41 +118,6 @@ TEST(RateFactors, VanishOnATorqueFreeBody) {
   }
 }
 
-// What a device that integrates makes of a window in free flight, in closed form: the rotation between its ends and the
-// velocity that the lever's end gained, less gravity, in the axes half-way.
-TEST(RateFactors, OfAWindowOfMotionAreThoseOfItsIncrements) {
-  const Vector3d moments(0.75, 1.05, 1.2);
-  RigConstants rig;
-  rig.lever_arm_m = {-0.022, -0.085, 0.055};
-  rig.inertia = RigConstants::inertia_coordinates(moments.asDiagonal());
-  for (const Vector3d& start : {Vector3d(3.0, 12.0, -5.0), Vector3d(14.0, -2.0, 6.0)}) {
-    const oracles::TorqueFreeRotation body(moments, start);
-    for (const double window_s : {0.01, 0.02}) {
-      const auto turn_rad = [&](double middle_s) -> Vector3d {
-        const Eigen::AngleAxisd turn(body.attitude(middle_s - 0.5 * window_s).conjugate() *
-                                     body.attitude(middle_s + 0.5 * window_s));
-        return turn.angle() * turn.axis();
-      };
-      for (const double t : {0.1, 0.4, 1.1}) {
-        constexpr double kStep_s = 1e-4;
-        const Vector3d angle = turn_rad(t), change = turn_rad(t + kStep_s) - turn_rad(t - kStep_s);
-        const RateKnot knot{angle / window_s, change / (2.0 * kStep_s * window_s)};
-        const Eigen::Matrix3d half = Eigen::AngleAxisd(0.5 * angle.norm(), angle.normalized()).toRotationMatrix();
-        const Vector3d before = body.rate(t - 0.5 * window_s).cross(rig.lever_arm_m),
-                       after = body.rate(t + 0.5 * window_s).cross(rig.lever_arm_m);
-        const Vector3d force = (half * after - half.transpose() * before) / window_s;
-
-        const double window_s2 = window_s * window_s / 12.0;
-        const Vector3d flight = flight_factor(knot, rig, force).residual, euler = euler_factor(knot, rig).residual;
-        // the next order is smaller by the square of the turn in a window, 0.28 rad at most
-        EXPECT_LT((flight + window_s2 * flight_in_window(knot, rig)).norm(), 0.03 * flight.norm()) << t;
-        EXPECT_LT((euler + window_s2 * euler_in_window(knot, rig)).norm(), 0.05 * euler.norm()) << t;
-        EXPECT_GT(flight.norm(), window_s2 * 100.0) << "0.03 m/s^2 of it are another millimetre of lever arm";
-      }
-    }
-  }
-}
-
 // What lever and inertia leave of a gyro's scale in flight: rate_smoother.md (R47), (R48). Nothing of a spin about a
 // principal axis.
 TEST(RateFactors, AScaleOfTheGyroShowsByTheAccelerationAlone) {

@@ -59,29 +59,6 @@ TEST(RateSmoother, RecoversTumblesWithTheLeverArmOffByTwentyMillimetres) {
   }
 }
 
-// At 50 Hz the body turns by 0.3 rad in a window, which takes half a percent off its centripetal force.
-TEST(RateSmoother, AWindowInWhichTheBodyTurnsIsNoShorterLever) {
-  double ours_m = 0.0, plain_m = 0.0;
-  for (std::uint64_t seed = 1; seed <= 5; ++seed) {
-    TumbleOptions options;
-    options.seed = options.mounting_seed = seed;
-    options.rate_hz = 50;
-    options.gyro_sigma_rad_s = 3.7e-3;
-    options.accel_sigma_m_s2 = 4.2e-3;
-    options.gyro_rail_rad_s = 30.0;
-    options.integrated = true;
-    auto params = with_wrong_lever_arm<RateSmoother::Params>(0.005, seed);
-    const auto lever_error_m = [&] {
-      return (estimate(options, params).report.calibration.constants.lever_arm_m - options.lever_arm_m).norm();
-    };
-    ours_m += 0.2 * lever_error_m();
-    params.model.expert.readings.integrated_share = 0.0;
-    plain_m += 0.2 * lever_error_m();
-  }
-  EXPECT_LT(ours_m, 1e-4);
-  EXPECT_GT(plain_m, 3.0 * ours_m) << "taken for plain means";
-}
-
 TEST(RateSmoother, HandlesAllAxesClippedAtOnce) {
   TumbleOptions options;
   options.seed = 4;

@@ -135,10 +135,7 @@ TEST(SensorErrors, MoveTheGradientAsTheModelHasIt) {
   for (const double age_s : {0.0, 0.004}) {
     o.gyro_age_s = age_s;
     o.sample.angular_velocity_rad_s = estimate.knot.rate_rad_s - age_s * estimate.knot.acceleration_rad_s2;
-    RateModelParams exact;
-    exact.nominal = rig;
-    exact.expert.readings.integrated_share = 0.0;  // readings of an instant
-    const RateModel model(exact, 0.01);
+    const RateModel model({.nominal = rig}, 0.01);
     arrow::ErrorMatrix block = arrow::ErrorMatrix::Zero();
     arrow::BorderErrors border = arrow::BorderErrors::Zero();
     SensorErrorEvidence evidence;
@@ -149,7 +146,8 @@ TEST(SensorErrors, MoveTheGradientAsTheModelHasIt) {
       arrow::Block blocks[2];
       arrow::Corner corners[2];
       for (int side = 0; side < 2; ++side) {
-        RateModelParams params = exact;
+        RateModelParams params;
+        params.nominal = rig;
         params.errors = SensorErrors::from((side == 0 ? kStep : -kStep) * SensorErrors::Vector::Unit(i));
         RateModel(params, 0.01).add_sample(o, estimate, rig, blocks[side], corners[side]);
       }

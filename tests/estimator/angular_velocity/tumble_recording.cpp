@@ -30,12 +30,6 @@ Vector3d direction(oracles::Gaussian& noise) {
   return noise.vector().normalized();
 }
 
-Quaterniond rotation(const Vector3d& angle_rad) {
-  const double angle = angle_rad.norm();
-  if (!(angle > 0.0)) return Quaterniond::Identity();
-  return Quaterniond(Eigen::AngleAxisd(angle, angle_rad / angle));
-}
-
 // The whole motion at 2 kHz.
 class TumbleMotion {
  public:
@@ -128,31 +122,18 @@ TumbleRecording make_tumble(const TumbleOptions& options) {
   out.inertia = motion.inertia();
   const Eigen::Matrix3d to_axes = options.gyro_rows.inverse();
   for (std::size_t k = 0; (k + 1) * window < moments.size(); ++k) {
-    Vector3d rate = Vector3d::Zero(), force = Vector3d::Zero(), gained = Vector3d::Zero();
-    Quaterniond turned = Quaterniond::Identity();  // from the window's start
+    Vector3d rate = Vector3d::Zero(), force = Vector3d::Zero();
     Phase phase = moments[k * window].phase;
     for (std::size_t i = k * window; i < (k + 1) * window; ++i) {
       const Vector3d& w = moments[i].rate;
       const Vector3d alpha =
           (moments[i + 1].rate - moments[i == 0 ? 0 : i - 1].rate) / (i == 0 ? kStep_s : 2 * kStep_s);
-      const Vector3d felt =
-          moments[i].force_at_centre + alpha.cross(options.lever_arm_m) + w.cross(w.cross(options.lever_arm_m));
-      const Quaterniond half_step = rotation(0.5 * kStep_s * w);
       rate += w;
-      force += felt;
-      turned = turned * half_step;
-      gained += turned * felt;
-      turned = turned * half_step;
+      force += moments[i].force_at_centre + alpha.cross(options.lever_arm_m) + w.cross(w.cross(options.lever_arm_m));
       if (moments[i].phase == Phase::impact) phase = Phase::impact;
     }
     rate /= static_cast<double>(window);
     force /= static_cast<double>(window);
-    if (options.integrated) {
-      const Eigen::AngleAxisd turn(turned);
-      const Vector3d angle_rad = turn.angle() * turn.axis();
-      rate = angle_rad / (static_cast<double>(window) * kStep_s);
-      force = rotation(-0.5 * angle_rad) * gained / static_cast<double>(window);
-    }
     const Vector3d gyro_noise = noise.vector(), accel_noise = noise.vector();
     ImuSample sample;
     sample.time_ns = static_cast<TimeNs>(k + 1) * (1'000'000'000 / options.rate_hz);

@@ -36,14 +36,11 @@ struct TumbleOptions {
   int flights = 8;
   double impact_m_s2 = 150.0;  ///< peak force of an impact, drawn between a third of it and all of it
   bool roll = true;            ///< end by a second of rolling to rest
-  /// The device integrates: a sample is the rotation over its window and the velocity gained by it in the axes
-  /// half-way, both by its length, in place of plain means.
-  bool integrated = false;
 };
 
 struct TumbleRecording {
   std::vector<ImuSample> samples;
-  std::vector<Eigen::Vector3d> truth;  ///< what a gyro without errors reads of each window
+  std::vector<Eigen::Vector3d> truth;  ///< mean of w_WI_I over the window of each sample
   std::vector<Phase> phase;
   std::vector<Eigen::Vector3d> hidden;                ///< what each element's rail took away, signed [rad/s]
   Eigen::Matrix3d inertia = Eigen::Matrix3d::Zero();  ///< in IMU axes

@@ -50,10 +50,4 @@ Eigen::Vector3d flight_curvature(const RateKnot& knot, const RigConstants& rig);
 /// Free flight by Euler's equation without torque, with the inertia scaled to trace 3 [rad/s^2]: J alpha + w x J w.
 RateFactor euler_factor(const RateKnot& knot, const RigConstants& rig);
 
-/// What the window of a sample adds to flight_factor() [m/s^4] and to euler_factor() [rad/s^4], times T^2/12, of a
-/// device that integrates: the knot's rate is the rotation over the window by its length, the force the velocity gained
-/// by it in the axes half-way. Of free flight, to second order in the rotation within the window.
-Eigen::Vector3d flight_in_window(const RateKnot& knot, const RigConstants& rig);
-Eigen::Vector3d euler_in_window(const RateKnot& knot, const RigConstants& rig);
-
 }  // namespace tumble

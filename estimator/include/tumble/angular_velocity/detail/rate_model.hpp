@@ -100,9 +100,6 @@ class RateModel {
                     Eigen::Vector3d* by_delay = nullptr) const;
   /// The same with the derivatives that weigh() needs, by the rig: in place of all of them less than half the work.
   RateFactor flight_by_rig(const RateObservation& observation, const RateKnot& knot, const RigConstants& rig) const;
-  /// euler_factor() with what the sample's window adds, as flight() has it.
-  RateFactor euler(const RateObservation& observation, const RateKnot& knot, const RigConstants& rig) const;
-  double window_s2(const RateObservation& observation, const RateKnot& knot) const;
   double gyro_information(const RateObservation& observation, const RateEstimate& estimate, int axis) const;
   void add_gyro(const RateObservation& observation, const RateEstimate& estimate, const RigConstants& rig,
                 arrow::Block& block, arrow::Corner& corner) const;
@@ -122,8 +119,7 @@ class RateModel {
   double gyro_sigma_rad_s_;
   double accel_noise_m_s2_;
   double accel_sigma_m_s2_;
-  double window_s2_;  ///< variance of the instants in a sample's window
-  double share_;      ///< of what lasts model_error_s, that one sample may say
+  double share_;  ///< of what lasts model_error_s, that one sample may say
   RigConstants prior_constants_;
   RigConstants::Matrix prior_covariance_;
   RigConstants::Matrix prior_information_;

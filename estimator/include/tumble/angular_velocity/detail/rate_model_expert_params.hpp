@@ -15,9 +15,6 @@ struct RateReadingParams {
   /// 0.38 ms late): counted in the covariance, times the angular acceleration.
   double gyro_time_sigma_s = 2.5e-4;
   double rail_sigma_rad_s = 0.05;  ///< softness of the bound that a clipped reading is
-  /// 1: a sample is the motion over its window by its length, rotation and velocity gained in the axes half-way (a
-  /// device that integrates, as an AHRS does); 0: plain means of rate and force (a low-pass alone).
-  double integrated_share = 1.0;
 
   template <class Self, class Visitor>
   static void fields(Self& p, Visitor& visit) {
@@ -27,8 +24,6 @@ struct RateReadingParams {
           {"gyro_time_sigma_s", "s", 0.0, 0.1, "what bandwidth and clock leave open of the time of a gyro reading"});
     visit(p.rail_sigma_rad_s,
           {"rail_sigma_rad_s", "rad/s", 1e-6, 10.0, "softness of the bound that a clipped reading is"});
-    visit(p.integrated_share, {"integrated_share", "1", 0.0, 1.0,
-                               "1: samples are the motion over their window (the device integrates), 0: plain means"});
   }
 };
 
