@@ -96,7 +96,12 @@ bool flies(const Sense& sense, const std::array<FlightSense::Reading, 3>& readin
   return size >= params.force_min_m_s2 && (middle.force_m_s2 - expected).norm() <= params.share * size;
 }
 
-constexpr std::size_t kFlippedForce = 1;  // of the senses
+/// Of a body that is perhaps held only the clearest are.
+bool is_asked(std::size_t sense, FlightSense::Body body) {
+  constexpr std::size_t kSound = 0, kFlippedForce = 1;
+  return body == FlightSense::Body::thrown || sense == kSound || sense == kFlippedForce ||
+         sense == FlightSense::kHalved;
+}
 
 }  // namespace
 
@@ -146,6 +151,7 @@ void FlightSense::take(const Reading& now, State& state) const {
   }
   const double dt_s = seconds(now.time_ns - first.time_ns);
   for (std::size_t sense = 0; sense < kSenses; ++sense) {
+    if (!is_asked(sense, params_.body)) continue;
     if (!flies(kSensors[sense], {first, middle, now}, params_)) {
       state.run_s[sense] = 0.0;
       continue;
@@ -162,7 +168,6 @@ Status FlightSense::verdict(const State& state) const {
   std::size_t longest = 0;
   double most_s = 0.0;
   for (std::size_t sense = 1; sense < kSenses; ++sense) {
-    if (!thrown && sense != kFlippedForce && sense != kHalved) continue;
     const double bound_s = std::max(sense == kHalved ? params_.halved_s : params_.against_s, sound_s);
     if (state.flown_s[sense] <= bound_s || state.flown_s[sense] <= state.flown_s[longest]) continue;
     longest = sense;

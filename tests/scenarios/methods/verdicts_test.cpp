@@ -19,6 +19,14 @@
 namespace tumble::scenarios {
 namespace {
 
+/// What a method makes of a draw with wrong inputs.
+Estimate run_wrong(const SimulatedDraw& draw, const char* method, const std::string& wrong) {
+  SimulatedDraw given = draw;
+  testing::wrong_inputs().at(wrong)(given.recording.sensors);
+  Outcome outcome;
+  return run_method(*find_methods(method).at(0), given, outcome);
+}
+
 struct Said {
   OutcomeStatus status;
   double localised = std::nan(""), ate_m = std::nan(""), nees = std::nan("");
@@ -84,11 +92,8 @@ TEST(Verdicts, PositionTellsGyrosOfAnotherScale) {
   const DataRoot data{test::source_dir()};
   const SimulatedDraw draw = simulate_draw(data, load_scenario(data, "slip"), 16202, 1, Lidars::left_out);
   const auto tells = [&](const std::string& wrong) {
-    SimulatedDraw given = draw;
-    testing::wrong_inputs().at(wrong)(given.recording.sensors);
-    Outcome outcome;
-    const Estimate estimate = run_method(*find_methods("position/tumble").at(0), given, outcome);
-    return outcome.status != OutcomeStatus::ok || estimate.health.contains("imu_implausible");
+    const Estimate estimate = run_wrong(draw, "position/tumble", wrong);
+    return !estimate.status.ok() || estimate.health.contains("imu_implausible");
   };
   EXPECT_FALSE(tells("none"));
   EXPECT_TRUE(tells("gyro_scale_5_percent"));
@@ -126,11 +131,8 @@ TEST(Verdicts, AttitudesTellWrongReadingsOfATumble) {
   const DataRoot data{test::source_dir()};
   const SimulatedDraw draw = simulate_draw(data, load_scenario(data, "hill"), 91001, 1, Lidars::left_out);
   const auto tells = [&](const char* method, const std::string& wrong) {
-    SimulatedDraw given = draw;
-    testing::wrong_inputs().at(wrong)(given.recording.sensors);
-    Outcome outcome;
-    const Estimate estimate = run_method(*find_methods(method).at(0), given, outcome);
-    return outcome.status != OutcomeStatus::ok || estimate.health.contains("imu_implausible");
+    const Estimate estimate = run_wrong(draw, method, wrong);
+    return !estimate.status.ok() || estimate.health.contains("imu_implausible");
   };
   EXPECT_FALSE(tells("attitude/tumble", "none"));
   for (const char* wrong :
@@ -146,10 +148,7 @@ struct SaidOfRates {
 };
 
 SaidOfRates rates_of(const SimulatedDraw& draw, const std::string& wrong) {
-  SimulatedDraw given = draw;
-  testing::wrong_inputs().at(wrong)(given.recording.sensors);
-  Outcome outcome;
-  const Estimate estimate = run_method(*find_methods("rate/tumble").at(0), given, outcome);
+  const Estimate estimate = run_wrong(draw, "rate/tumble", wrong);
   SaidOfRates out{estimate.health.contains("imu_implausible"), estimate.health.contains("imu_gyro_z_frozen_since_s"),
                   estimate.health.contains("imu_flight_against_s")};
   double samples = 0.0;
@@ -197,14 +196,8 @@ TEST(Verdicts, FlightsTellAxesWhileTheGyroClips) {
 TEST(Verdicts, AttitudesSayThatAGapLeavesThemWithoutUp) {
   const DataRoot data{test::source_dir()};
   const SimulatedDraw draw = simulate_draw(data, load_scenario(data, "hill"), 99101, 1, Lidars::left_out);
-  const auto run = [&](const std::string& wrong) {
-    SimulatedDraw given = draw;
-    testing::wrong_inputs().at(wrong)(given.recording.sensors);
-    Outcome outcome;
-    return run_method(*find_methods("attitude/tumble").at(0), given, outcome);
-  };
-  EXPECT_FALSE(has_doubt({Doubt::About::attitude}, run("none")));
-  const Estimate estimate = run("imus_silent_300_ms");
+  EXPECT_FALSE(has_doubt({Doubt::About::attitude}, run_wrong(draw, "attitude/tumble", "none")));
+  const Estimate estimate = run_wrong(draw, "attitude/tumble", "imus_silent_300_ms");
   EXPECT_TRUE(has_doubt({Doubt::About::attitude}, estimate));
   const TruthTrack truth(draw.recording.truth, estimate.frame);
   double beyond = 0.0;
@@ -230,10 +223,7 @@ TEST(Verdicts, AttitudesTellAWandWhoseGyroIsNamedOtherwise) {
   const DataRoot data{test::source_dir()};
   const SimulatedDraw draw = simulate_draw(data, load_scenario(data, "twirl"), 81201, 1, Lidars::left_out);
   const auto tells = [&](const char* method, const char* wrong) {
-    SimulatedDraw given = draw;
-    testing::wrong_inputs().at(wrong)(given.recording.sensors);
-    Outcome outcome;
-    const Estimate estimate = run_method(*find_methods(method).at(0), given, outcome);
+    const Estimate estimate = run_wrong(draw, method, wrong);
     return estimate.health.contains("imu_implausible");
   };
   EXPECT_FALSE(tells("attitude/tumble", "none"));
@@ -251,10 +241,7 @@ TEST(Verdicts, CovariancesBeforeADoubtComeBack) {
     return sum;
   };
   const auto of = [&](const std::string& wrong) {
-    SimulatedDraw given = draw;
-    testing::wrong_inputs().at(wrong)(given.recording.sensors);
-    Outcome outcome;
-    const Estimate estimate = run_method(*find_methods("rate/tumble").at(0), given, outcome);
+    const Estimate estimate = run_wrong(draw, "rate/tumble", wrong);
     const std::vector<RateState> before = testing::rates_before_doubt(estimate);
     EXPECT_EQ(before.size(), estimate.rates.size());
     double squares = 0.0, least = 1.0;
