@@ -18,19 +18,38 @@ namespace {
 constexpr double kTiltSigmaStart_rad = 0.01;
 constexpr double kVelocitySigmaStart_m_s = 0.1;
 constexpr double kDisplacementSigmaStart_m = 0.1;
+constexpr double kContradicts_sigma2 = 4.0;
 constexpr int kTilt = 0, kBias = 2, kVelocity = 5, kDisplacement = 7, kHeading = 9;
 
 /// Kalman update by one scalar measurement of state `index` of attitude.md (A4): `innovation` is measurement minus
 /// estimate. What is known of the heading stays: attitude.md (A8b).
 void update(int index, double innovation, double variance, TumbleAttitude::State& state) {
   const double heading = state.covariance(kHeading, kHeading);
-  const Eigen::Matrix<double, TumbleAttitude::kStates, 1> correction =
+  const Eigen::Matrix<double, TumbleAttitude::State::kStates, 1> correction =
       component_update(index, innovation, variance, state.covariance);
   state.q_WI = (so3::exp({correction[kTilt], correction[kTilt + 1], 0.0}) * state.q_WI).normalized();
   state.bias_rad_s += correction.segment<3>(kBias);
   state.v_W_m_s += correction.segment<2>(kVelocity);
   state.d_W_m += correction.segment<2>(kDisplacement);
   state.covariance(kHeading, kHeading) = heading;
+}
+
+double tilt_variance_rad2(const TumbleAttitude::State& state) {
+  return state.covariance.diagonal().segment<2>(kTilt).maxCoeff();
+}
+
+/// The same as given out: while an alignment looks for up, not less than what was lost.
+double reported_tilt_rad2(const TumbleAttitude::State& state) {
+  const double filtered = tilt_variance_rad2(state);
+  return state.alignment.running ? std::max(filtered, state.alignment.tilt_rad2()) : filtered;
+}
+
+void clear_node(TumbleAttitude::State& state) {
+  state.R_WI_s.setZero();
+  state.f_W_m_s.setZero();
+  state.rotated_rad2_s = 0.0;
+  state.recovered_rad2.setZero();
+  state.node_s = 0.0;
 }
 
 Status check_covariance(const Eigen::Matrix3d& covariance_rad2_s2) {
@@ -82,7 +101,13 @@ Status TumbleAttitude::step(const ImuSample& sample, const Eigen::Matrix3d& rate
 
 Eigen::Matrix3d TumbleAttitude::attitude_covariance_rad2(const State& state) {
   constexpr std::array kAttitude = {kTilt, kTilt + 1, kHeading};
-  return state.covariance(kAttitude, kAttitude);
+  Eigen::Matrix3d covariance = state.covariance(kAttitude, kAttitude);
+  if (state.alignment.running) {  // until it has had its say, nothing of what the filter believes since
+    covariance.topLeftCorner<2, 2>() = reported_tilt_rad2(state) * Eigen::Matrix2d::Identity();
+    covariance.topRightCorner<2, 1>().setZero();
+    covariance.bottomLeftCorner<1, 2>().setZero();
+  }
+  return covariance;
 }
 
 void TumbleAttitude::take_average(State& state) const {
@@ -93,10 +118,7 @@ void TumbleAttitude::take_average(State& state) const {
   state.at_rest = rests_.observe(reading, state.rest, state.bias_rad_s) && rotates_by_bias_alone(state);
   integrate(reading, length_s, state);
   add_recovered(length_s, state);
-  if (state.node_s >= params_.expert.node_s - 0.5 * length_s) {
-    predict_node(state);
-    correct_node(state);
-  }
+  if (state.node_s >= params_.expert.node_s - 0.5 * length_s) end_node(state);
 }
 
 /// attitude.md (A11a): whether the mean rate of the run is the bias, as well as both are known.
@@ -156,7 +178,67 @@ void TumbleAttitude::bridge_gap(const ImuSample& after, const Eigen::Matrix3d& r
   predict_node(state);
   // a sphere that grips has the velocity of its rolling again, and has not slipped for having changed it
   if (params_.radius_m > 0.0 && !state.slipping) state.v_W_m_s = velocity_of_rotation(state);
+  // before the correction: by what one reading tells it is not linear either. Axes of an alignment before are lost.
+  const double tilt = reported_tilt_rad2(state);
+  state.alignment = {};
   correct_node(state);
+  clear_node(state);
+  if (tilt > squared(params_.expert.gap.lost_tilt_rad))
+    state.alignment.begin(own_velocity_m2_s2(state.velocity_power_m2_s2, state), tilt);
+}
+
+void TumbleAttitude::end_node(State& state) const {
+  predict_node(state);
+  if (state.alignment.running) state.alignment.add(state.f_W_m_s, state.node_s);
+  const Eigen::Quaterniond before = state.q_WI;
+  correct_node(state);
+  if (state.alignment.running) align(state.q_WI * before.conjugate(), state);
+  clear_node(state);
+}
+
+/// Variance of the velocity of a body, one axis, that nothing but its own motion so far and its turning tells.
+double TumbleAttitude::own_velocity_m2_s2(double power_m2_s2, const State& state) const {
+  if (state.at_rest) return squared(params_.expert.at_rest.velocity_sigma_m_s);
+  const double believed = squared(params_.velocity_m_sqrts) / params_.motion_tau_s;
+  const double turning = 0.5 * squared(params_.radius_m) * state.rate_rad_s.squaredNorm();
+  return std::max({believed, power_m2_s2, turning});
+}
+
+/// What the correction of this node, a rotation of W, leaves of an alignment; attitude.md (A10c), (A10d).
+void TumbleAttitude::align(const Eigen::Quaterniond& corrected, State& state) const {
+  CoarseAlignment& alignment = state.alignment;
+  alignment.force_W_m_s = corrected * alignment.force_W_m_s;
+  // what the filter has made of the motion since is of a tilt that may be wrong
+  const double velocity = own_velocity_m2_s2(alignment.velocity_m2_s2, state);
+  const double variance = alignment.variance_rad2(velocity, params_.gravity_m_s2);
+  if (variance > squared(params_.expert.gap.aligned_tilt_rad)) {
+    // of a body that has come to rest, what comes counts alone
+    if (state.at_rest && alignment.velocity_m2_s2 > velocity) alignment.begin(velocity, alignment.tilt_rad2());
+    return;
+  }
+  const double filtered = tilt_variance_rad2(state);
+  const bool contradicts = squared(alignment.off_rad()) > kContradicts_sigma2 * (variance + filtered);
+  if (contradicts || variance < filtered) restart(alignment.levelling(), variance, velocity, state);
+  alignment = {};
+}
+
+/// From an attitude that is known to `tilt_rad2`: W turned by `levelling`, and of the motion what the body's own tells.
+void TumbleAttitude::restart(const Eigen::Quaterniond& levelling, double tilt_rad2, double velocity_m2_s2,
+                             State& state) const {
+  state.q_WI = (levelling * state.q_WI).normalized();
+  const Eigen::Matrix3d bias = state.covariance.block<3, 3>(kBias, kBias);
+  const double heading = state.covariance(kHeading, kHeading);
+  state.covariance.setZero();
+  state.covariance.diagonal().segment<2>(kTilt).setConstant(tilt_rad2);
+  state.covariance.block<3, 3>(kBias, kBias) = bias;
+  state.covariance.diagonal().segment<2>(kVelocity).setConstant(velocity_m2_s2);
+  const double displacement = squared(params_.displacement_m_sqrts) / params_.motion_tau_s;
+  state.covariance.diagonal().segment<2>(kDisplacement).setConstant(displacement);
+  state.covariance(kHeading, kHeading) = heading;
+  state.v_W_m_s = state.at_rest ? Eigen::Vector2d::Zero().eval() : velocity_of_rotation(state);
+  state.d_W_m.setZero();
+  state.velocity_power_m2_s2 = velocity_m2_s2;
+  state.displacement_power_m2 = 0.0;
 }
 
 /// attitude.md (A8a).
@@ -182,7 +264,7 @@ void TumbleAttitude::predict_node(State& state) const {
   state.d_W_m = keep * state.d_W_m + h * (state.v_W_m_s + 0.5 * gained);
   state.v_W_m_s += gained;
 
-  Covariance F = Covariance::Identity();
+  State::Covariance F = State::Covariance::Identity();
   if (!state.at_rest) {
     F.block<2, 3>(kTilt, kBias) = -state.R_WI_s.topRows<2>();
     F.block<1, 3>(kHeading, kBias) = -state.R_WI_s.row(2);
@@ -197,6 +279,7 @@ void TumbleAttitude::predict_node(State& state) const {
   const double turn =
       squared(params_.gyro_noise_rad_sqrts) * h + squared(params_.rate_error_sqrts) * state.rotated_rad2_s;
   state.covariance.diagonal().segment<2>(kTilt).array() += turn + state.recovered_rad2[0];
+  if (state.alignment.running) state.alignment.grown_rad2 += turn + state.recovered_rad2[0];
   state.covariance(kHeading, kHeading) += state.at_rest ? 0.0 : turn + state.recovered_rad2[1];
   state.covariance.diagonal().segment<3>(kBias).array() += squared(params_.expert.bias_walk_rad_s_sqrts) * h;
   state.covariance.diagonal().segment<2>(kVelocity).array() += squared(params_.expert.acceleration_noise_m_s_sqrts) * h;
@@ -223,7 +306,7 @@ bool TumbleAttitude::watch_slip(const Eigen::Vector2d& misfit_m_s, State& state)
 /// attitude.md (A10a): variance of a body's own velocity or displacement, one axis. `power` is what was
 /// believed before.
 double TumbleAttitude::own_motion(const Eigen::Vector2d& misfit, int index, double sigma_sqrts, double power,
-                                  State& state) const {
+                                  const State& state) const {
   const double seen = 0.5 * (misfit.squaredNorm() - state.covariance.block<2, 2>(index, index).trace());
   const double remembered = std::exp(-state.node_s / params_.motion_tau_s) * power;
   return std::max({squared(sigma_sqrts) / params_.motion_tau_s, seen, remembered});
@@ -279,11 +362,6 @@ void TumbleAttitude::correct_node(State& state) const {
     }
   }
   state.covariance = (0.5 * (state.covariance + state.covariance.transpose())).eval();
-  state.R_WI_s.setZero();
-  state.f_W_m_s.setZero();
-  state.rotated_rad2_s = 0.0;
-  state.recovered_rad2.setZero();
-  state.node_s = 0.0;
 }
 
 }  // namespace tumble

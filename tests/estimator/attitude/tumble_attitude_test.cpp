@@ -212,7 +212,8 @@ TEST(TumbleAttitude, CovarianceStaysAProperOne) {
   for (const ImuSample& sample : testing::wobble(20000)) {
     ASSERT_TRUE(filter.step(sample, state).ok());
     if (sample.time_ns % 1'000'000'000 != 0) continue;
-    const auto eigenvalues = Eigen::SelfAdjointEigenSolver<TumbleAttitude::Covariance>(state.covariance).eigenvalues();
+    const auto eigenvalues =
+        Eigen::SelfAdjointEigenSolver<TumbleAttitude::State::Covariance>(state.covariance).eigenvalues();
     // the heading is 0 at the start, and known exactly there
     ASSERT_GT(eigenvalues.minCoeff(), sample.time_ns > 0 ? 0.0 : -1e-15) << seconds(sample.time_ns);
   }

@@ -5,7 +5,7 @@
 
 #include "tumble/angular_velocity/rest_detector.hpp"
 #include "tumble/attitude/detail/tumble_attitude_expert_params.hpp"
-#include "tumble/common/detail/imu_average.hpp"
+#include "tumble/attitude/detail/tumble_attitude_state.hpp"
 #include "tumble/common/imu.hpp"
 #include "tumble/common/parameters.hpp"
 #include "tumble/common/status.hpp"
@@ -72,46 +72,15 @@ struct TumbleAttitudeParams {
 /// Readings count by their time: those of a fast IMU are averaged to reading_s before anything is decided by them, and
 /// the attitude between two averages is the last one, turned on. Over a gap (a time longer than `gap_least_s`) the rate
 /// goes from the last reading to the next in a straight line and the velocity goes on, with variances that say how
-/// little that is; a body that rests before and after rested meanwhile.
+/// little that is; a body that rests before and after rested meanwhile. Where that leaves the tilt unknown to
+/// gap_lost_tilt_rad, a coarse alignment looks for up beside the filter, which is not linear there, and until it has
+/// found it the covariance is that of the gap; where the two disagree, the filter begins again from the alignment.
 ///
 /// Not modelled: accelerometer bias and scale (they are the tilt error that is left at rest), heading reference.
 class TumbleAttitude {
  public:
-  static constexpr int kStates = 10;
-  using Covariance = Eigen::Matrix<double, kStates, kStates>;
-
   using Params = TumbleAttitudeParams;
-
-  struct State {
-    Eigen::Quaterniond q_WI = Eigen::Quaterniond::Identity();
-    Eigen::Vector3d bias_rad_s = Eigen::Vector3d::Zero();
-    Eigen::Vector2d v_W_m_s = Eigen::Vector2d::Zero();
-    Eigen::Vector2d d_W_m = Eigen::Vector2d::Zero();
-    /// Of (tilt error phi_x, phi_y in W with q_true = Exp(phi) q_WI; bias in I; velocity; displacement; heading error
-    /// phi_z, which nothing corrects).
-    Covariance covariance = Covariance::Zero();
-    ImuAverage average;                                           ///< of the readings since the last one that was taken
-    Eigen::Matrix3d recovered_rad2_s2 = Eigen::Matrix3d::Zero();  ///< mean covariance of their rates, as told
-    Eigen::Quaterniond q_taken_WI = Eigen::Quaterniond::Identity();  ///< and the attitude there
-    // integrals since the last node
-    Eigen::Matrix3d R_WI_s = Eigen::Matrix3d::Zero();
-    Eigen::Vector3d f_W_m_s = Eigen::Vector3d::Zero();
-    double rotated_rad2_s = 0.0;
-    Eigen::Vector2d recovered_rad2 = Eigen::Vector2d::Zero();  ///< variance of tilt and heading by recovered rates
-    double node_s = 0.0;
-    Eigen::Vector2d recovered_rad = Eigen::Vector2d::Zero();  ///< deviations that a run of them has gathered
-    double velocity_power_m2_s2 = 0.0;                        ///< variance of the body's own, one axis
-    double displacement_power_m2 = 0.0;
-    RestDetector::State rest;
-    bool at_rest = false;
-    // rolling
-    Eigen::Vector3d rate_rad_s = Eigen::Vector3d::Zero();  ///< of the last sample, without bias
-    double slip_s = 0.0, fits_s = 0.0;
-    bool slipping = false;
-    TimeNs last_time_ns = 0;
-    bool started = false;
-    bool operator==(const State&) const = default;
-  };
+  using State = TumbleAttitudeState;
 
   explicit TumbleAttitude(const Params& params);
 
@@ -134,11 +103,16 @@ class TumbleAttitude {
   void bridge_gap(const ImuSample& after, const Eigen::Matrix3d& rate_covariance_rad2_s2, double gap_s,
                   State& state) const;
   void add_recovered(double dt_s, State& state) const;
+  void end_node(State& state) const;
   void predict_node(State& state) const;
   void correct_node(State& state) const;
+  void align(const Eigen::Quaterniond& corrected, State& state) const;
+  void restart(const Eigen::Quaterniond& levelling, double tilt_rad2, double velocity_m2_s2, State& state) const;
+  double own_velocity_m2_s2(double power_m2_s2, const State& state) const;
   Eigen::Vector2d velocity_of_rotation(const State& state) const;
   void correct_body(const Eigen::Vector2d& turned_m_s, State& state) const;
-  double own_motion(const Eigen::Vector2d& misfit, int index, double sigma_sqrts, double power, State& state) const;
+  double own_motion(const Eigen::Vector2d& misfit, int index, double sigma_sqrts, double power,
+                    const State& state) const;
   bool watch_slip(const Eigen::Vector2d& misfit_m_s, State& state) const;
 
   Params params_;

@@ -49,6 +49,9 @@ struct AttitudeGapParams {
   /// Walks of the true rate and velocity of a body that tumbles down hills, stairs and cliffs, over 0.05 to 0.5 s:
   /// 3.0 to 11.4 rad/s and 2.4 to 4.1 m/s per sqrt(s) (docs/figures.md, "Gaps of the IMU").
   double rate_walk_rad_s_sqrts = 7.0, velocity_walk_m_s_sqrts = 3.3;
+  /// A tilt's deviation, one axis, behind a gap from which on nothing is linear: up is looked for anew, and found again
+  /// once it is known to the second.
+  double lost_tilt_rad = 0.3, aligned_tilt_rad = 0.4;
 
   template <class Self, class Visitor>
   static void fields(Self& p, Visitor& visit) {
@@ -57,6 +60,10 @@ struct AttitudeGapParams {
                                     "random walk of the rate while no reading comes, known at both ends"});
     visit(p.velocity_walk_m_s_sqrts, {"gap_velocity_walk_m_s_sqrts", "m/s/sqrt(s)", 0.0, 1e4,
                                       "random walk of the velocity while no reading comes"});
+    visit(p.lost_tilt_rad, {"gap_lost_tilt_rad", "rad", 1e-3, 1e4,
+                            "deviation of the tilt behind a gap from which on up is looked for anew"});
+    visit(p.aligned_tilt_rad,
+          {"gap_aligned_tilt_rad", "rad", 1e-3, 1e4, "deviation of the tilt at which up has been found again"});
   }
 };
 

@@ -1,0 +1,49 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <Eigen/Geometry>
+
+#include "tumble/angular_velocity/rest_detector.hpp"
+#include "tumble/attitude/detail/coarse_alignment.hpp"
+#include "tumble/common/detail/imu_average.hpp"
+#include "tumble/common/time.hpp"
+
+namespace tumble {
+
+/// Of TumbleAttitude, between two samples.
+struct TumbleAttitudeState {
+  static constexpr int kStates = 10;
+  using Covariance = Eigen::Matrix<double, kStates, kStates>;
+
+  Eigen::Quaterniond q_WI = Eigen::Quaterniond::Identity();
+  Eigen::Vector3d bias_rad_s = Eigen::Vector3d::Zero();
+  Eigen::Vector2d v_W_m_s = Eigen::Vector2d::Zero();
+  Eigen::Vector2d d_W_m = Eigen::Vector2d::Zero();
+  /// Of (tilt error phi_x, phi_y in W with q_true = Exp(phi) q_WI; bias in I; velocity; displacement; heading error
+  /// phi_z, which nothing corrects).
+  Covariance covariance = Covariance::Zero();
+  ImuAverage average;                                           ///< of the readings since the last one that was taken
+  Eigen::Matrix3d recovered_rad2_s2 = Eigen::Matrix3d::Zero();  ///< mean covariance of their rates, as told
+  Eigen::Quaterniond q_taken_WI = Eigen::Quaterniond::Identity();  ///< and the attitude there
+  // integrals since the last node
+  Eigen::Matrix3d R_WI_s = Eigen::Matrix3d::Zero();
+  Eigen::Vector3d f_W_m_s = Eigen::Vector3d::Zero();
+  double rotated_rad2_s = 0.0;
+  Eigen::Vector2d recovered_rad2 = Eigen::Vector2d::Zero();  ///< variance of tilt and heading by recovered rates
+  double node_s = 0.0;
+  Eigen::Vector2d recovered_rad = Eigen::Vector2d::Zero();  ///< deviations that a run of them has gathered
+  double velocity_power_m2_s2 = 0.0;                        ///< variance of the body's own, one axis
+  double displacement_power_m2 = 0.0;
+  CoarseAlignment alignment;
+  RestDetector::State rest;
+  bool at_rest = false;
+  // rolling
+  Eigen::Vector3d rate_rad_s = Eigen::Vector3d::Zero();  ///< of the last sample, without bias
+  double slip_s = 0.0, fits_s = 0.0;
+  bool slipping = false;
+  TimeNs last_time_ns = 0;
+  bool started = false;
+  bool operator==(const TumbleAttitudeState&) const = default;
+};
+
+}  // namespace tumble

@@ -1,0 +1,100 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "tumble/attitude/detail/coarse_alignment.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "tumble/attitude/tumble_attitude.hpp"
+#include "tumble/common/so3.hpp"
+
+namespace tumble {
+namespace {
+
+constexpr double kUp_m_s2 = 9.80665;
+
+double tilted_rad(const Eigen::Quaterniond& q) {
+  return std::acos(std::clamp((q * Eigen::Vector3d::UnitZ()).z(), -1.0, 1.0));
+}
+
+// attitude.md (A10c), (A10d), closed form: a velocity that changes by (0.6, -0.4) m/s in 2 s, seen upside down.
+TEST(CoarseAlignment, FindsUpFromUpsideDownToWithinTheChangeOfTheVelocity) {
+  const Eigen::Quaterniond wrong = so3::exp({3.0, 0.4, 0.0});
+  CoarseAlignment alignment;
+  alignment.begin(0.25, 4.0);
+  for (int node = 0; node < 50; ++node)
+    alignment.add(wrong * Eigen::Vector3d(0.012, -0.008, 0.04 * kUp_m_s2), 0.04);
+  alignment.grown_rad2 += 0.01;
+  EXPECT_NEAR(alignment.time_s, 2.0, 1e-9);
+  EXPECT_NEAR(tilted_rad(alignment.levelling() * wrong), std::hypot(0.6, 0.4) / (2.0 * kUp_m_s2), 1e-3);
+  EXPECT_NEAR(alignment.off_rad(), std::numbers::pi, 0.2);
+  EXPECT_NEAR(alignment.variance_rad2(0.75, kUp_m_s2), 1.0 / std::pow(2.0 * kUp_m_s2, 2) + 0.01, 1e-12);
+  EXPECT_NEAR(alignment.tilt_rad2(), 4.01, 1e-12);
+  CoarseAlignment none;
+  none.begin(0.25, 4.0);
+  EXPECT_GT(none.variance_rad2(0.25, kUp_m_s2), 1e6) << "nothing has been read";
+}
+
+struct Found {
+  double tilt_rad = 0.0, deviation_rad = 0.0, least_deviation_rad = 1e9;  ///< least: within 0.1 s of the gap
+};
+
+/// A body that moves by a hand's breadth is struck at the beginning of 0.3 s without readings, so that half the change
+/// of its rate is off by two radians: what is known of the tilt `after_s` later.
+Found behind_a_strike(const TumbleAttitude::Params& params, double after_s) {
+  constexpr TimeNs kPeriod_ns = 4'000'000;
+  constexpr double kPeriod_s = 4e-3;
+  const TumbleAttitude filter(params);
+  TumbleAttitude::State state;
+  Eigen::Quaterniond q = Eigen::Quaterniond::Identity();
+  TimeNs time_ns = 0;
+  const auto rate = [](double t_s) -> Eigen::Vector3d {
+    const double struck = t_s < 2.01 ? 0.0 : 14.0 * std::exp(-std::max(0.0, t_s - 2.3) / 0.3);
+    return {1.5 * std::sin(2.0 * t_s) - struck, 0.8 * std::cos(3.0 * t_s), 0.5};
+  };
+  Found found;
+  for (double t_s = 0.0; t_s < 2.3 + after_s; t_s += kPeriod_s, time_ns += kPeriod_ns) {
+    q = (q * so3::exp(kPeriod_s * rate(t_s))).normalized();
+    if (t_s > 2.0 && t_s < 2.3) continue;
+    const Eigen::Vector3d force(2.0 * std::sin(7.0 * t_s), 1.0 * std::cos(5.0 * t_s), kUp_m_s2);
+    EXPECT_TRUE(filter.step({time_ns, rate(t_s), q.conjugate() * force, 0}, state).ok());
+    found.deviation_rad = std::sqrt(TumbleAttitude::attitude_covariance_rad2(state)(0, 0));
+    if (t_s > 2.301 && t_s < 2.4) found.least_deviation_rad = std::min(found.least_deviation_rad, found.deviation_rad);
+  }
+  found.tilt_rad = tilted_rad(state.q_WI * q.conjugate());
+  return found;
+}
+
+TEST(CoarseAlignment, BehindAGapTheFilterIsToldWhereUpIs) {
+  const Found found = behind_a_strike({}, 4.0);
+  EXPECT_LT(found.tilt_rad, 0.1);
+  EXPECT_LT(found.deviation_rad, 0.1);
+  EXPECT_LT(found.tilt_rad, 4.0 * found.deviation_rad);
+  EXPECT_GT(found.least_deviation_rad, 0.5) << "nothing has told up by then";
+  // negative control: a filter that is linear does not come back from two radians
+  TumbleAttitude::Params alone;
+  alone.expert.gap.lost_tilt_rad = 1e4;
+  const Found believed = behind_a_strike(alone, 4.0);
+  EXPECT_GT(believed.tilt_rad, 1.0);
+}
+
+TEST(CoarseAlignment, ASecondGapBeforeUpIsFoundLosesNothingOfTheDoubt) {
+  const TumbleAttitude filter({});
+  TumbleAttitude::State state;
+  const auto step = [&](TimeNs time_ns, double rate_rad_s) {
+    ASSERT_TRUE(filter.step({time_ns, {rate_rad_s, 0.0, 0.0}, {0.0, 0.0, kUp_m_s2}, 0}, state).ok());
+  };
+  TimeNs time_ns = 0;
+  for (int k = 0; k < 100; ++k) step(time_ns += 4'000'000, 3.0);
+  step(time_ns += 300'000'000, 3.0);
+  ASSERT_TRUE(state.alignment.running);
+  const double lost = TumbleAttitude::attitude_covariance_rad2(state)(0, 0);
+  step(time_ns += 60'000'000, 3.0);  // a short one alone loses nothing
+  EXPECT_TRUE(state.alignment.running);
+  EXPECT_GE(TumbleAttitude::attitude_covariance_rad2(state)(0, 0), lost);
+}
+
+}  // namespace
+}  // namespace tumble
