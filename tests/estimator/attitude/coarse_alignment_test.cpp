@@ -24,8 +24,7 @@ TEST(CoarseAlignment, FindsUpFromUpsideDownToWithinTheChangeOfTheVelocity) {
   const Eigen::Quaterniond wrong = so3::exp({3.0, 0.4, 0.0});
   CoarseAlignment alignment;
   alignment.begin(0.25, 4.0);
-  for (int node = 0; node < 50; ++node)
-    alignment.add(wrong * Eigen::Vector3d(0.012, -0.008, 0.04 * kUp_m_s2), 0.04);
+  for (int node = 0; node < 50; ++node) alignment.add(wrong * Eigen::Vector3d(0.012, -0.008, 0.04 * kUp_m_s2), 0.04);
   alignment.grown_rad2 += 0.01;
   EXPECT_NEAR(alignment.time_s, 2.0, 1e-9);
   EXPECT_NEAR(tilted_rad(alignment.levelling() * wrong), std::hypot(0.6, 0.4) / (2.0 * kUp_m_s2), 1e-3);
