@@ -6,6 +6,7 @@
 #include <limits>
 #include <utility>
 
+#include "rigid_forces.hpp"
 #include "tumble/attitude/detail/timing.hpp"
 #include "tumble/common/detail/scalar_update.hpp"
 #include "tumble/common/so3.hpp"
@@ -266,49 +267,45 @@ void ImuMerge::close_windows(const Flags& present, const Vectors& rates, const V
 }
 
 /// An impact may take a unit to its rail for less than a sample. On a rigid body one unit tells what the others feel,
-/// along the line between the two without the angular acceleration. The one that most others agree with is believed,
-/// among equals the one whose force changed least. imu_merge.md (I6).
+/// along the line between the two without the angular acceleration. Who disagrees with the one that is believed is left
+/// out: imu_merge.md (I6). Where nobody agrees with anybody, all may turn by an acceleration that began within the
+/// window, which is asked first: (I6a).
 void ImuMerge::leave_out_subsample_saturated(const Readings& samples, const Flags& present, const Vectors& forces,
                                              const Eigen::Vector3d& rate, double h, State& state, Flags& used) const {
   const double since_s = 0.5 * (h + state.length_s);
   const double apart_s = 0.5 * (state.length_s + state.length_before_s);
-  const Eigen::Vector3d acceleration = (rate - state.rate_rad_s) / since_s;
   const Eigen::Vector3d before = (state.rate_rad_s - state.rate_before_rad_s) / apart_s;
-  const auto peak = [&](std::size_t k) { return samples[k].specific_force_m_s2.cwiseAbs().maxCoeff(); };
-  const auto change = [&](std::size_t k) {
-    return (params_.T_CI[k].linear() * samples[k].specific_force_m_s2 - state.units[k].last_force_m_s2).norm();
-  };
-  const auto position = [&](std::size_t k) -> Eigen::Vector3d {
-    return params_.T_CI[k].translation() + ForceErrors::position_error_m(static_cast<int>(k), state.forces);
-  };
-  const auto agree = [&](std::size_t k, std::size_t j) {
-    if (std::max(peak(k), peak(j)) < params_.expert.outliers.subsample_saturation_share * params_.accel_range_m_s2)
-      return true;
-    const Eigen::Vector3d d = position(k) - position(j);
-    const Eigen::Vector3d misfit = forces[k] - forces[j] - acceleration.cross(d) - rate.cross(rate.cross(d));
-    const double doubt = kAccelerationShare * (acceleration - before).norm() * d.norm();
-    return std::abs(misfit.dot(d)) <= params_.expert.outliers.hidden_force_m_s2 * d.norm() &&
-           misfit.norm() <= params_.expert.outliers.hidden_force_m_s2 + doubt;
-  };
-  std::size_t believed = 0;
-  std::pair<int, double> most(-1, 0.0);
+  RigidForces rigid;
+  rigid.present = present;
+  rigid.force_m_s2 = forces;
+  rigid.rate_rad_s = rate;
+  rigid.acceleration_rad_s2 = (rate - state.rate_rad_s) / since_s;
+  rigid.doubt_rad_s2 = kAccelerationShare * (rigid.acceleration_rad_s2 - before).norm();
+  rigid.small_peak_m_s2 = params_.expert.outliers.subsample_saturation_share * params_.accel_range_m_s2;
+  rigid.hidden_force_m_s2 = params_.expert.outliers.hidden_force_m_s2;
   for (std::size_t k = 0; k < present.size(); ++k) {
     if (!present[k]) continue;
-    int others = 0;
-    for (std::size_t j = 0; j < present.size(); ++j) others += present[j] && j != k && agree(k, j);
-    const std::pair<int, double> rank(others, -change(k));
-    if (rank > most) {
-      most = rank;
-      believed = k;
-    }
+    const Eigen::Vector3d& force = samples[k].specific_force_m_s2;
+    rigid.position_m[k] =
+        params_.T_CI[k].translation() + ForceErrors::position_error_m(static_cast<int>(k), state.forces);
+    rigid.peak_m_s2[k] = force.cwiseAbs().maxCoeff();
+    rigid.change_m_s2[k] = (params_.T_CI[k].linear() * force - state.units[k].last_force_m_s2).norm();
+  }
+  RigidForces::Believed believed = rigid.most_agreed();
+  if (believed.others == 0) {
+    rigid.acceleration_rad_s2 += rigid.common_acceleration();
+    rigid.doubt_rad_s2 = 0.0;
+    believed = rigid.most_agreed();
   }
   for (std::size_t k = 0; k < present.size(); ++k) {
     if (!present[k]) continue;
     double& suspect_s = state.units[k].suspect_s;
-    suspect_s = k == believed || agree(k, believed) ? std::max(0.0, suspect_s - h) : kSuspect_s;
+    const bool fits = k == believed.unit || rigid.agree(k, believed.unit);
+    suspect_s = fits ? std::max(0.0, suspect_s - h) : kSuspect_s;
     used[k] = used[k] && suspect_s == 0.0;
   }
-  if (std::none_of(used.begin(), used.begin() + params_.count, [](bool one) { return one; })) used[believed] = true;
+  if (std::none_of(used.begin(), used.begin() + params_.count, [](bool one) { return one; }))
+    used[believed.unit] = true;
 }
 
 void ImuMerge::recover(const Readings& readings, const Flags& present, double h, State& state,

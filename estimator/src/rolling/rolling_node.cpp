@@ -94,8 +94,37 @@ void set_prior(const RollingParams& params, const Eigen::Vector3d& rate_I_rad_s,
   prior[kRadius] = squared(params.radius_sigma_m);
 }
 
+namespace {
+
+/// A force of which some axes met the accelerometer's rail.
+struct RailedForce {
+  Eigen::Vector3d force_m_s2 = Eigen::Vector3d::Zero();
+  Eigen::Vector3d least_m_s2 = Eigen::Vector3d::Zero();  ///< those of its components that may have been more
+};
+
+/// What it is at least, and more where keeping the centre's velocity takes more. rolling.md (R7a).
+RailedForce railed_force(const ImuSample& sample, const Eigen::Vector3d& read_m_s2, const Eigen::Vector3d& kept_m_s2) {
+  int largest = 0;
+  sample.specific_force_m_s2.cwiseAbs().maxCoeff(&largest);
+  const int flags = sample.device_clip_flags & kClipAccel;
+  RailedForce out{.force_m_s2 = read_m_s2};
+  for (int axis = 0; axis < 3; ++axis) {
+    const bool railed = flags != 0 ? (flags & (kClipAccelX << axis)) != 0 : axis == largest;
+    if (!railed) continue;
+    if (std::copysign(1.0, read_m_s2[axis]) * (kept_m_s2[axis] - read_m_s2[axis]) > 0.0) {
+      out.force_m_s2[axis] = kept_m_s2[axis];
+    } else {
+      out.least_m_s2[axis] = read_m_s2[axis];
+    }
+  }
+  return out;
+}
+
+}  // namespace
+
 /// rolling.md (R2) to (R8).
-void integrate(const RollingParams& params, const ImuAverage& reading, RollingNominal& nominal, RollingSums& sums) {
+void integrate(const RollingParams& params, const ImuAverage& reading, RollingNominal& nominal, RollingSums& sums,
+               Force known) {
   const ImuSample& sample = reading.mean;
   const double dt_s = reading.length_s;
   const Eigen::Vector3d& w_raw = sample.angular_velocity_rad_s;
@@ -114,21 +143,27 @@ void integrate(const RollingParams& params, const ImuAverage& reading, RollingNo
   const bool beyond = reading.rate_peak_rad_s >= params.gyro_range_rad_s;
   const bool lost = (sample.device_clip_flags & kClipGyro) != 0 ||
                     (beyond && !(params.expert.rails.recovered_rate_sigma_rad_s > 0.0));
-  const bool clipped = lost || beyond || (sample.device_clip_flags & kClipAccel) != 0 ||
-                       reading.force_peak_m_s2 >= params.accel_range_m_s2;
-  // a force that is clipped, or turned by a rate that is, says nothing: the velocity of the centre is kept,
-  // rolling.md (R7)
+  const bool unturned = lost || beyond || known == Force::unknown;
+  const bool railed =
+      (sample.device_clip_flags & kClipAccel) != 0 || reading.force_peak_m_s2 >= params.accel_range_m_s2;
   const Eigen::Vector3d arm = params.lever_arm_m + nominal.lever_arm_error_m;
   const Eigen::Vector3d change_rad_s = w_raw - nominal.last_rate_I_rad_s;  // the angular acceleration times dt_s
   nominal.last_rate_I_rad_s = w_raw;
-  const Eigen::Vector3d gained = clipped
-                                     ? Eigen::Vector3d(R_T * w.cross(w.cross(arm)) + q_mid * change_rad_s.cross(arm))
-                                     : Eigen::Vector3d(R_T * f - dt_s * gravity * Eigen::Vector3d::UnitZ());
+  // a force that is turned by a rate that is not known says nothing: the velocity of the centre is kept, (R7)
+  const Eigen::Vector3d keeps_centre = R_T * w.cross(w.cross(arm)) + q_mid * change_rad_s.cross(arm);
+  const Eigen::Vector3d fallen = dt_s * gravity * Eigen::Vector3d::UnitZ();
+  Eigen::Vector3d least = Eigen::Vector3d::Zero();
+  if (railed && !unturned) {
+    const RailedForce force = railed_force(sample, f, q_mid.conjugate() * ((keeps_centre + fallen) / dt_s));
+    f = force.force_m_s2;
+    least = force.least_m_s2;
+  }
+  const Eigen::Vector3d gained = unturned ? keeps_centre : Eigen::Vector3d(R_T * f - fallen);
   nominal.p_WI_m += dt_s * (nominal.v_WI_m_s + 0.5 * gained);
   nominal.v_WI_m_s += gained;
   sums.R_s += R_T;
   for (int axis = 0; axis < 3; ++axis) sums.R_w.middleCols<3>(3 * axis) += w_raw[axis] * R_T;
-  if (!clipped) {  // else no error of the force or of the attitude gets into the velocity
+  if (!unturned) {  // else no error of the force or of the attitude gets into the velocity
     sums.f_W_m_s += R_T * f;
     for (int axis = 0; axis < 3; ++axis) sums.R_f.middleCols<3>(3 * axis) += f_raw[axis] * R_T;
     sums.R_wxf += R_T * w.cross(f_raw);
@@ -141,9 +176,13 @@ void integrate(const RollingParams& params, const ImuAverage& reading, RollingNo
   sums.unexplained_impact_m_s += dt_s * std::max(0.0, about_gravity - kOffCentre_m * w.squaredNorm());
   const double peak = f_raw.cwiseAbs().maxCoeff() / params.accel_range_m_s2;
   const double hidden = std::clamp((peak - kHiddenFrom) / (kHiddenTo - kHiddenFrom), 0.0, 1.0);
-  if (!clipped && hidden > 0.0)
-    sums.subsample_saturation_W_m_s += params.expert.rails.subsample_saturation_share * hidden * (R_T * f);
-  if (clipped) sums.force_clipped_s += dt_s;
+  const double share = params.expert.rails.subsample_saturation_share;
+  if (railed) {
+    sums.subsample_saturation_W_m_s += share * (R_T * least);
+  } else if (!unturned && hidden > 0.0) {
+    sums.subsample_saturation_W_m_s += share * hidden * (R_T * f);
+  }
+  if (railed || unturned) sums.force_clipped_s += dt_s;
   if (lost) sums.rate_clipped_s += dt_s;
   if (beyond && !lost) sums.recovered_s += dt_s;
   sums.node_s += dt_s;
@@ -168,7 +207,7 @@ ImuAverage gap_piece(const RollingParams& params, const ImuSample& before, const
   const Eigen::Vector3d change = after.angular_velocity_rad_s - before.angular_velocity_rad_s;
   ImuSample sample = after;
   sample.angular_velocity_rad_s = before.angular_velocity_rad_s + share * change;
-  sample.device_clip_flags = kClipAccel;  // of the force nothing is known
+  sample.device_clip_flags = 0;
   const double turning = std::max(before.angular_velocity_rad_s.norm(), after.angular_velocity_rad_s.norm());
   const double acceleration =
       kGapStill_rad_s2 + params.expert.gap.gap_acceleration_rad_s2 * std::min(1.0, turning / kGapRate_rad_s);
@@ -184,7 +223,7 @@ ImuAverage gap_piece(const RollingParams& params, const ImuSample& before, const
 
 void integrate_gap(const RollingParams& params, const ImuAverage& piece, const GapDoubt& doubt, RollingNominal& nominal,
                    RollingSums& sums) {
-  integrate(params, piece, nominal, sums);
+  integrate(params, piece, nominal, sums, Force::unknown);
   sums.gap_s += piece.length_s;
   sums.gap_rad2 += doubt.rad2;
   sums.gap_rate_rad2_s += doubt.rate_rad2_s;

@@ -49,8 +49,12 @@ RollingNominal start_nominal(const RollingParams& params, const Eigen::Quaternio
                              const Eigen::Vector3d& rate_I_rad_s);
 void set_prior(const RollingParams& params, const Eigen::Vector3d& rate_I_rad_s, Covariance& P);
 
+/// Whether the force of a reading was read at all, if only up to its rail; in a gap it was not.
+enum class Force { read, unknown };
+
 /// Takes averaged readings into the nominal trajectory and the sums.
-void integrate(const RollingParams& params, const ImuAverage& reading, RollingNominal& nominal, RollingSums& sums);
+void integrate(const RollingParams& params, const ImuAverage& reading, RollingNominal& nominal, RollingSums& sums,
+               Force known = Force::read);
 
 /// The nominal trajectory carried on by readings that are not taken yet.
 RollingNominal carried_on(const RollingParams& params, const ImuAverage& reading, const RollingNominal& nominal);

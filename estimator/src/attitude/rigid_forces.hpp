@@ -1,0 +1,75 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <Eigen/Geometry>
+#include <Eigen/QR>
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+
+#include "tumble/attitude/detail/imu_merge_state.hpp"
+
+namespace tumble {
+
+/// The specific forces of units at several places of one rigid body over a window, body axes, and whose may be that of
+/// another motion than all turn by. imu_merge.md (I6), (I6a).
+struct RigidForces {
+  static constexpr std::size_t kUnits = ImuMergeState::kImus;
+
+  std::array<bool, kUnits> present{};
+  std::array<Eigen::Vector3d, kUnits> position_m{}, force_m_s2{};
+  std::array<double, kUnits> peak_m_s2{};    ///< largest component as read
+  std::array<double, kUnits> change_m_s2{};  ///< of the force since the last window
+  Eigen::Vector3d rate_rad_s = Eigen::Vector3d::Zero(), acceleration_rad_s2 = Eigen::Vector3d::Zero();
+  double doubt_rad_s2 = 0.0;       ///< of the acceleration
+  double small_peak_m_s2 = 0.0;    ///< two units that read less hide nothing
+  double hidden_force_m_s2 = 0.0;  ///< by which the others may disagree
+
+  struct Believed {
+    std::size_t unit = 0;
+    int others = -1;  ///< that agree with it
+  };
+
+  Eigen::Vector3d misfit(std::size_t k, std::size_t j) const {
+    const Eigen::Vector3d d = position_m[k] - position_m[j];
+    return force_m_s2[k] - force_m_s2[j] - acceleration_rad_s2.cross(d) - rate_rad_s.cross(rate_rad_s.cross(d));
+  }
+
+  bool agree(std::size_t k, std::size_t j) const {
+    if (std::max(peak_m_s2[k], peak_m_s2[j]) < small_peak_m_s2) return true;
+    const Eigen::Vector3d d = position_m[k] - position_m[j], e = misfit(k, j);
+    return std::abs(e.dot(d)) <= hidden_force_m_s2 * d.norm() &&
+           e.norm() <= hidden_force_m_s2 + doubt_rad_s2 * d.norm();
+  }
+
+  /// The unit that most others agree with, among equals the one whose force changed least.
+  Believed most_agreed() const {
+    Believed best;
+    for (std::size_t k = 0; k < kUnits; ++k) {
+      if (!present[k]) continue;
+      int others = 0;
+      for (std::size_t j = 0; j < kUnits; ++j) others += present[j] && j != k && agree(k, j);
+      if (others > best.others || (others == best.others && change_m_s2[k] < change_m_s2[best.unit]))
+        best = {k, others};
+    }
+    return best;
+  }
+
+  /// What is to be added to the acceleration for it to explain most of all differences. (I6a)
+  Eigen::Vector3d common_acceleration() const {
+    Eigen::Matrix3d A = Eigen::Matrix3d::Zero();
+    Eigen::Vector3d b = Eigen::Vector3d::Zero();
+    for (std::size_t k = 0; k < kUnits; ++k) {
+      for (std::size_t j = 0; j < k; ++j) {
+        if (!present[k] || !present[j]) continue;
+        const Eigen::Vector3d d = position_m[k] - position_m[j];
+        A += d.squaredNorm() * Eigen::Matrix3d::Identity() - d * d.transpose();
+        b += d.cross(misfit(k, j));
+      }
+    }
+    return A.completeOrthogonalDecomposition().solve(b);  // units in a line leave one component open
+  }
+};
+
+}  // namespace tumble

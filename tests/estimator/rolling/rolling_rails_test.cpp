@@ -1,0 +1,64 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <gtest/gtest.h>
+
+#include "estimator/src/rolling/rolling_node.hpp"
+
+// rolling.md (R7), (R7a): forces of which some axes met the accelerometer's rail.
+namespace tumble::rolling {
+namespace {
+
+constexpr double kHeld_s = 4e-3, kRail_m_s2 = 80.0;
+
+struct Gained {
+  Eigen::Vector3d velocity_m_s, hidden_m_s;
+};
+
+/// By one reading of a sphere that stood still in W, at a steady rate.
+Gained gained(const Eigen::Vector3d& rate_rad_s, const Eigen::Vector3d& force_m_s2, std::uint8_t flags,
+              Force known = Force::read) {
+  RollingParams params;
+  params.accel_range_m_s2 = kRail_m_s2;
+  params.lever_arm_m = {0.1, 0.0, 0.0};
+  params.expert.rails.recovered_rate_sigma_rad_s = 0.1;
+  RollingNominal nominal;
+  nominal.last_rate_I_rad_s = rate_rad_s;
+  RollingSums sums;
+  ImuAverage reading;
+  reading.add({0, rate_rad_s, force_m_s2, flags}, kHeld_s);
+  integrate(params, reading, nominal, sums, known);
+  EXPECT_DOUBLE_EQ(sums.force_clipped_s, flags != 0 || known == Force::unknown ? kHeld_s : 0.0);
+  return {nominal.v_WI_m_s, sums.subsample_saturation_W_m_s};
+}
+
+// An impact of which a part of the window met the rail is at least what was read, as without the flag; before, its
+// velocity was nothing, give or take 16 mm/s.
+TEST(RollingRails, AnImpactIsAtLeastWhatWasRead) {
+  const Eigen::Vector3d read(-3.0, 17.0, 57.0);
+  const double gravity = RollingParams{}.gravity_m_s2;
+  const Eigen::Vector3d expected = kHeld_s * (read - gravity * Eigen::Vector3d::UnitZ());
+  const Gained railed = gained(Eigen::Vector3d::Zero(), read, kClipAccel);
+  EXPECT_LT((railed.velocity_m_s - expected).norm(), 1e-12);
+  const double share = RollingParams{}.expert.rails.subsample_saturation_share;
+  EXPECT_NEAR(railed.hidden_m_s.z(), share * kHeld_s * 57.0, 1e-12) << "and how much more is not known";
+  EXPECT_LT((gained(Eigen::Vector3d::Zero(), read, 0).velocity_m_s - expected).norm(), 1e-12);
+  // negative control: of a force that nobody read nothing is taken
+  EXPECT_LT(gained(Eigen::Vector3d::Zero(), read, kClipAccel, Force::unknown).velocity_m_s.norm(), 1e-12);
+}
+
+// A fast turn about z puts x at its rail: it takes 160 m/s^2 to keep the centre where it is, and no impact. The other
+// axes are what they read.
+TEST(RollingRails, AFastTurnIsWhatItTakesToKeepTheCentre) {
+  constexpr double kRate_rad_s = 40.0;
+  const double gravity = RollingParams{}.gravity_m_s2;
+  const Eigen::Vector3d read(-kRail_m_s2, 0.0, gravity);
+  const Gained turning = gained({0.0, 0.0, kRate_rad_s}, read, kClipAccelX);
+  EXPECT_NEAR(turning.velocity_m_s.norm(), kHeld_s * kRate_rad_s * kRate_rad_s * 0.1, 0.01);
+  EXPECT_NEAR(turning.velocity_m_s.z(), 0.0, 1e-12);
+  EXPECT_LT(turning.hidden_m_s.norm(), 1e-12);
+  // negative control: of another sense it is an impact
+  const Gained struck = gained({0.0, 0.0, kRate_rad_s}, -read, kClipAccelX);
+  EXPECT_GT(struck.hidden_m_s.norm(), 0.05);
+}
+
+}  // namespace
+}  // namespace tumble::rolling
