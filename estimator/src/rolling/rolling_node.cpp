@@ -207,7 +207,7 @@ ImuAverage gap_piece(const RollingParams& params, const ImuSample& before, const
   const Eigen::Vector3d change = after.angular_velocity_rad_s - before.angular_velocity_rad_s;
   ImuSample sample = after;
   sample.angular_velocity_rad_s = before.angular_velocity_rad_s + share * change;
-  sample.device_clip_flags = 0;
+  sample.device_clip_flags = 0;  // those of the reading after it are not of the gap
   const double turning = std::max(before.angular_velocity_rad_s.norm(), after.angular_velocity_rad_s.norm());
   const double acceleration =
       kGapStill_rad_s2 + params.expert.gap.gap_acceleration_rad_s2 * std::min(1.0, turning / kGapRate_rad_s);
