@@ -184,6 +184,7 @@ Status run(const ImuMerge& merge, const Units& units, ImuMerge::State& state, st
   for (std::size_t k = 0; k < units.samples[0].size(); ++k) {
     for (std::size_t unit = 0; unit < now.size(); ++unit) now[unit] = units.samples[unit][k];
     if (Status status = merge.step(now, state, merged); !status.ok()) return status;
+    if (Status status = merge.verdict(state); !status.ok()) return status;
     if (merged) out.push_back(*merged);
   }
   return {};

@@ -129,7 +129,7 @@ ImuSample ImuMerge::merge(State& state) const {
     raw_rates[k] = R_CI * readings[k].angular_velocity_rad_s;
     raw_forces[k] = R_CI * readings[k].specific_force_m_s2;
   }
-  if (count > 1) watch_holds(finite, raw_rates, raw_forces, h, time_ns, state);
+  watch_holds(finite, raw_rates, raw_forces, h, time_ns, state);
   const double since_s = 0.5 * (h + state.length_s);  // from the middle of the last window to that of this one
   for (std::size_t k = 0; k < count; ++k) {
     const Unit& unit = state.units[k];
@@ -144,6 +144,8 @@ ImuSample ImuMerge::merge(State& state) const {
     }
     forces[k] = ForceErrors::corrected(static_cast<int>(k), forces[k], state.forces);
   }
+  state.all_frozen = true;
+  for (std::size_t k = 0; k < count; ++k) state.all_frozen = state.all_frozen && (!finite[k] || state.units[k].frozen);
   if (std::none_of(present.begin(), present.end(), [](bool one) { return one; })) present = finite;
 
   const Flags used = choose(readings, present, rates, forces, h, state);

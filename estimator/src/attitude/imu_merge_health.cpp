@@ -16,6 +16,11 @@ constexpr double kComparable = 0.8;  // of the gyro's range, up to which units a
 
 constexpr double kPart = 0.02;  // of a clipped axis in another, from which on that is clipped too
 
+/// How far gravity has turned in the body, if what is held is mostly gravity.
+double turned_across(const ImuMerge::Hold& hold) {
+  return hold.turned_rad.cross(hold.reading.stableNormalized()).norm();
+}
+
 }  // namespace
 
 /// Flags of the units in question, of the axes of C that a clipped axis of theirs has a part in.
@@ -52,22 +57,25 @@ Eigen::Vector3d ImuMerge::median(const Vectors& values, const Flags& which) {
   return out;
 }
 
-/// Triads that repeat themselves while the median of all moves on.
+/// Triads that repeat themselves while the median of all moves on, forces also while the body turns: all may freeze at
+/// once.
 void ImuMerge::watch_holds(const Flags& present, const Vectors& rates, const Vectors& forces, double dt_s,
                            TimeNs time_ns, State& state) const {
+  Flags counted = present;
+  for (std::size_t k = 0; k < counted.size(); ++k) counted[k] = counted[k] && !state.units[k].left_out_for_long();
+  const Eigen::Vector3d middle_rate = median(rates, counted), middle_force = median(forces, counted);
   const auto watch = [&](const Eigen::Vector3d& reading, const Eigen::Vector3d& others, Hold& hold) {
     const bool same = state.samples > 0 && reading == hold.reading;
     hold.held_s = same ? hold.held_s + dt_s : 0.0;
+    hold.turned_rad += dt_s * middle_rate;
     if (!same) {
+      hold.turned_rad.setZero();
       hold.reading = reading;
       hold.others = others;
       hold.since_ns = time_ns;
     }
     return same;
   };
-  Flags counted = present;
-  for (std::size_t k = 0; k < counted.size(); ++k) counted[k] = counted[k] && !state.units[k].left_out_for_long();
-  const Eigen::Vector3d middle_rate = median(rates, counted), middle_force = median(forces, counted);
   for (std::size_t k = 0; k < present.size(); ++k) {
     if (!present[k]) continue;
     Unit& unit = state.units[k];
@@ -78,7 +86,8 @@ void ImuMerge::watch_holds(const Flags& present, const Vectors& rates, const Vec
     const bool rate_frozen = unit.rate_hold.held_s >= params_.expert.frozen.after_s &&
                              (middle_rate - unit.rate_hold.others).norm() > params_.expert.frozen.rate_rad_s;
     const bool force_frozen = unit.force_hold.held_s >= params_.expert.frozen.after_s &&
-                              (middle_force - unit.force_hold.others).norm() > params_.expert.frozen.force_m_s2;
+                              ((middle_force - unit.force_hold.others).norm() > params_.expert.frozen.force_m_s2 ||
+                               turned_across(unit.force_hold) > params_.expert.frozen.turned_rad);
     unit.thawing_s = rate_same || force_same ? 0.0 : unit.thawing_s + dt_s;
     if (unit.frozen) {
       unit.frozen = unit.thawing_s < params_.expert.frozen.thawed_after_s;
@@ -87,6 +96,16 @@ void ImuMerge::watch_holds(const Flags& present, const Vectors& rates, const Vec
       unit.frozen_since_ns = rate_frozen ? unit.rate_hold.since_ns : unit.force_hold.since_ns;
     }
   }
+}
+
+Status ImuMerge::verdict(const State& state) const {
+  if (!state.all_frozen) return {};
+  double held_s = 0.0;
+  for (const Unit& unit : state.units) {
+    if (unit.frozen) held_s = std::max({held_s, unit.rate_hold.held_s, unit.force_hold.held_s});
+  }
+  return {Trouble::out_of_range, "seconds for which every IMU repeats one reading while the body turns", held_s,
+          params_.expert.frozen.after_s};
 }
 
 /// Units that are off from the others for long.

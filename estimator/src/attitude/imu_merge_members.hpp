@@ -32,6 +32,7 @@ template <StateOf<ImuMerge::Hold> Self, class Visitor>
 void members(Self& s, Visitor& visit) {
   visit("hold.reading", s.reading);
   visit("hold.others", s.others);
+  visit("hold.turned_rad", s.turned_rad);
   visit("hold.since_ns", s.since_ns);
   visit("hold.held_s", s.held_s);
 }
@@ -77,6 +78,7 @@ void members(Self& s, Visitor& visit) {
   visit("merge.windows", s.windows);
   visit("merge.free_windows", s.free_windows);
   visit("merge.last_time_ns", s.last_time_ns);
+  visit("merge.all_frozen", s.all_frozen);
 }
 
 /// But for the mountings, which are those of RollingOdometry's units.

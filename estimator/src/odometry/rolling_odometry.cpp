@@ -152,6 +152,7 @@ Status RollingOdometry::add_imus(std::span<const ImuSample> samples) {
   const std::span<ImuSample> judged = std::span(flagged).first(samples.size());
   if (Status status = leave_out_frozen(frozen, judged); !status.ok()) return status;
   if (Status status = merge_.step(judged, *merged_state_, merged); !status.ok()) return status;
+  if (Status status = merge_.verdict(*merged_state_); !status.ok()) return status;
   if (merged) {
     if (Status status = take_in(*merged); !status.ok()) return status;
   }

@@ -143,6 +143,40 @@ TEST(ImuMergeHealth, AUnitThatRepeatsItselfWhileTheOthersMoveIsFrozen) {
   }
 }
 
+TEST(ImuMergeHealth, ForcesThatAllRepeatThemselvesWhileTheBodyTurnsAreFrozen) {
+  UnitReadings last;
+  const HarmedMerge out = merge_harmed(250, 5.0, 1.0, [&](double t, UnitReadings& now) {
+    if (t < 2.0) last = now;
+    for (std::size_t unit = 0; unit < kCount; ++unit) now[unit].specific_force_m_s2 = last[unit].specific_force_m_s2;
+  });
+  for (std::size_t k = 0; k < kCount; ++k) {
+    EXPECT_TRUE(out.state.units[k].frozen) << k;
+    EXPECT_NEAR(seconds(out.state.units[k].frozen_since_ns), 1.996, 0.01) << k;
+  }
+  const Status status = ImuMerge(unit_params()).verdict(out.state);
+  EXPECT_EQ(status.trouble, Trouble::out_of_range);
+  EXPECT_NEAR(status.value, 4.0, 0.05);
+  EXPECT_TRUE(ImuMerge(unit_params()).verdict(merge_harmed(250, 5.0, 1.0, nothing).state).ok());
+}
+
+TEST(ImuMergeHealth, ForcesThatStayBecauseTheBodyTurnsAboutThemAreNot) {
+  const ImuMerge merge(unit_params());
+  ImuMerge::State state;
+  std::optional<ImuSample> merged;
+  const Eigen::Vector3d w(0.0, 0.0, 5.0);
+  for (int k = 0; k < 1000; ++k) {
+    UnitReadings now;
+    for (std::size_t unit = 0; unit < kCount; ++unit) {
+      now[unit] = {.time_ns = 4'000'000LL * k,
+                   .angular_velocity_rad_s = w,
+                   .specific_force_m_s2 = kGravity_m_s2 * Eigen::Vector3d::UnitZ()};
+    }
+    ASSERT_TRUE(merge.step(now, state, merged).ok());
+  }
+  EXPECT_FALSE(state.units[0].frozen);
+  EXPECT_TRUE(merge.verdict(state).ok());
+}
+
 TEST(ImuMergeHealth, AFrozenUnitThatMovesAgainIsBack) {
   ImuSample last;
   const HarmedMerge out = merge_harmed(250, 5.0, 1.0, [&](double t, UnitReadings& now) {

@@ -72,9 +72,10 @@ struct ImuMergeParams {
 /// tolerances one meaning. A reading that is itself as long is taken as it is; of an axis that was at its rail within
 /// the window the mean is a bound, as a reading at the rail is.
 ///
-/// A unit whose reading is not finite is absent. One whose gyro or accelerometer repeats itself while the others move
-/// is frozen, and left out until it has moved again for a while; one that is off from the others for long (scale, axes,
-/// unit) is left out for good, as long as two others remain. Equal readings at rest are no sign of either.
+/// A unit whose reading is not finite is absent. One whose gyro or accelerometer repeats itself while the others move,
+/// or its accelerometer while gravity turns, is frozen, and left out until it has moved again for a while; one that is
+/// off from the others for long (scale, axes, unit) is left out for good, as long as two others remain. Equal readings
+/// at rest are no sign of either.
 ///
 /// Not modelled: clocks of different rates, an error that all units share.
 class ImuMerge {
@@ -95,6 +96,10 @@ class ImuMerge {
   /// is as it should be, -1 when the accelerometers' sign is flipped. None while the body has not turned enough to
   /// tell.
   static std::optional<double> arm_share(const State& state);
+
+  /// `out_of_range` with the seconds for which they have repeated themselves where all units that were heard last are
+  /// frozen (their readings are merged as they are then); `ok` otherwise.
+  Status verdict(const State& state) const;
 
   /// Position of the merged IMU in C.
   Eigen::Vector3d p_C_m() const { return p_C_m_; }

@@ -28,11 +28,13 @@ struct ImuOutlierParams {
   }
 };
 
-/// A unit that is frozen: a reading that lasts while the others move. Sample and hold is shorter.
+/// A unit that is frozen: a reading that lasts while the others move, or a force while gravity turns. Sample and hold
+/// is shorter.
 struct FrozenImuParams {
   double after_s = 0.1;
   double rate_rad_s = 0.03;  ///< by which the others move
   double force_m_s2 = 0.3;
+  double turned_rad = 1.0;      ///< and gravity turns, also where all repeat themselves
   double thawed_after_s = 0.5;  ///< of readings that change
 
   template <class Self, class Visitor>
@@ -41,6 +43,8 @@ struct FrozenImuParams {
           {"frozen_after_s", "s", 1e-12, 1e3, "a reading that lasts so long while the others move is frozen"});
     visit(p.rate_rad_s, {"frozen_rate_rad_s", "rad/s", 1e-12, 1e3, "the others move by more than this"});
     visit(p.force_m_s2, {"frozen_force_m_s2", "m/s^2", 1e-12, 1e4, "or by more than this"});
+    visit(p.turned_rad,
+          {"frozen_turned_rad", "rad", 1e-12, 1e3, "a force that lasts while all turn by this across it is frozen"});
     visit(p.thawed_after_s,
           {"thawed_after_s", "s", 1e-12, 1e3, "of readings that change, after which a unit is in use again"});
   }

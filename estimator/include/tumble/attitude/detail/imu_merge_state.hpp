@@ -13,9 +13,10 @@
 /// State of ImuMerge.
 namespace tumble {
 
-/// How long a triad has given the same reading, and what the others gave when it began.
+/// How long a triad has given the same reading, what the others gave when it began, and how far all have turned since.
 struct ImuHold {
   Eigen::Vector3d reading = Eigen::Vector3d::Zero(), others = Eigen::Vector3d::Zero();
+  Eigen::Vector3d turned_rad = Eigen::Vector3d::Zero();
   TimeNs since_ns = 0;
   double held_s = 0.0;
   bool operator==(const ImuHold&) const = default;
@@ -61,6 +62,7 @@ struct ImuMergeState {
   std::int64_t samples = 0, windows = 0;
   int free_windows = kLearnFrom;  ///< since a gyro was clipped or a unit silent, at most kLearnFrom
   TimeNs last_time_ns = 0;
+  bool all_frozen = false;  ///< that were heard in the last window
   bool operator==(const ImuMergeState&) const = default;
 };
 
