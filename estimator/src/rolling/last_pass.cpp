@@ -122,7 +122,7 @@ void LastPass::give_segment(std::size_t segment, std::size_t until,
       const TimeNs from_ns = at_start ? start.reading.time_ns : records_[next - 1].time_ns;
       const double length_s = seconds(records_[next].time_ns - from_ns);
       const double share = length_s > 0.0 ? seconds(point.time_ns - from_ns) / length_s : 1.0;
-      error += share * (records_[next].smoothed + records_[next].correction - from);
+      error += share * (error_before_update(records_[next]) - from);
     }
     const std::size_t of = records_.empty() ? 0 : std::min(next, records_.size() - 1);
     const NodeRecord* node = records_.empty() ? nullptr : &records_[of];

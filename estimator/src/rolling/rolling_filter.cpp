@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "lost_heading.hpp"
 #include "rolling_node.hpp"
 #include "tumble/attitude/detail/timing.hpp"
 #include "tumble/attitude/strapdown.hpp"
@@ -103,10 +104,11 @@ void RollingFilter::close_node(const Eigen::Vector3d& next_rate_rad_s, State& st
     best.x.setZero();
     keep_first(1, state);
   }
+  const bool lost_heading = rolling::lost_heading(best.P);
   if (state.at_rest) {
     correct_at_rest(state);
   } else {
-    choose_modes(0.5 * (state.last_rate_rad_s + next_rate_rad_s), state);
+    choose_modes(0.5 * (state.last_rate_rad_s + next_rate_rad_s), lost_heading, state);
   }
   state.position_covariance_m2 =
       state.hypotheses[0].P.block<3, 3>(rolling::kPosition, rolling::kPosition) + position_spread(state);
@@ -117,7 +119,7 @@ void RollingFilter::close_node(const Eigen::Vector3d& next_rate_rad_s, State& st
   }
   call_uncertain(state);
   weigh_events(state);
-  rebase(state);
+  rebase(lost_heading, state);
   hold(state);
   state.sums = {};
   ++state.node;
@@ -201,10 +203,16 @@ void RollingFilter::hold(State& state) const {
 }
 
 /// Moves the errors of the best hypothesis into the nominal trajectory and constants; the others are held about it.
-void RollingFilter::rebase(State& state) const {
-  const Vector x = state.hypotheses[0].x;
+void RollingFilter::rebase(bool lost_heading, State& state) const {
+  const Vector x = state.hypotheses[0].x, turned = rolling::turned_by_heading(x);
   rolling::rebase(x, state.nominal);
-  for (int k = 0; k < state.count; ++k) state.hypotheses[static_cast<std::size_t>(k)].x -= x;
+  for (int k = 0; k < state.count; ++k) {
+    Hypothesis& h = state.hypotheses[static_cast<std::size_t>(k)];
+    h.x -= x;
+    if (!lost_heading) continue;
+    rolling::move_error(turned, h.x);
+    rolling::move_errors(turned, h.P);
+  }
 }
 
 void RollingFilter::report(State& state) const {

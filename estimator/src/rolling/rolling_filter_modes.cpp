@@ -9,6 +9,7 @@
 #include <tuple>
 #include <utility>
 
+#include "lost_heading.hpp"
 #include "rolling_node.hpp"
 #include "tumble/rolling/rolling_filter.hpp"
 
@@ -241,8 +242,9 @@ void rearrange(const Origins& from, std::size_t count, std::span<RollingFilter::
 }  // namespace
 
 /// rolling.md (R25).
-void RollingFilter::choose_modes(const Eigen::Vector3d& rate_I_rad_s, State& state) const {
-  const rolling::Contact c = rolling::contact(params_, state.nominal, rate_I_rad_s, state.sums);
+void RollingFilter::choose_modes(const Eigen::Vector3d& rate_I_rad_s, bool lost_heading, State& state) const {
+  rolling::Contact c = rolling::contact(params_, state.nominal, rate_I_rad_s, state.sums);
+  if (lost_heading) rolling::blind_to_heading(c);
   const double node_s = state.sums.node_s;
   Candidates candidates;
   const std::span<const Candidate> ordered = propose(params_, c, state, candidates);

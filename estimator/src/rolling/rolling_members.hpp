@@ -42,6 +42,7 @@ void members(Self& s, Visitor& visit) {
   visit("sums.gap_s", s.gap_s);
   visit("sums.gap_rad2", s.gap_rad2);
   visit("sums.gap_rate_rad2_s", s.gap_rate_rad2_s);
+  visit("sums.gap_speed_m2_s2", s.gap_speed_m2_s2);
   visit("sums.node_s", s.node_s);
 }
 

@@ -216,6 +216,7 @@ ImuAverage gap_piece(const RollingParams& params, const ImuSample& before, const
   doubt.rad2 = off_rad * off_rad / pieces;
   // rolling.md (R31)
   doubt.rate_rad2_s = squared(off_rad / gap_s) * gap_s;  // of all pieces in one direction, hence once for each piece
+  doubt.speed_m2_s2 = squared(params.radius_m * change.norm()) / pieces;  // rolling.md (R31a)
   ImuAverage piece;
   piece.add(sample, gap_s / pieces);
   return piece;
@@ -227,6 +228,7 @@ void integrate_gap(const RollingParams& params, const ImuAverage& piece, const G
   sums.gap_s += piece.length_s;
   sums.gap_rad2 += doubt.rad2;
   sums.gap_rate_rad2_s += doubt.rate_rad2_s;
+  sums.gap_speed_m2_s2 += doubt.speed_m2_s2;
 }
 
 /// rolling.md (R9).
@@ -258,6 +260,7 @@ void predict(const RollingParams& params, const RollingSums& sums, const Moving&
   const double velocity = squared(params.expert.noise.velocity_walk_m_s_sqrts) * h +
                           squared(params.expert.contact.impact_share * sums.impact_m_s) +
                           squared(params.expert.noise.spin_force_sqrts * sums.rotated_rad2_s) / h +
+                          sums.gap_speed_m2_s2 +
                           squared(params.expert.rails.clipped_force_sigma_m_s2 * sums.force_clipped_s);
   P.block<3, 3>(kVelocity, kVelocity) += sums.subsample_saturation_W_m_s * sums.subsample_saturation_W_m_s.transpose();
   auto diagonal = P.diagonal();

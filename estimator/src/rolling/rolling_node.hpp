@@ -64,7 +64,7 @@ int gap_pieces(const RollingParams& params, double gap_s);
 
 /// Piece k of a gap between two readings: the rate between theirs, no force. `doubt` gets what it may be off by.
 struct GapDoubt {
-  double rad2 = 0.0, rate_rad2_s = 0.0;
+  double rad2 = 0.0, rate_rad2_s = 0.0, speed_m2_s2 = 0.0;
 };
 ImuAverage gap_piece(const RollingParams& params, const ImuSample& before, const ImuSample& after, double gap_s, int k,
                      GapDoubt& doubt);

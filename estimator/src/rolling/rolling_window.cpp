@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "../common/symmetric.hpp"
+#include "lost_heading.hpp"
 #include "tumble/common/so3.hpp"
 
 namespace tumble::rolling {
@@ -59,6 +60,14 @@ Reported reported(const Vector& x) {
   Reported out;
   out << x.head<9>(), x.segment<3>(kLeverArm);
   return out;
+}
+
+/// The adjoint behind a move of the nominal, as that before it: T^T lambda, T^T Lambda T. rolling.md (R39)
+void move_back(const Vector& turned, Adjoint& adjoint) {
+  constexpr int kHeading = kAttitude + 2;
+  adjoint.lambda[kHeading] += turned.dot(adjoint.lambda);
+  adjoint.Lambda.row(kHeading) += (turned.transpose() * adjoint.Lambda).eval();
+  adjoint.Lambda.col(kHeading) += (adjoint.Lambda * turned).eval();
 }
 
 }  // namespace
@@ -127,19 +136,30 @@ void close_node(const RollingParams& params, const RollingSums& sums, const Eige
   record.tilt_reset = reset_tilt(params, sums, path.at_rest, filter.nominal, filter.P);
   record.forgets_slope = forgets_slope(filter.mode, path.mode);
   change_floor(params, filter.mode, path.mode, sums.node_s, filter.nominal, x, filter.P);
+  record.lost_heading = lost_heading(filter.P);
   if (path.at_rest) {
     measure_rest(params, sums, filter.nominal, record, x, filter.P);
   } else {
-    measure_contact(params, contact(params, filter.nominal, rate_I_rad_s, sums), sums.node_s, filter.nominal.v_WI_m_s,
-                    record, x, filter.P);
+    Contact c = contact(params, filter.nominal, rate_I_rad_s, sums);
+    if (record.lost_heading) blind_to_heading(c);
+    measure_contact(params, c, sums.node_s, filter.nominal.v_WI_m_s, record, x, filter.P);
   }
   make_symmetric(filter.P);
   filter.P.block<3, 3>(kPosition, kPosition) += path.spread_m2;
   rebase(x, filter.nominal);
+  if (record.lost_heading) {
+    record.turned = turned_by_heading(x);
+    move_errors(record.turned, filter.P);
+  }
   filter.mode = path.mode;
   record.correction = reported(x);
   record.P_rows = reported_rows(filter.P);
   record.nominal = filter.nominal;
+}
+
+Reported error_before_update(const NodeRecord& node) {
+  const Reported error = node.smoothed + node.correction;
+  return node.lost_heading ? Reported(error - node.smoothed[kAttitude + 2] * reported(node.turned)) : error;
 }
 
 /// rolling.md (R36).
@@ -177,6 +197,7 @@ void smooth_back(Adjoint& adjoint, std::span<NodeRecord> nodes) {
                          .finished();
     node.smoothed = -node.P_rows * lambda;
     node.smoothed_P = own - node.P_rows * Lambda * node.P_rows.transpose();
+    if (node.lost_heading) move_back(node.turned, adjoint);
     for (std::size_t k = static_cast<std::size_t>(node.rows); k-- > 0;) {
       const Row& H = node.H[k];
       const Vector& K = node.gain[k];

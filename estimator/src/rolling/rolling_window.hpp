@@ -32,8 +32,10 @@ struct NodeRecord {
   int rows = 0;
   bool forgets_slope = false;
   bool tilt_reset = false;
+  bool lost_heading = false;
   Eigen::Matrix<double, kReported, kStates> P_rows;  ///< after the update
   Reported correction;                               ///< by which the update moved the nominal
+  Vector turned;                                     ///< of a lost heading, by that move: turned_by_heading()
   RollingNominal nominal;                            ///< after the update
   PathNode path;
   TimeNs time_ns = 0;
@@ -103,6 +105,9 @@ Eigen::Matrix<double, kReported, kStates> reported_rows(const Covariance& P);
 /// Closes a node: predicts, measures, rebases. `record` is a blank one.
 void close_node(const RollingParams& params, const RollingSums& sums, const Eigen::Vector3d& rate_I_rad_s,
                 const PathNode& path, PathFilter& filter, NodeRecord& record);
+
+/// Smoothed error at the node about the nominal before the update.
+Reported error_before_update(const NodeRecord& node);
 
 /// The centre of `filter`, at or just after the last node, stands `distance_m` from the start, horizontally. Returns by
 /// what the nominal was moved; nothing where start and end are as good as one, and the distance has no direction.

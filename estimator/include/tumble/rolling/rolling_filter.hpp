@@ -123,8 +123,8 @@ class RollingFilter {
   void detect_rest(State& state) const;
   bool spins_in_place(const State& state) const;
   void correct_at_rest(State& state) const;
-  void choose_modes(const Eigen::Vector3d& rate_I_rad_s, State& state) const;
-  void rebase(State& state) const;
+  void choose_modes(const Eigen::Vector3d& rate_I_rad_s, bool lost_heading, State& state) const;
+  void rebase(bool lost_heading, State& state) const;
   void report(State& state) const;
   void call_uncertain(State& state) const;
   void hold(State& state) const;

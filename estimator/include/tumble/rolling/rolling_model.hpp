@@ -68,8 +68,8 @@ struct RollingSums {
   double unexplained_impact_m_s = 0.0;                 ///< the same without what the turning may explain
   Eigen::Vector3d subsample_saturation_W_m_s =
       Eigen::Vector3d::Zero();  ///< sigma of what a rail took unseen, along the force
-  // of a gap: its length, variance of the turning, and of the rate times time
-  double gap_s = 0.0, gap_rad2 = 0.0, gap_rate_rad2_s = 0.0;
+  // of a gap: its length, variance of the turning, of the rate times time, and of the velocity
+  double gap_s = 0.0, gap_rad2 = 0.0, gap_rate_rad2_s = 0.0, gap_speed_m2_s2 = 0.0;
   double node_s = 0.0;
   bool operator==(const RollingSums&) const = default;
 };

@@ -1,0 +1,105 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <gtest/gtest.h>
+
+#include <Eigen/Cholesky>
+#include <cmath>
+#include <memory>
+#include <vector>
+
+#include "estimator/rolling/lagged_params.hpp"
+#include "estimator/rolling/rolling_truth.hpp"
+#include "estimator/src/rolling/lost_heading.hpp"
+#include "tumble/rolling/rolling_smoother.hpp"
+
+// a bounce that nobody read: the heading after it is not known, and no contact tells it
+namespace tumble {
+namespace {
+
+using testing::kLeverArm;
+
+constexpr double kBounce_s = 5.0, kBounceLasts_s = 0.02, kTurn_rad = 1.7;
+
+/// 0.8 m/s along x, from 5 s on to the side, to rest.
+Eigen::Vector3d bouncing(double t) {
+  const auto ramp = [](double x) { return x <= 0.0 ? 0.0 : x >= 1.0 ? 1.0 : x * x * (3.0 - 2.0 * x); };
+  const double speed = 0.8 * (ramp((t - 2.0) / 1.0) - ramp((t - 6.5) / 1.0));
+  const double towards = kTurn_rad * ramp((t - kBounce_s) / kBounceLasts_s);
+  return speed * Eigen::Vector3d(std::cos(towards), std::sin(towards), 0.0);
+}
+
+struct End {
+  double error_m = 0.0, deviations = 0.0;
+};
+
+/// Of a run that lost `gap_s`, of which `before_s` before the bounce.
+End end_of(double gap_s, double before_s, double lag_s) {
+  const testing::RollingTruth truth = testing::roll({.velocity_m_s = bouncing,
+                                                     .contact_velocity_m_s = testing::no_slip,
+                                                     .lever_arm_m = kLeverArm,
+                                                     .q_start = so3::exp({0.1, -0.2, 0.0})});
+  const RollingSmoother smoother(testing::lagged_params(lag_s));
+  const auto state = std::make_unique<RollingSmoother::State>();
+  std::vector<RollingEstimate> out;
+  for (const ImuSample& sample : truth.samples) {
+    const double since_s = seconds(sample.time_ns) - (kBounce_s - before_s);
+    if (since_s > 0.0 && since_s < gap_s) continue;
+    const Status status = smoother.step(sample, *state, out);
+    EXPECT_TRUE(status.ok()) << status.message();
+  }
+  smoother.finish(*state, out);
+  const Eigen::Vector2d error = (out.back().p_WG_m - truth.p_WG_m.back()).head<2>();
+  const Eigen::Matrix2d P = out.back().covariance.topLeftCorner<2, 2>();
+  return {error.norm(), std::sqrt(error.dot(P.llt().solve(error)))};
+}
+
+// before, heading and velocity were learnt from the bounce as if both had gone on: up to 7.1 deviations
+TEST(LostHeading, ABounceInAGapIsToldByTheCovariance) {
+  double worst_m = 0.0;
+  for (const double lag_s : {RollingSmoother::kWholeRun, 1.0}) {
+    for (const double before_s : {0.03, 0.1, 0.15, 0.25}) {
+      const End end = end_of(0.3, before_s, lag_s);
+      EXPECT_LT(end.deviations, 3.0) << before_s << " " << lag_s << " " << end.error_m;
+      worst_m = std::max(worst_m, end.error_m);
+    }
+  }
+  EXPECT_GT(worst_m, 0.1);  // it is no easy case
+  EXPECT_LT(end_of(0.0, 0.0, RollingSmoother::kWholeRun).error_m, 0.03);
+}
+
+TEST(LostHeading, TheContactTellsNothingOfATurnOfTheWholeRun) {
+  RollingParams params = testing::lagged_params(0.0).filter;
+  RollingNominal nominal;
+  nominal.q_WI = so3::exp({0.3, -0.7, 1.1});
+  nominal.v_WI_m_s = {0.7, -0.3, 0.02};
+  nominal.slope = {0.1, -0.05};
+  RollingSums sums;
+  sums.node_s = 0.02;
+  rolling::Contact c = rolling::contact(params, nominal, {2.0, -4.0, 1.0}, sums);
+  const auto turned = [](const auto& v) { return Eigen::Vector2d(-v.y(), v.x()); };
+  rolling::Vector turn = rolling::Vector::Zero();
+  turn[rolling::kAttitude + 2] = 1.0;
+  turn.segment<2>(rolling::kVelocity) = turned(nominal.v_WI_m_s);
+  turn.segment<2>(rolling::kSlope) = turned(nominal.slope);
+  const Eigen::Vector3d with_all = c.H * turn, of_turn = Eigen::Vector3d::UnitZ().cross(c.u_W_m_s);
+  EXPECT_GT(of_turn.norm(), 0.1);
+  EXPECT_LT((with_all - of_turn).norm(), 1e-9);
+  rolling::blind_to_heading(c);
+  EXPECT_LT((c.H * turn).norm(), 1e-9);
+}
+
+TEST(LostHeading, ErrorsMoveWithTheNominal) {
+  rolling::Vector x = rolling::Vector::LinSpaced(rolling::kStates, -0.5, 0.7), error = x.reverse();
+  const rolling::Vector turned = rolling::turned_by_heading(x);
+  rolling::Covariance T = rolling::Covariance::Identity(), P = error * error.transpose();
+  T.col(rolling::kAttitude + 2) += turned;
+  const rolling::Covariance moved = T * P * T.transpose();
+  rolling::move_errors(turned, P);
+  EXPECT_LT((P - moved).norm(), 1e-12);
+  rolling::Vector one = error;
+  rolling::move_error(turned, one);
+  EXPECT_LT((one - T * error).norm(), 1e-12);
+  EXPECT_GT((one - error).norm(), 0.1);
+}
+
+}  // namespace
+}  // namespace tumble
