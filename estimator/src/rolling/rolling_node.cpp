@@ -39,7 +39,8 @@ constexpr double kUnsureSpeed_m_s = 0.1, kSpeedWindow_s = 1.0;
 constexpr double kStartTilt_rad = 0.15;  // of a start in motion: a push of 1.5 m/s^2
 // of a gap: a sphere that turned slower than this on both sides was not pushed about in between, but for a little
 constexpr double kGapRate_rad_s = 1.0, kGapStill_rad_s2 = 0.5;
-constexpr double kGapStep = 0.15;  // of a change of rate times the gap's length: when in it the change came
+constexpr double kGapTurned = 0.5;  // of what a rolling sphere's velocity changes by with its rate, in a gap
+constexpr double kGapStep = 0.15;   // of a change of rate times the gap's length: when in it the change came
 
 }  // namespace
 
@@ -216,7 +217,7 @@ ImuAverage gap_piece(const RollingParams& params, const ImuSample& before, const
   doubt.rad2 = off_rad * off_rad / pieces;
   // rolling.md (R31)
   doubt.rate_rad2_s = squared(off_rad / gap_s) * gap_s;  // of all pieces in one direction, hence once for each piece
-  doubt.speed_m2_s2 = squared(params.radius_m * change.norm()) / pieces;  // rolling.md (R31a)
+  doubt.speed_m2_s2 = squared(kGapTurned * params.radius_m * change.norm()) / pieces;  // rolling.md (R31a)
   ImuAverage piece;
   piece.add(sample, gap_s / pieces);
   return piece;
