@@ -116,6 +116,10 @@ Status check_imu(const sim::Sensors& sensors, std::span<const ImuSample> samples
 
 Status check_imus(const sim::Sensors& sensors, const MergedImus& imus, Estimate& estimate) {
   const Status own = check_imu(sensors, imus.samples, estimate);
+  if (imus.other_sense) {
+    estimate.health["imu_other_axes_share"] = imus.other_sense->share;
+    add_doubt({Doubt::About::readings}, estimate);
+  }
   if (!imus.arm_share) return own;
   estimate.health["imu_arm_share"] = *imus.arm_share;
   if (std::abs(*imus.arm_share - 1.0) > kArmShareOff) add_doubt({Doubt::About::readings}, estimate);

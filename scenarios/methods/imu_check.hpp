@@ -17,7 +17,8 @@ namespace tumble::scenarios {
 /// readings contradict each other or gravity. O(N).
 Status check_imu(const sim::Sensors& sensors, std::span<const ImuSample> samples, Estimate& estimate);
 
-/// The same of several IMUs as one, whose differences tell a flipped sign besides (`imu_arm_share`).
+/// The same of several IMUs as one, whose differences tell a flipped sign besides (`imu_arm_share`), and other axes
+/// (`imu_other_axes_share`).
 Status check_imus(const sim::Sensors& sensors, const MergedImus& imus, Estimate& estimate);
 
 /// The same of a rig's primary IMU whose rates the estimate holds, one for each sample, with what gravity at its rests

@@ -293,6 +293,7 @@ void tell_units(const ImuMerge& merge, const ImuMerge::State& state, const Units
   out.units = static_cast<int>(units.names.size());
   out.lever_arm_m = merge.p_C_m();
   out.arm_share = ImuMerge::arm_share(state);
+  out.other_sense = state.senses.told();
   for (std::size_t unit = 0; unit < units.names.size(); ++unit) {
     const ImuMerge::Unit& learnt = state.units[unit];
     out.left_out += static_cast<double>(learnt.left_out);

@@ -8,6 +8,7 @@
 
 #include "scenarios/methods/doubts.hpp"
 #include "sim/recording.hpp"
+#include "tumble/attitude/detail/unit_senses.hpp"
 #include "tumble/common/imu.hpp"
 #include "tumble/common/status.hpp"
 
@@ -32,6 +33,7 @@ struct MergedImus {
   double offset_max_s = 0.0;        ///< largest time offset of a unit about the mean
   std::vector<Unit> each;           ///< those in use
   std::optional<double> arm_share;  ///< ImuMerge::arm_share
+  std::optional<UnitSenses::Told> other_sense;  ///< of the units' axes
   std::vector<Doubt> out;  ///< units not in use, or not all the time: frozen, silent (NaN, no readings), or disagreeing
 };
 

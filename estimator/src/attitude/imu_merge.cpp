@@ -339,9 +339,11 @@ void ImuMerge::learn(const Vectors& rates, State& state) const {
   const double apart_s = 0.5 * (state.window_s + state.length_before_s) + state.length_s;
   const Eigen::Vector3d acceleration = (now - state.rate_before_rad_s) / apart_s;
   Vectors forces{};
+  Eigen::Vector3d mean_force = Eigen::Vector3d::Zero();
   double peak = 0.0;
   for (std::size_t k = 0; k < count; ++k) {
     forces[k] = state.units[k].last_force_m_s2;
+    mean_force += forces[k] / static_cast<double>(count);
     peak = std::max(peak, forces[k].cwiseAbs().maxCoeff());
   }
   if (peak < kUnharmed * params_.accel_range_m_s2) {
@@ -349,7 +351,8 @@ void ImuMerge::learn(const Vectors& rates, State& state) const {
   }
   const Eigen::Matrix3d by_position = so3::hat(acceleration) + so3::hat(mean) * so3::hat(mean);
   for (std::size_t k = 0; k < count; ++k) {
-    const Eigen::Vector3d by_rotation = by_position * (params_.T_CI[k].translation() - p_C_m_);
+    const Eigen::Vector3d from_mean_m = params_.T_CI[k].translation() - p_C_m_, by_rotation = by_position * from_mean_m;
+    state.senses.add(forces[k] - mean_force, from_mean_m, mean, acceleration, state.length_s);
     state.arm_product += state.length_s * by_rotation.dot(forces[k]);  // the mean of all drops out of the sum
     state.arm_square_m2_s3 += state.length_s * by_rotation.squaredNorm();
   }

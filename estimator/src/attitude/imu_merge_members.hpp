@@ -28,6 +28,12 @@ void members(Self& s, Visitor& visit) {
   visit("recovery.running", s.running);
 }
 
+template <StateOf<UnitSenses> Self, class Visitor>
+void members(Self& s, Visitor& visit) {
+  visit("senses.gain_m2_s3", s.gain_m2_s3);
+  visit("senses.size_m2_s3", s.size_m2_s3);
+}
+
 template <StateOf<ImuMerge::Hold> Self, class Visitor>
 void members(Self& s, Visitor& visit) {
   visit("hold.reading", s.reading);
@@ -74,6 +80,7 @@ void members(Self& s, Visitor& visit) {
   visit("merge.length_before_s", s.length_before_s);
   visit("merge.arm_product", s.arm_product);
   visit("merge.arm_square_m2_s3", s.arm_square_m2_s3);
+  visit("merge.senses", s.senses);
   visit("merge.samples", s.samples);
   visit("merge.windows", s.windows);
   visit("merge.free_windows", s.free_windows);

@@ -238,6 +238,17 @@ TEST(ImuMergeHealth, AUnitThatDisagreesForLongIsLeftOutForGood) {
       kCount, kCount);
 }
 
+TEST(ImuMergeHealth, TheArmsTellAFlippedAxisOfAllGyros) {
+  EXPECT_FALSE(merge_harmed(250, 5.0, 1.0, nothing).state.senses.told().has_value());
+  const HarmedMerge flipped = merge_harmed(250, 5.0, 1.0, [](double, UnitReadings& now) {
+    for (ImuSample& sample : now) sample.angular_velocity_rad_s.x() *= -1.0;
+  });
+  const auto told = flipped.state.senses.told();
+  ASSERT_TRUE(told.has_value());
+  EXPECT_EQ(told->sense, 0U);
+  EXPECT_NEAR(told->share, 1.0, 0.1);
+}
+
 TEST(ImuMergeHealth, TheArmsTellTheSignOfTheAccelerometers) {
   const auto share = [](const HarmedMerge& out) { return ImuMerge::arm_share(out.state).value_or(0.0); };
   EXPECT_NEAR(share(merge_harmed(250, 5.0, 1.0, nothing)), 1.0, 0.05);

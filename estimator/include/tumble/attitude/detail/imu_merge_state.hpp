@@ -7,6 +7,7 @@
 
 #include "tumble/attitude/detail/force_errors.hpp"
 #include "tumble/attitude/detail/rate_recovery.hpp"
+#include "tumble/attitude/detail/unit_senses.hpp"
 #include "tumble/common/detail/imu_average.hpp"
 #include "tumble/common/time.hpp"
 
@@ -59,6 +60,7 @@ struct ImuMergeState {
   double window_s = 0.0;                                        ///< length of the one that is open
   double length_s = 0.0, length_before_s = 0.0;                 ///< of the last windows
   double arm_product = 0.0, arm_square_m2_s3 = 0.0;             ///< of arm_share()
+  UnitSenses senses;
   std::int64_t samples = 0, windows = 0;
   int free_windows = kLearnFrom;  ///< since a gyro was clipped or a unit silent, at most kLearnFrom
   TimeNs last_time_ns = 0;
