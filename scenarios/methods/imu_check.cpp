@@ -23,6 +23,8 @@ constexpr double kArmShareMin = 0.5;  // 1: as the places say; 0: no relation; -
 // Further from 1, gyros or accelerometers have another scale than they say, which all units share: forces go with the
 // square of the rate, so that it is 3 % of a gyro's, three times a sheet's. Good runs of `slip`: 0.999 and 1.002.
 constexpr double kArmShareOff = 0.06;
+// unless gravity's turning says of the gyros that they are right: then places are off, or an accelerometer
+constexpr double kSlopeRight = 0.02, kSlopeAgreed = 0.99;
 // Of a recording, by the regimes of its rates: held bodies 0.91 and more, thrown ones 0.25 and less, and mostly below
 // 0.6 where a sensor has axes of another sense (hill, throw, twirl, swing 99101, 99102).
 constexpr double kHeldShare = 0.8;
@@ -122,7 +124,9 @@ Status check_imus(const sim::Sensors& sensors, const MergedImus& imus, Estimate&
   }
   if (!imus.arm_share) return own;
   estimate.health["imu_arm_share"] = *imus.arm_share;
-  if (std::abs(*imus.arm_share - 1.0) > kArmShareOff) add_doubt({Doubt::About::readings}, estimate);
+  const bool gyros_right = std::abs(estimate.health["imu_rotation_slope"] - 1.0) < kSlopeRight &&
+                           estimate.health["imu_rotation_agreement"] > kSlopeAgreed;
+  if (std::abs(*imus.arm_share - 1.0) > kArmShareOff && !gyros_right) add_doubt({Doubt::About::readings}, estimate);
   if (!own.ok() || *imus.arm_share >= kArmShareMin) return own;
   return told(
       {Trouble::out_of_range, "differences of the IMUs' forces as a share of what the turning makes of their places",
