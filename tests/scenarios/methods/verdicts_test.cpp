@@ -101,6 +101,31 @@ TEST(Verdicts, PositionTellsGyrosOfAnotherScale) {
 }
 
 // Twice a wrong unit: what the sphere feels at rest is half of gravity, and its run is refused, not only doubted.
+// Of the first the size of the axis' part is small, and no other check sees it; of the second nothing is left that
+// moves.
+TEST(Verdicts, PositionTellsAFlippedAxisAndRefusesForcesThatAllFroze) {
+  const DataRoot data{test::source_dir()};
+  const SimulatedDraw draw = simulate_draw(data, load_scenario(data, "slide"), 99453, 1, Lidars::left_out);
+  const Estimate good = run_wrong(draw, "position/tumble", "none");
+  EXPECT_TRUE(good.doubts.empty());
+  EXPECT_FALSE(good.health.contains("imu_other_axes_share"));
+  const Estimate flipped = run_wrong(draw, "position/tumble", "gyro_x_flipped");
+  EXPECT_TRUE(has_doubt({Doubt::About::readings}, flipped));
+  EXPECT_NEAR(flipped.health.at("imu_other_axes_share"), 1.0, 0.3);
+  EXPECT_EQ(run_wrong(draw, "position/tumble", "all_accels_frozen").status.trouble, Trouble::out_of_range);
+}
+
+// Its units' places make the forces differ by 6 to 9 % less than they should; of the gyros gravity says that they are
+// right.
+TEST(Verdicts, PositionDoesNotBlameGyrosForPlaces) {
+  const DataRoot data{test::source_dir()};
+  const SimulatedDraw draw = simulate_draw(data, load_scenario(data, "bump"), 99470, 1, Lidars::left_out);
+  const Estimate good = run_wrong(draw, "position/tumble", "none");
+  EXPECT_GT(std::abs(good.health.at("imu_arm_share") - 1.0), 0.06);
+  EXPECT_TRUE(good.doubts.empty());
+  EXPECT_TRUE(has_doubt({Doubt::About::readings}, run_wrong(draw, "position/tumble", "gyro_scale_5_percent")));
+}
+
 TEST(Verdicts, PositionRefusesForcesOfHalfTheSize) {
   const DataRoot data{test::source_dir()};
   SimulatedDraw draw = simulate_draw(data, load_scenario(data, "roll"), 16202, 1, Lidars::left_out);
