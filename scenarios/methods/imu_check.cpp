@@ -88,9 +88,9 @@ Status check_rest_force(const sim::Sensors& sensors, std::span<const ImuSample> 
   return told(gravity.size_verdict(state), estimate);
 }
 
-}  // namespace
-
-Status check_imu(const sim::Sensors& sensors, std::span<const ImuSample> samples, Estimate& estimate) {
+/// check_imu(), and whether gravity's turning says of the gyro that its scale is right.
+Status check_turning(const sim::Sensors& sensors, std::span<const ImuSample> samples, Estimate& estimate,
+                     bool& gyro_right) {
   const Status of_rest = check_rest_force(sensors, samples, estimate);
   if (unit_suspect(samples)) add_doubt({Doubt::About::rate_unit}, estimate);
   if (are_rounded(sensors.imus.front().time_ns)) add_doubt({Doubt::About::stamps, 1e-3}, estimate);
@@ -106,6 +106,8 @@ Status check_imu(const sim::Sensors& sensors, std::span<const ImuSample> samples
   estimate.health["imu_rotation_unexplained"] = plausibility.unexplained_share(state);
   estimate.health["imu_rotation_slope"] = plausibility.rotation_slope(state);
   estimate.health["imu_rotation_agreement"] = plausibility.rotation_agreement(state);
+  gyro_right = std::abs(plausibility.rotation_slope(state) - 1.0) < kSlopeRight &&
+               plausibility.rotation_agreement(state) > kSlopeAgreed;
   if (plausibility.frozen_s(state) > 0.0) estimate.health["imu_frozen_s"] = plausibility.frozen_s(state);
   if (const auto labels = plausibility.other_labels(state)) {
     constexpr const char* kKeys[] = {"imu_accel_x_is", "imu_accel_y_is", "imu_accel_z_is"};
@@ -116,16 +118,22 @@ Status check_imu(const sim::Sensors& sensors, std::span<const ImuSample> samples
   return said.ok() ? of_rest : said;
 }
 
+}  // namespace
+
+Status check_imu(const sim::Sensors& sensors, std::span<const ImuSample> samples, Estimate& estimate) {
+  bool gyro_right = false;
+  return check_turning(sensors, samples, estimate, gyro_right);
+}
+
 Status check_imus(const sim::Sensors& sensors, const MergedImus& imus, Estimate& estimate) {
-  const Status own = check_imu(sensors, imus.samples, estimate);
+  bool gyros_right = false;
+  const Status own = check_turning(sensors, imus.samples, estimate, gyros_right);
   if (imus.other_sense) {
     estimate.health["imu_other_axes_share"] = imus.other_sense->share;
     add_doubt({Doubt::About::readings}, estimate);
   }
   if (!imus.arm_share) return own;
   estimate.health["imu_arm_share"] = *imus.arm_share;
-  const bool gyros_right = std::abs(estimate.health["imu_rotation_slope"] - 1.0) < kSlopeRight &&
-                           estimate.health["imu_rotation_agreement"] > kSlopeAgreed;
   if (std::abs(*imus.arm_share - 1.0) > kArmShareOff && !gyros_right) add_doubt({Doubt::About::readings}, estimate);
   if (!own.ok() || *imus.arm_share >= kArmShareMin) return own;
   return told(
