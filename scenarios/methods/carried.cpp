@@ -2,6 +2,7 @@
 #include "scenarios/methods/carried.hpp"
 
 #include "scenarios/methods/bridge.hpp"
+#include "scenarios/methods/rails_told.hpp"
 #include "scenarios/methods/rate_baseline.hpp"
 #include "tumble/angular_velocity/clipping_finder.hpp"
 
@@ -12,10 +13,13 @@ const Settings<CarriedSmoother::Params>& carried_settings() {
   return all;
 }
 
-CarriedElements find_clipped(const sim::ImuRecord& record, std::span<const ImuSample> samples) {
+CarriedElements find_clipped(const sim::ImuRecord& record, std::span<const ImuSample> samples,
+                             std::map<std::string, double>& health) {
   ClippingFinder::Params params;
   params.upright_rails = stated_rails(record);
-  return carried_elements(samples, ClippingFinder(params).find(samples));
+  const ClippingFinder::Found found = ClippingFinder(params).find(samples);
+  tell_rails(found.rails, health);
+  return carried_elements(samples, found);
 }
 
 CarriedSmoother::Params carried_params(const sim::Sensors& sensors, const sim::Values& parameters) {
@@ -30,7 +34,7 @@ Status run_carried(const sim::Sensors& sensors, const sim::Values& parameters, s
   std::vector<ImuSample> samples;
   if (const Status status = bridge::primary_imu_samples(sensors, samples); !status.ok()) return status;
   const CarriedSmoother::Params params = carried_params(sensors, parameters);
-  const CarriedElements known = find_clipped(sensors.imus.front(), samples);
+  const CarriedElements known = find_clipped(sensors.imus.front(), samples, health);
   CarriedSmoother::Report report;
   const Status status = CarriedSmoother(params).estimate(samples, known.clipped(), rates, attitudes, report);
   if (!status.ok()) return status;

@@ -19,8 +19,10 @@ namespace tumble::scenarios {
 /// Parameters of a method on the carried body, with the library's own defaults.
 const Settings<CarriedSmoother::Params>& carried_settings();
 
-/// Which elements of each sample stand at a rail, by what the record states of its ranges and what readings show.
-CarriedElements find_clipped(const sim::ImuRecord& record, std::span<const ImuSample> samples);
+/// Which elements of each sample stand at a rail, by what the record states of its ranges and what readings show. Adds
+/// what was found of the rails to `health` (rails_told.hpp).
+CarriedElements find_clipped(const sim::ImuRecord& record, std::span<const ImuSample> samples,
+                             std::map<std::string, double>& health);
 
 /// Parameters of a run, by what the recording states and `parameters` say.
 CarriedSmoother::Params carried_params(const sim::Sensors& sensors, const sim::Values& parameters);

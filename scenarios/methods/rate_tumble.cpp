@@ -11,6 +11,7 @@
 #include "scenarios/errors.hpp"
 #include "scenarios/methods/bridge.hpp"
 #include "scenarios/methods/imu_check.hpp"
+#include "scenarios/methods/rails_told.hpp"
 #include "scenarios/methods/rate_baseline.hpp"
 #include "scenarios/methods/rate_regimes.hpp"
 #include "scenarios/methods/rate_tumble.hpp"
@@ -97,14 +98,8 @@ void report_health(const RateReport& report, Estimate& told) {
     const std::string axis = names[j];
     health["learnt_lever_arm_" + axis + "_m"] = report.calibration.constants.lever_arm_m[j];
     health["learnt_lever_arm_sigma_" + axis + "_m"] = std::sqrt(report.calibration.covariance(j, j));
-    const std::optional<double>& rail = report.rail[static_cast<std::size_t>(j)];
-    if (rail) health["learnt_gyro_rail_" + axis + "_rad_s"] = *rail;
-    const std::optional<RailPlane>& plane = report.planes.element[static_cast<std::size_t>(j)];
-    if (!plane) continue;
-    health["gyro_rail_samples_" + axis] = plane->samples[0] + plane->samples[1];
-    health["gyro_rail_deviation_" + axis + "_rad_s"] = plane->deviation_rad_s;
-    health["gyro_rail_log_odds_" + axis] = plane->log_odds;
   }
+  tell_rails(report, health);
 }
 
 constexpr double kTrust = 4.0;
@@ -144,8 +139,15 @@ void start_from_learnt(const LearntRig& rig, RateSmoother::Params& params) {
   covariance = information.inverse();
 }
 
+LearntRig known_before(const LearntRig* given, const RateModelParams& model) {
+  if (given != nullptr) return *given;
+  const RateModel assumed(model, 0.01);
+  return {{assumed.prior_constants(), assumed.prior_covariance()}, {}};
+}
+
 const LearntRig* Learning::found() const {
-  if (of_batch) return &*of_batch;
+  const bool more = of_batch && of_batch->rails_alone && of_stream && !of_stream->rails_alone;
+  if (of_batch && !more) return &*of_batch;
   return of_stream ? &*of_stream : nullptr;
 }
 
@@ -167,7 +169,7 @@ namespace {
 bool may_be_of_this_rig(const LearntRig& given, const std::optional<LearntRig>& fresh, Estimate& told) {
   constexpr double kDistanceMax = 2.0;  // distance_of_rigs says what was seen
   tell_undoubted(Doubt::About::learnt_rig, told);
-  if (!fresh) return true;
+  if (!fresh || fresh->rails_alone) return true;
   const double distance = distance_of_rigs(given.calibration, fresh->calibration, kTrust);
   if (distance <= kDistanceMax) return true;
   add_doubt({Doubt::About::learnt_rig, distance}, told);
@@ -225,6 +227,20 @@ Status tumble_rates(const sim::Sensors& sensors, std::span<const ImuSample> samp
 
 namespace {
 
+/// Leaves in `found` what there is to be learnt of a run.
+void learn(const RateReport& report, const LearntRig* given, const RateModelParams& model,
+           std::optional<LearntRig>& found) {
+  if (!report.calibration_at_prior) {
+    found = learnt(report);
+    return;
+  }
+  KnownRails rails;
+  rails.planes = report.planes;
+  rails.upright = report.rails_upright;
+  rails.accel_planes = report.accel_planes;
+  if (std::optional<LearntRig> rig = with_rails(known_before(given, model), rails)) found = std::move(rig);
+}
+
 Estimate rates_of_batch(const sim::Sensors& sensors, const sim::Values& parameters, const LearntRig* given,
                         std::optional<LearntRig>* found) {
   Estimate estimate;
@@ -241,8 +257,7 @@ Estimate rates_of_batch(const sim::Sensors& sensors, const sim::Values& paramete
       tell_frozen_axes(sensors, samples, estimate);
     }
     estimate.health["imus"] = 1.0 + static_cast<double>(smoothed.auxiliary_imus);
-    if (estimate.status.ok() && !smoothed.report.calibration_at_prior && found != nullptr)
-      *found = learnt(smoothed.report);
+    if (estimate.status.ok() && found != nullptr) learn(smoothed.report, given, params.model, *found);
   }
   count_sources(estimate.rates, estimate.health);
   return estimate;

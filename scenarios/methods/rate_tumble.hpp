@@ -52,12 +52,12 @@ Status auxiliary_readings(const sim::Sensors& sensors, std::span<const ImuSample
 
 /// The method `tumble` that starts from what an earlier run has learnt of the rig (null: nothing) and leaves in `found`
 /// (may be null) what this run has learnt; `found` stays as it is when the status is not ok and when the run learnt
-/// nothing, because it had to hold the rig to what was known. What was learnt counts with four times its covariance,
-/// since rigs are handled between runs, yet not more than what is assumed without it.
+/// nothing, because it had to hold the rig to what was known and no rail is sure (with_rails). What was learnt counts
+/// with four times its covariance, since rigs are handled between runs, yet not more than what is assumed without it.
 Estimate run_rate_tumble(const sim::Sensors& sensors, const sim::Values& parameters, const LearntRig* given,
                          std::optional<LearntRig>* found);
 
-/// The same for the stream `tumble_lag`. It has learnt something where the constants are better known than before.
+/// The same for the stream `tumble_lag`. It has learnt of the constants where they are better known than before.
 Estimate run_rate_tumble_lag(const sim::Sensors& sensors, const sim::Values& parameters, const LearntRig* given,
                              std::optional<LearntRig>* found);
 
@@ -65,11 +65,15 @@ Estimate run_rate_tumble_lag(const sim::Sensors& sensors, const sim::Values& par
 /// see above, and the rails. Biases are of one switch-on and start anew.
 void start_from_learnt(const LearntRig& rig, RateSmoother::Params& params);
 
+/// What is known of a rig before a run: what it is given, if anything, else what `model` assumes.
+LearntRig known_before(const LearntRig* given, const RateModelParams& model);
+
 /// What several runs on one rig start from and what they have learnt.
 struct Learning {
   std::optional<LearntRig> given;  ///< none: they start from nothing
   std::optional<LearntRig> of_batch, of_stream;
-  /// What is to be kept: of the batch where it ran, since it saw all of the recording at once; null: nothing.
+  /// What is to be kept: of the batch where it ran, since it saw all of the recording at once, unless that learnt of
+  /// rails alone and the stream of more; null: nothing.
   const LearntRig* found() const;
 };
 

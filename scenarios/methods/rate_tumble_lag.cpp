@@ -7,6 +7,7 @@
 
 #include "scenarios/methods/bridge.hpp"
 #include "scenarios/methods/imu_check.hpp"
+#include "scenarios/methods/rails_told.hpp"
 #include "scenarios/methods/rate_tumble.hpp"
 #include "scenarios/methods/registry.hpp"
 #include "scenarios/methods/sample_times.hpp"
@@ -110,6 +111,7 @@ Estimate rates_of_stream(const sim::Sensors& sensors, const sim::Values& paramet
   estimate.health["rig_resets"] = static_cast<double>(state.rig_resets);
   estimate.health["device_unlike"] = state.device.front().open.unlike;
   estimate.health["steps_skipped"] = static_cast<double>(state.failures);
+  tell_rails(state.rails.known, estimate.health);
   std::optional<double> carried_share;
   if (all.given > 0) {
     const double each = 1.0 / static_cast<double>(all.given);
@@ -121,9 +123,13 @@ Estimate rates_of_stream(const sim::Sensors& sensors, const sim::Values& paramet
   estimate.health["regime_carried_joined"] = static_cast<double>(all.joined);
   estimate.health["regime_carried_starts"] = static_cast<double>(all.starts);
   estimate.health["carried_steps_skipped"] = static_cast<double>(all.carried.failures);
-  if (estimate.status.ok() && !at_prior && found != nullptr) {
-    *found = learnt_by(stream, params.rate, state);
-    if (given != nullptr) (*found)->device_errors = given->device_errors;  // the stream does not estimate them
+  if (estimate.status.ok() && found != nullptr) {
+    if (!at_prior) {
+      *found = learnt_by(stream, params.rate, state);
+      if (given != nullptr) (*found)->device_errors = given->device_errors;  // the stream does not estimate them
+    } else if (auto rig = with_rails(known_before(given, params.rate.model), state.rails.known)) {
+      *found = std::move(rig);
+    }
   }
   if (estimate.status.ok()) {
     check_rates(sensors, samples, carried_share, estimate);

@@ -52,9 +52,10 @@ struct Recovery {
   }
 };
 
-Recovery recovery_of(const sim::Sensors& sensors, const std::vector<ImuSample>& samples, Stands stands) {
+Recovery recovery_of(const sim::Sensors& sensors, const std::vector<ImuSample>& samples, Stands stands,
+                     std::map<std::string, double>& health) {
   Recovery out;
-  const std::vector<ClipSigns> signs = find_clipped(sensors.imus.front(), samples).signs;
+  const std::vector<ClipSigns> signs = find_clipped(sensors.imus.front(), samples, health).signs;
   const auto clips = [](const ClipSigns& sign) { return sign.gyro != std::array<std::int8_t, 3>{}; };
   if (std::none_of(signs.begin(), signs.end(), clips)) return out;
   const RateSmoother::Params params = stated_params(sensors.imus.front(), rate_tumble_settings().defaults());
@@ -90,12 +91,12 @@ RecoveredRates recover(const Recovery& recovery, Stands stands, std::vector<ImuS
 
 RecoveredRates recover_clipped(const sim::Sensors& sensors, std::vector<ImuSample>& samples,
                                std::map<std::string, double>& health) {
-  return recover(recovery_of(sensors, samples, does_not_clip), does_not_clip, samples, health);
+  return recover(recovery_of(sensors, samples, does_not_clip, health), does_not_clip, samples, health);
 }
 
 RecoveredRates recover_in_time(const sim::Sensors& sensors, std::vector<ImuSample>& samples,
                                std::map<std::string, double>& health) {
-  const Recovery recovery = recovery_of(sensors, samples, is_read);
+  const Recovery recovery = recovery_of(sensors, samples, is_read, health);
   std::vector<std::uint8_t> hidden(samples.size(), 0);
   for (std::size_t k = 0; k < recovery.rates.size(); ++k) hidden[k] = is_read(recovery.rates[k]) ? 0 : 1;
   const std::vector<std::optional<HeldRate>> told = rates_between_readings(samples, hidden);

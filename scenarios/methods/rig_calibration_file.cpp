@@ -35,6 +35,8 @@ constexpr const char *kErrorsKey = "device_errors", *kErrorsCovarianceKey = "dev
 constexpr double kSlopeDrift = 2e-3;
 // A tumble holds a top that looks like a rail now and then: planes less sure than this are not handed on.
 constexpr double kSureLogOdds = 10.0;
+// A rail tells the slopes of its element no better than this: rails.md (R59).
+constexpr double kSlopeSigmaMin = 3e-4;
 constexpr int kWithoutElements = RigConstants::kElements;
 
 template <typename Array>
@@ -165,6 +167,51 @@ void LearntRig::keep(const RailPlanes& planes, Triad triad) {
           plane->row[static_cast<Eigen::Index>((j + 1 + i) % 3)];
     }
   }
+}
+
+namespace {
+
+// Slopes and distance of an element whose plane is sure.
+void take_element(const RailPlane& plane, Triad triad, std::size_t j, LearntRig& rig) {
+  const auto first = static_cast<Eigen::Index>(2 * j), at = RigConstants::kElements + first;
+  const Eigen::Vector2d slopes(plane.row[static_cast<Eigen::Index>((j + 1) % 3)],
+                               plane.row[static_cast<Eigen::Index>((j + 2) % 3)]);
+  rig.rail[triad == Triad::gyro ? j : j + 3] = plane.distance_rad_s;
+  if (triad == Triad::accelerometer) {
+    rig.accelerometer_elements.segment<2>(first) = slopes;
+    return;
+  }
+  rig.calibration.constants.elements.segment<2>(first) = slopes;
+  RigConstants::Matrix& covariance = rig.calibration.covariance;
+  covariance.middleRows<2>(at).setZero();
+  covariance.middleCols<2>(at).setZero();
+  covariance.block<2, 2>(at, at) =
+      plane.covariance.topLeftCorner<2, 2>() + kSlopeSigmaMin * kSlopeSigmaMin * Eigen::Matrix2d::Identity();
+}
+
+}  // namespace
+
+std::optional<LearntRig> with_rails(const LearntRig& before, const KnownRails& rails) {
+  LearntRig found, out = before;
+  if (!rails.upright) found.keep(rails.planes);
+  if (!rails.accel_upright) found.keep(rails.accel_planes, Triad::accelerometer);
+  out.rails_alone = true;
+  bool sure = false;
+  for (const Triad triad : {Triad::gyro, Triad::accelerometer}) {
+    const bool gyro = triad == Triad::gyro;
+    const LearntRig::Planes& now = gyro ? found.gyro_planes_rad_s : found.accelerometer_planes_m_s2;
+    LearntRig::Planes& kept = gyro ? out.gyro_planes_rad_s : out.accelerometer_planes_m_s2;
+    for (std::size_t j = 0; j < 3; ++j) {
+      const std::optional<RailPlane>& plane = (gyro ? rails.planes : rails.accel_planes).element[j];
+      for (std::size_t i = 0; i < 2; ++i) {
+        if (now[j][i] || !plane || plane->samples[i] == 0) kept[j][i] = now[j][i];
+      }
+      if (!now[j][0] && !now[j][1]) continue;
+      take_element(*plane, triad, j, out);
+      sure = true;
+    }
+  }
+  return sure ? std::optional(out) : std::nullopt;
 }
 
 RailPlanes LearntRig::planes(Triad triad) const {

@@ -22,6 +22,8 @@ struct LearntRig {
   Eigen::Matrix<double, 6, 1> accelerometer_elements = Eigen::Matrix<double, 6, 1>::Zero();
   /// What the device makes of the motion: delay, g-sensitivity, scale; none: nothing was learnt of it.
   std::optional<KnownSensorErrors> device_errors = std::nullopt;
+  /// The run learnt of rails alone (with_rails): all else is what was known before it. Not in the file.
+  bool rails_alone = false;
 
   /// The rails of a triad's elements, for the search of the next run.
   RailPlanes planes(Triad triad = Triad::gyro) const;
@@ -33,6 +35,11 @@ struct LearntRig {
 /// What a run has learnt. When the run left its constants at their prior (RateReport::calibration_at_prior) that is
 /// what it was given.
 LearntRig learnt(const RateReport& report);
+
+/// What was known before a run that had to hold the constants to that, with the rails that it found: levels and slopes
+/// of elements whose plane is sure. Levels stay where nothing surer was found, and go where readings contradict them.
+/// None: no plane of this run is sure.
+std::optional<LearntRig> with_rails(const LearntRig& before, const KnownRails& rails);
 
 /// Gives it to the next run: constants with their covariance times `trust` (>= 1: rigs are taken apart and put together
 /// again), the planes of the gyro's rails, the device's errors likewise, and the lowest rail of a sensor as its stated

@@ -7,6 +7,7 @@
 
 #include "scenarios/methods/bridge.hpp"
 #include "scenarios/methods/imu_check.hpp"
+#include "scenarios/methods/rails_told.hpp"
 #include "scenarios/methods/registry.hpp"
 #include "scenarios/methods/robot_presets.hpp"
 #include "scenarios/methods/settings.hpp"
@@ -168,6 +169,7 @@ Estimate run_slam_tumble_lag(const sim::Sensors& sensors, const sim::Values& par
   Listener listener(word, params, estimate);
   estimate.status = live_through(sensors, samples, odometry, listener);
   if (!estimate.status.ok()) return estimate;
+  tell_rails(odometry.rails(), estimate.health);
   estimate.health["gaps"] = static_cast<double>(odometry.gaps());
   estimate.health["passed_again"] = odometry.passed_again() ? 1.0 : 0.0;
   listener.conclude(odometry);

@@ -52,7 +52,7 @@ void LearntFile::keep(const Session& session) const {
   if (learning_.found() != nullptr) return scenarios::write_learnt_rig(path_, *learning_.found());
   session.note(path_.string() + (std::filesystem::exists(path_) ? ": stays as it is" : ": not written") +
                ": nothing was learnt of the rig, which was held to what was known before: no free flight or contact "
-               "told more of it, what was known is not of this rig, or the run failed");
+               "told more of it and no tilted rail is sure, what was known is not of this rig, or the run failed");
 }
 
 }  // namespace tumble::tools

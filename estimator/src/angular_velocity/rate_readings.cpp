@@ -28,6 +28,7 @@ void tell_rails(const ClippingFinder& finder, const KnownRails& rails, RateRepor
     health.rail[channel] = finder.upright_rails().rail(rails.upright_rails, c);
     const auto& plane = (c < 3 ? planes : accel_planes).element[static_cast<std::size_t>(c % 3)];
     if (plane) health.rail[channel] = plane->distance_rad_s;
+    health.rail_seen[channel] = plane || rails.upright_rails.channels[channel].rail > 0.0;
     health.rail_disagrees[channel] = finder.upright_rails().disagrees(rails.upright_rails, c);
   }
 }

@@ -14,7 +14,9 @@
 #include "scenarios/methods/rate_tumble.hpp"
 #include "scenarios/methods/registry.hpp"
 #include "scenarios/methods/synthetic_recording.hpp"
+#include "scenarios/recordings/import.hpp"
 #include "scenarios/sweep/evaluate.hpp"
+#include "stand_ins/stand_ins.hpp"
 #include "tests/tree.hpp"
 
 namespace tumble::scenarios {
@@ -133,6 +135,75 @@ TEST(RateLearnt, AnotherRigsInertiaIsDoubtedAndNotPassedOn) {
       EXPECT_GT(estimate.health.at("learnt_rig_contradicted"), 2.0);
       EXPECT_EQ(other.found(), nullptr) << "the file stays as it is";
     }
+  }
+}
+
+RateModelParams assumed_model() {
+  RateModelParams model;
+  model.nominal.lever_arm_m.setZero();
+  return model;
+}
+
+/// Of the wand's stand-in: what was read between two times.
+sim::Sensors wand(double from_s, double to_s) {
+  const auto folder = test::written(test::data_folders("repoimu").front());
+  sim::Sensors out = import_repoimu(folder / test::kStandInWand, false).sensors;
+  sim::ImuRecord& imu = out.imus.front();
+  const auto at = [](double t_s) { return static_cast<std::ptrdiff_t>(100.0 * t_s); };
+  const auto cut = [&](auto& values) { values = {values.begin() + at(from_s), values.begin() + at(to_s)}; };
+  cut(imu.time_ns);
+  cut(imu.gyro_rad_s);
+  cut(imu.accel_m_s2);
+  if (!imu.clip_flags.empty()) cut(imu.clip_flags);
+  return out;
+}
+
+TEST(RateLearnt, RailsThatReadingsContradictGoAndOthersStay) {
+  RailPlane plane;
+  plane.row = {1.0, 0.01, 0.02};
+  plane.distance_rad_s = 7.3;
+  plane.samples = {40, 40};
+  plane.log_odds = 100.0;
+  plane.covariance.diagonal() << 1e-6, 1e-6, 1e-7, 1e-7;
+  LearntRig before = known_before(nullptr, assumed_model());
+  before.gyro_planes_rad_s[1] = {-7.2, 7.4};
+  before.gyro_planes_rad_s[2] = {-7.1, 7.5};
+  KnownRails rails;
+  EXPECT_FALSE(with_rails(before, rails).has_value());
+  rails.planes.element[0] = plane;
+  rails.planes.element[1] = before.planes().element[1];  // as a run gives it back that did not meet it
+  const std::optional<LearntRig> after = with_rails(before, rails);
+  ASSERT_TRUE(after);
+  EXPECT_EQ(after->gyro_planes_rad_s[0][1], 7.3);
+  EXPECT_EQ(after->rail[0], 7.3);
+  EXPECT_EQ(after->calibration.constants.elements[0], 0.01);
+  EXPECT_EQ(after->gyro_planes_rad_s[1], before.gyro_planes_rad_s[1]);
+  EXPECT_FALSE(after->gyro_planes_rad_s[2][0] || after->gyro_planes_rad_s[2][1]) << "the finder has dropped it";
+  rails.planes.element[0]->log_odds = 5.0;
+  EXPECT_FALSE(with_rails(before, rails).has_value()) << "not sure";
+}
+
+// which rail, by how many samples of either sign, how steep and how sure
+TEST(RateLearnt, EachMethodTellsTheRailsThatItFound) {
+  const sim::Sensors twirled = wand(0.0, 30.0);
+  const test::WandRail rail;
+  for (const char* const name :
+       {"rate/tumble", "rate/tumble_lag", "rate/carried", "attitude/tumble", "attitude/tumble_batch"}) {
+    const auto health = find_methods(name).front()->run(twirled, {}, {}).health;
+    ASSERT_TRUE(health.contains("gyro_rail_samples_x")) << name;
+    EXPECT_NEAR(health.at("learnt_gyro_rail_x_rad_s"), rail.distance_rad_s, 0.01) << name;
+    EXPECT_GT(health.at("gyro_rail_samples_low_x"), 10.0) << name;
+    EXPECT_GT(health.at("gyro_rail_samples_high_x"), 10.0) << name;
+    EXPECT_EQ(health.at("gyro_rail_samples_low_x") + health.at("gyro_rail_samples_high_x"),
+              health.at("gyro_rail_samples_x"));
+    EXPECT_NEAR(health.at("gyro_rail_slope_x_y"), -rail.y_slope, 0.003) << name;
+    EXPECT_NEAR(health.at("gyro_rail_slope_x_z"), -rail.z_slope, 0.003) << name;
+    EXPECT_LT(health.at("gyro_rail_slope_sigma_x_z"), 0.01) << name;
+    EXPECT_NEAR(health.at("gyro_rail_offset_x_rad_s"), rail.offset_rad_s, 0.01) << name;
+    EXPECT_LT(health.at("gyro_rail_offset_sigma_x_rad_s"), 0.02) << name;
+    EXPECT_GT(health.at("gyro_rail_log_odds_x"), 3.0) << name;
+    for (const char* const key : {"learnt_gyro_rail_y_rad_s", "learnt_gyro_rail_z_rad_s", "gyro_rail_samples_y"})
+      EXPECT_FALSE(health.contains(key)) << name << ' ' << key << ": no rail was seen there";
   }
 }
 

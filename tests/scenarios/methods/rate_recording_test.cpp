@@ -110,7 +110,7 @@ TEST(RateRecording, AStatedRangeThatTheDataContradictIsTold) {
     recording.sensors.imus.front().stated_gyro_range_rad_s = stated;
     const Estimate estimate = estimated_rates("tumble", recording);
     EXPECT_GE(estimate.health.at("rails_disagreeing"), 1.0) << stated;
-    EXPECT_EQ(estimate.health.at("learnt_gyro_rail_y_rad_s"), 10.5) << stated;
+    EXPECT_EQ(estimate.health.at("learnt_gyro_rail_x_rad_s"), 10.5) << stated;
     EXPECT_EQ(clipped_median("tumble", recording), right) << stated;  // the plateau counts
   }
 }

@@ -65,6 +65,7 @@ struct RateReport {
   double calibration_mahalanobis = 0.0;
   bool calibration_at_prior = false;  ///< that was too large: nothing was learnt, the constants stayed at their prior
   std::array<std::optional<double>, 6> rail;  ///< in use: gyro [rad/s], accelerometer [m/s^2]; none: not seen
+  std::array<bool, 6> rail_seen{};            ///< on that axis itself, not on another one or in a sheet
   RailPlanes planes;                          ///< of the gyro's elements, where they were seen
   RailPlanes accel_planes;                    ///< of the accelerometer's, m/s^2
   /// What the device makes of the motion, as far as the run tells.

@@ -89,12 +89,12 @@ class TumblingOdometry {
   const std::optional<RateState>& smoothed_rate() const { return pass_.smoothed_rate(); }
   /// What is known of the IMU on the body: lever arm, biases, elements.
   RigCalibration rig() const { return pass_.rates().rate().calibration(pass_.rate_state().rate); }
+  const KnownRails& rails() const { return pass_.rate_state().rate.rails.known; }
   /// Gaps of the IMU after which the rates began anew.
   std::size_t gaps() const { return gaps_; }
   /// Whether the map and the pose are those of the second pass (SecondPass).
   bool passed_again() const { return again_.taken(); }
-  /// Samples that the mapper refused with their rates, and sweeps that nobody took in time: 0 unless something is
-  /// wrong.
+  /// Samples that the mapper refused with their rates, sweeps that nobody took in time: 0 unless something is wrong.
   std::size_t refused_samples() const { return pass_.refused_samples(); }
   std::size_t dropped_sweeps() const { return dropped_sweeps_; }
   /// Standard deviation of the IMU's stamps about a regular clock [s], while that clock's times count for them.
