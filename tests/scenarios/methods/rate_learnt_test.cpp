@@ -184,6 +184,39 @@ TEST(RateLearnt, RailsThatReadingsContradictGoAndOthersStay) {
 }
 
 // which rail, by how many samples of either sign, how steep and how sure
+// A wand tells nothing of lever arm and inertia, and its rails all the same: a run that is too short to show them knows
+// them from the one before.
+TEST(RateLearnt, RailsOfACarriedBodyGoOnToTheNextRun) {
+  const DataRoot data{test::source_dir()};
+  sim::Recording recording = simulate_draw(data, load_scenario(data, "twirl"), 99560, 1, Lidars::left_out).recording;
+  std::optional<LearntRig> rig;
+  for (const char* const name : {"rate/tumble_lag", "rate/tumble"}) {
+    Learning learning;
+    const Estimate whole = learning_method(*find_methods(name).front(), learning).run(recording.sensors, {}, {});
+    ASSERT_TRUE(whole.status.ok()) << name;
+    EXPECT_EQ(whole.health.at("calibration_at_prior"), 1.0) << name;
+    ASSERT_NE(learning.found(), nullptr) << name;
+    rig = *learning.found();
+    EXPECT_TRUE(rig->rails_alone) << name;
+  }
+
+  sim::ImuRecord& imu = recording.sensors.imus.front();
+  const std::size_t short_run = imu.time_ns.size() / 25;
+  imu.time_ns.resize(short_run), imu.gyro_rad_s.resize(short_run), imu.accel_m_s2.resize(short_run);
+  if (!imu.clip_flags.empty()) imu.clip_flags.resize(short_run);
+  recording.sensors.imus.resize(1);
+  const auto rails = [](const Estimate& estimate) {
+    return std::count_if(estimate.health.begin(), estimate.health.end(),
+                         [](const auto& row) { return row.first.starts_with("gyro_rail_log_odds_"); });
+  };
+  const Estimate alone = run_rate_tumble(recording.sensors, defaults(), nullptr, nullptr),
+                 knowing = run_rate_tumble(recording.sensors, defaults(), &*rig, nullptr);
+  ASSERT_TRUE(alone.status.ok());
+  ASSERT_TRUE(knowing.status.ok());
+  EXPECT_EQ(rails(alone), 0);
+  EXPECT_GT(rails(knowing), 0);
+}
+
 TEST(RateLearnt, EachMethodTellsTheRailsThatItFound) {
   const sim::Sensors twirled = wand(0.0, 30.0);
   const test::WandRail rail;
