@@ -117,11 +117,14 @@ TEST(Door, TheTumblingExampleFollowsATumbleAndABagSaysTheSame) {
   EXPECT_NEAR(end.p_m.norm(), distance, 0.3);
   EXPECT_GT(end.sigma_m, 0.0);
 
-  const fs::path bag = hill_1.file.parent_path() / "hill.bag";
-  output_of(test::program().string() + " export " + hill_1.file.string() + " --format rosbag1 -o " + bag.string());
-  const std::vector<Line> from_bag = lines_of(output_of(std::string(TUMBLE_BAG) + " " + bag.string()));
-  ASSERT_EQ(from_bag.size(), lines.size());
-  EXPECT_LT((from_bag.back().p_m - end.p_m).norm(), 1e-9);
+  for (const auto& [format, name] : {std::pair("rosbag1", "hill.bag"), {"rosbag2", "hill_2"}, {"mcap", "hill.mcap"}}) {
+    const fs::path bag = hill_1.file.parent_path() / name;
+    output_of(test::program().string() + " export " + hill_1.file.string() + " --format " + format + " -o " +
+              bag.string());
+    const std::vector<Line> from_bag = lines_of(output_of(std::string(TUMBLE_BAG) + " " + bag.string()));
+    ASSERT_EQ(from_bag.size(), lines.size()) << format;
+    EXPECT_LT((from_bag.back().p_m - end.p_m).norm(), 1e-9) << format;
+  }
   EXPECT_NE(std::system((std::string(TUMBLE_BAG) + " " + hill_1.file.string() + " 2>/dev/null").c_str()), 0);
 }
 

@@ -17,10 +17,11 @@ Status LidarInertialOdometry::Impl::add_sweep(TimeNs start_ns, TimeNs end_ns, st
   if (Status status = check_sweep(start_ns, end_ns, returns); !status.ok()) return status;
   if (Status status = level_at_first(); !status.ok()) return status;
 
-  // where the IMU leads from the border on
+  // where the IMU leads from the border on; an alignment bends the trajectory to where the lidar finds itself
   SweepTrajectory& trajectory = scratch.trajectory;
-  const auto& [state, calibration, deficit] = border.belief.mean;
-  if (Status status = trajectory.build(state, track.samples(), end_ns, calibration.gravity_W_m_s2); !status.ok())
+  const Registration::Estimate& before = border.belief.mean;
+  if (Status status = trajectory.build(before.state, track.samples(), end_ns, before.calibration.gravity_W_m_s2);
+      !status.ok())
     return status;
   resting_sweeps = rests(track, trajectory, end_ns) ? resting_sweeps + 1 : 0;
   const MotionWindow motion{track.samples(), end_ns, resting_sweeps};
@@ -30,8 +31,8 @@ Status LidarInertialOdometry::Impl::add_sweep(TimeNs start_ns, TimeNs end_ns, st
   // where the lidar finds itself in the map; a sweep of which no return is of use is placed by inertia
   mapping::SweepPoints& points = scratch.points;
   mapping::SweepPoints::Counts counts;
-  const Status points_status =
-      points.select(params, returns, end_ns - start_ns, calibration, seconds(start_ns - border.time_ns()), counts);
+  const Status points_status = points.select(params, returns, end_ns - start_ns, before.calibration,
+                                             seconds(start_ns - border.time_ns()), counts);
   report.points_used = counts.used;
   report.points_alone = counts.alone;
   const auto placed = std::make_unique<Placed>();
@@ -40,7 +41,7 @@ Status LidarInertialOdometry::Impl::add_sweep(TimeNs start_ns, TimeNs end_ns, st
 
   // what stands and its motion, what it adds to the map, and what the next sweep begins from
   const std::unique_ptr<const Belief> start(new Belief(update(motion, *placed, *prediction)));
-  if (!placed->alignment) {
+  if (!placed->alignment) {  // a try that failed may have bent it
     const Registration::Estimate& mean = start->mean;
     const Status status = trajectory.build(mean.state, motion.samples, motion.end_ns, mean.calibration.gravity_W_m_s2,
                                            mean.deficit_rad_s);
@@ -118,6 +119,8 @@ void LidarInertialOdometry::Impl::register_to_map(const Prediction& prediction, 
   mapping::judge(params, tracking, scene.points.size(), prior_trusted, attempt, placed);
 }
 
+/// What is believed of the sweep's start and all that goes on. Of a body that is lost and rests, what was predicted is
+/// put right first: the window goes on from it, too.
 Belief LidarInertialOdometry::Impl::update(const MotionWindow& motion, const Placed& placed,
                                            Prediction& prediction) const {
   if (placed.alignment) return mapping::posterior(prediction, *placed.alignment);
@@ -141,7 +144,8 @@ std::vector<InsertedPoint> LidarInertialOdometry::Impl::insert(const UpdatedSwee
   return inserted;
 }
 
-/// What the sweep leaves behind.
+/// What the sweep leaves behind. The window joins the sweep to the last one by the border that there was: it enters
+/// before border_after() replaces that.
 void LidarInertialOdometry::Impl::carry_on(const UpdatedSweep& sweep, const Placed& placed, const MotionWindow& motion,
                                            std::vector<InsertedPoint> inserted, SweepReport& report) {
   const Registration::Result* aligned = placed.alignment ? &*placed.alignment : nullptr;
