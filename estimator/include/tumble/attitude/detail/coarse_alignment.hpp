@@ -3,6 +3,7 @@
 
 #include <Eigen/Geometry>
 #include <algorithm>
+#include <cmath>
 
 #include "tumble/attitude/detail/tilt.hpp"
 #include "tumble/common/detail/squared.hpp"
