@@ -31,6 +31,7 @@ struct WindowSweep {
 /// The newest sweeps, refined together: fixed-lag smoothing.
 class LagWindow {
  public:
+  LagWindow() = default;
   explicit LagWindow(int sweeps) : length_(static_cast<std::size_t>(sweeps)) {}
 
   /// A new one, blank. The oldest leaves when the window is full already.
@@ -44,6 +45,7 @@ class LagWindow {
   /// What was inserted so far stays where it is: indices of the map have changed.
   void forget_inserted();
 
+  std::size_t length() const { return length_; }
   const std::deque<WindowSweep>& sweeps() const { return sweeps_; }
 
   /// Stated once: `mapping_members.hpp`.
@@ -51,7 +53,7 @@ class LagWindow {
   static void members(Self& s, Visitor& visit);
 
  private:
-  std::size_t length_;
+  std::size_t length_ = 1;
   std::deque<WindowSweep> sweeps_;
 };
 

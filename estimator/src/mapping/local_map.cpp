@@ -88,6 +88,12 @@ bool LocalMap::prune(const Params& params, const Eigen::Vector3d& p_WI_m) {
   return true;
 }
 
+void LocalMap::withdraw(std::uint32_t first_sweep) {
+  if (first_sweep >= sweeps()) return;
+  map_.keep_before(first_sweep);
+  seen_from_W_m_.resize(first_sweep);
+}
+
 bool LocalMap::knows_its_sweeps() const {
   for (std::uint32_t index = 0; index < map_.index_end(); ++index) {
     if (map_.exists(index) && map_.sweep(index) >= seen_from_W_m_.size()) return false;

@@ -38,6 +38,11 @@ class LocalMap {
   void move(const SweepTrajectory& trajectory, const Eigen::Isometry3d& T_IL, double later_s,
             std::span<const InsertedPoint> inserted);
 
+  /// Sweeps that gave points, by whose number each point is known.
+  std::uint32_t sweeps() const { return static_cast<std::uint32_t>(seen_from_W_m_.size()); }
+  /// Takes back what the sweeps from this number on drew. Indices have changed. O(number of points).
+  void withdraw(std::uint32_t first_sweep);
+
   /// Forgets what is out of reach once the sensor has moved far enough; then true, and indices have changed.
   bool prune(const Params& params, const Eigen::Vector3d& p_WI_m);
 

@@ -41,8 +41,16 @@ void InertialTrack::InitialRest::members(Self& s, Visitor& visit) {
 
 template <class Self, class Visitor>
 void LagWindow::members(Self& s, Visitor& visit) {
-  visit.scratch(s.length_);  // of the parameters
+  visit("window.length", s.length_, 1.0, 8.0);
   visit("window.sweeps", s.sweeps_);
+}
+
+template <StateOf<DeadReckoning> Self, class Visitor>
+void members(Self& s, Visitor& visit) {
+  visit("alone.border", s.border);
+  visit("alone.window", s.window);
+  visit("alone.world", s.world);
+  visit("alone.drawn_from", s.drawn_from);
 }
 
 template <class Self, class Visitor>
@@ -104,6 +112,7 @@ void LidarInertialOdometry::Impl::members(Self& s, Visitor& visit) {
   visit("window", s.window);
   visit("local map", s.map);
   visit("world", s.world);
+  visit("by inertia", s.by_inertia);
   visit.scratch(s.scratch);
 }
 

@@ -1,7 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <optional>
+
 #include "aligner.hpp"
+#include "dead_reckoning.hpp"
 #include "inertial_track.hpp"
 #include "lag_window.hpp"
 #include "local_map.hpp"
@@ -60,8 +63,14 @@ struct LidarInertialOdometry::Impl {
                                              bool rings_differ, SweepReport& report);
   void carry_on(const mapping::UpdatedSweep& sweep, const mapping::Placed& placed, const mapping::MotionWindow& motion,
                 std::vector<mapping::InsertedPoint> inserted, SweepReport& report);
-  void enter_window(const mapping::UpdatedSweep& sweep, const mapping::MotionWindow& motion,
-                    std::vector<mapping::InsertedPoint> inserted, bool aligned);
+  /// Of a sweep that went on from there.
+  static mapping::WindowSweep& enter_window(const mapping::UpdatedSweep& sweep, const mapping::MotionWindow& motion,
+                                            const mapping::Border& from, mapping::LagWindow& into);
+  /// Of a lost sensor, where nothing but the IMU is known of its motion.
+  void stop_at_rest(const mapping::MotionWindow& motion, const mapping::Border& from,
+                    mapping::Prediction& prediction) const;
+  void go_on_by_inertia(const mapping::MotionWindow& motion);
+  void go_back_to_inertia();
   void part_from_world(const mapping::UpdatedSweep& sweep, const SweepReport& report);
   void forget_until(TimeNs end_ns);
 
@@ -76,6 +85,7 @@ struct LidarInertialOdometry::Impl {
   static void members(Self& s, Visitor& visit);
   /// What holds between the members of every state; the first that does not.
   Status check_state() const;
+  Status check_by_inertia() const;
 
   Params params;
   mapping::TrackingState tracking;
@@ -86,6 +96,7 @@ struct LidarInertialOdometry::Impl {
   mapping::LagWindow window;
   mapping::LocalMap map;
   mapping::WorldCovariance world;
+  std::optional<mapping::DeadReckoning> by_inertia;  // while a place found again is not borne out
   mapping::SweepScratch scratch;
 };
 

@@ -23,12 +23,31 @@ void visit_taught(Self& p, Visitor& visit) {
   visit("time_offset_sigma_s", p.time_offset_sigma_s);
 }
 
+Status check_window(const mapping::LagWindow& window, std::size_t length) {
+  if (window.length() != length)
+    return {Trouble::out_of_range, "window.length", double(window.length()), double(length)};
+  if (window.sweeps().size() > length)
+    return {Trouble::out_of_range, "window.sweeps", double(window.sweeps().size()), double(length)};
+  return {};
+}
+
 }  // namespace
+
+Status LidarInertialOdometry::Impl::check_by_inertia() const {
+  if (!by_inertia) return {};
+  if (!mapping::is_to_be_borne_out(tracking)) return {Trouble::out_of_range, "by inertia", 1.0, 0.0};
+  if (by_inertia->drawn_from > map.sweeps())
+    return {Trouble::out_of_range, "alone.drawn_from", double(by_inertia->drawn_from), double(map.sweeps())};
+  for (const mapping::WindowSweep& sweep : by_inertia->window.sweeps()) {
+    if (!sweep.inserted.empty()) return {Trouble::out_of_range, "alone.inserted", double(sweep.inserted.size()), 0.0};
+  }
+  return check_window(by_inertia->window, window.length());
+}
 
 Status LidarInertialOdometry::Impl::check_state() const {
   const auto most = static_cast<std::size_t>(params.expert.window_sweeps);
-  if (window.sweeps().size() > most)
-    return {Trouble::out_of_range, "window.sweeps", double(window.sweeps().size()), double(most)};
+  if (Status status = check_window(window, most); !status.ok()) return status;
+  if (Status status = check_by_inertia(); !status.ok()) return status;
   for (const mapping::WindowSweep& sweep : window.sweeps()) {
     for (const mapping::InsertedPoint& inserted : sweep.inserted) {
       if (inserted.index >= map.voxels().index_end() || !map.voxels().exists(inserted.index))

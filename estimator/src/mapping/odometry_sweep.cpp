@@ -23,6 +23,7 @@ Status LidarInertialOdometry::Impl::add_sweep(TimeNs start_ns, TimeNs end_ns, st
   if (Status status = trajectory.build(before.state, track.samples(), end_ns, before.calibration.gravity_W_m_s2);
       !status.ok())
     return status;
+  const int rested_sweeps = resting_sweeps;
   resting_sweeps = rests(track, trajectory, end_ns) ? resting_sweeps + 1 : 0;
   const MotionWindow motion{track.samples(), end_ns, resting_sweeps};
   const std::unique_ptr<Prediction> prediction(
@@ -37,6 +38,12 @@ Status LidarInertialOdometry::Impl::add_sweep(TimeNs start_ns, TimeNs end_ns, st
   report.points_alone = counts.alone;
   const auto placed = std::make_unique<Placed>();
   if (points_status.ok()) register_to_map(*prediction, motion, points, trajectory, report, *placed);
+  if (by_inertia && mapping::contradicts(tracking, placed->placement)) {  // anew, as lost as it was
+    go_back_to_inertia();
+    resting_sweeps = rested_sweeps;
+    report = SweepReport{};
+    return add_sweep(start_ns, end_ns, returns, report);
+  }
   report.verdict = placed->verdict;
 
   // what stands and its motion, what it adds to the map, and what the next sweep begins from
@@ -111,6 +118,7 @@ void LidarInertialOdometry::Impl::register_to_map(const Prediction& prediction, 
   if (placed.alignment) {
     const Registration::Result& aligned = *placed.alignment;
     report.innovation = mapping::innovation(prediction, aligned.mean);
+    placed.expected = mapping::is_expected(params, prediction, aligned.mean, report.innovation);
     report.conditioning = aligned.eigenvalues[5] > 0.0 ? aligned.eigenvalues[0] / aligned.eigenvalues[5] : 0.0;
     report.weakest_direction = aligned.directions.col(0);
     report.weakest_sigma_m = aligned.weakest_sigma_m;
@@ -125,10 +133,14 @@ Belief LidarInertialOdometry::Impl::update(const MotionWindow& motion, const Pla
                                            Prediction& prediction) const {
   if (placed.alignment) return mapping::posterior(prediction, *placed.alignment);
   // the inertial prior stands; an IMU at rest stops the drift of its velocity
-  const bool by_inertia = std::holds_alternative<mapping::InertialPrior>(known);
-  if (mapping::is_lost(tracking) && by_inertia && track.rests_until(motion.end_ns))
-    mapping::predict_rest(params, border, prediction);
+  if (mapping::is_lost(tracking)) stop_at_rest(motion, border, prediction);
   return mapping::posterior(prediction);
+}
+
+void LidarInertialOdometry::Impl::stop_at_rest(const MotionWindow& motion, const mapping::Border& from,
+                                               Prediction& prediction) const {
+  if (std::holds_alternative<mapping::InertialPrior>(known) && track.rests_until(motion.end_ns))
+    mapping::predict_rest(params, from, prediction);
 }
 
 std::vector<InsertedPoint> LidarInertialOdometry::Impl::insert(const UpdatedSweep& sweep, mapping::SweepPoints& points,
@@ -150,11 +162,21 @@ void LidarInertialOdometry::Impl::carry_on(const UpdatedSweep& sweep, const Plac
                                            std::vector<InsertedPoint> inserted, SweepReport& report) {
   const Registration::Result* aligned = placed.alignment ? &*placed.alignment : nullptr;
   tracking = mapping::after_sweep(tracking, placed.placement, placed.verdict);
+  if (mapping::is_to_be_borne_out(tracking)) {
+    report.unconfirmed = true;
+    go_on_by_inertia(motion);
+  } else {
+    by_inertia.reset();
+  }
   report.lost_sweeps = mapping::lost_sweeps(tracking);
   if (aligned && placed.verdict == SweepVerdict::degenerate && motion.resting_sweeps == 0)
     world.add_drift(report.weakest_sigma_m, report.weakest_direction);
   report.trajectory = poses_along(sweep.trajectory, motion.end_ns, sweep.start.error);
-  enter_window(sweep, motion, std::move(inserted), aligned != nullptr);
+  enter_window(sweep, motion, border, window).inserted = std::move(inserted);
+  if (aligned) {
+    window.smooth();
+    window.move_inserted(map);
+  }
   // no later sweep refines it: it leaves with the next one
   if (window.is_full()) report.smoothed = poses_of(window.sweeps().front());
   mapping::border_after(params, sweep.start, motion, sweep.trajectory, aligned, border);
@@ -176,24 +198,59 @@ void LidarInertialOdometry::Impl::part_from_world(const UpdatedSweep& sweep, con
 void LidarInertialOdometry::Impl::forget_until(TimeNs end_ns) {
   known = mapping::InertialPrior{};
   track.forget_until(end_ns);
+  if (by_inertia) return;  // what it drew may be taken back: by numbers that pruning changes
   if (map.prune(params, border.belief.mean.state.p_WI_m)) window.forget_inserted();
 }
 
-void LidarInertialOdometry::Impl::enter_window(const UpdatedSweep& sweep, const MotionWindow& motion,
-                                               std::vector<InsertedPoint> inserted, bool aligned) {
-  WindowSweep& newest = window.enter();
+/// A place found again that has nothing to bear it out yet: what would stand without it goes on too.
+void LidarInertialOdometry::Impl::go_on_by_inertia(const MotionWindow& motion) {
+  if (!by_inertia) {
+    mapping::DeadReckoning& from_here = by_inertia.emplace();  // in its place: too large for the stack
+    from_here.border = border;
+    from_here.window = window;
+    from_here.window.forget_inserted();
+    from_here.world = world;
+    from_here.drawn_from = map.sweeps() - 1;
+  }
+  mapping::Border& alone = by_inertia->border;
+  const Registration::Estimate& before = alone.belief.mean;
+  SweepTrajectory trajectory;
+  Status status = trajectory.build(before.state, motion.samples, motion.end_ns, before.calibration.gravity_W_m_s2);
+  if (!status.ok()) return by_inertia.reset();
+  const std::unique_ptr<Prediction> prediction(
+      new Prediction(mapping::predict(params, alone, motion, trajectory, known)));
+  stop_at_rest(motion, alone, *prediction);
+  const std::unique_ptr<const Belief> start(new Belief(mapping::posterior(*prediction)));
+  const Registration::Estimate& mean = start->mean;
+  status =
+      trajectory.build(mean.state, motion.samples, motion.end_ns, mean.calibration.gravity_W_m_s2, mean.deficit_rad_s);
+  if (!status.ok()) return by_inertia.reset();
+  enter_window({*prediction, *start, trajectory}, motion, alone, by_inertia->window);
+  mapping::border_after(params, *start, motion, trajectory, nullptr, alone);
+}
+
+/// The place found again was none: what it drew is taken from the map, and inertia stands.
+void LidarInertialOdometry::Impl::go_back_to_inertia() {
+  map.withdraw(by_inertia->drawn_from);
+  border = by_inertia->border;
+  window = std::move(by_inertia->window);
+  world = by_inertia->world;
+  tracking = mapping::given_up(tracking);
+  by_inertia.reset();
+}
+
+WindowSweep& LidarInertialOdometry::Impl::enter_window(const UpdatedSweep& sweep, const MotionWindow& motion,
+                                                       const mapping::Border& from, mapping::LagWindow& into) {
+  WindowSweep& newest = into.enter();
   newest.predicted.mean = sweep.prediction.prior.mean;
   newest.predicted.errors = sweep.prediction.errors;
-  newest.by_before.noalias() = sweep.prediction.by_last * border.end_by_start;
+  newest.by_before.noalias() = sweep.prediction.by_last * from.end_by_start;
   newest.filtered.mean = sweep.start.mean;
   newest.filtered.errors = sweep.start.error;
   newest.smoothed = newest.filtered;
   newest.samples.assign(motion.samples.begin(), motion.samples.end());
   newest.end_ns = motion.end_ns;
-  newest.inserted = std::move(inserted);
-  if (!aligned) return;
-  window.smooth();
-  window.move_inserted(map);
+  return newest;
 }
 
 PoseState LidarInertialOdometry::Impl::pose_along(const SweepTrajectory& motion, double t_s,

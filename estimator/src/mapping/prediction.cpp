@@ -187,6 +187,13 @@ double innovation(const Prediction& prediction, const Registration::Estimate& al
   return std::sqrt(std::max(0.0, moved.dot(P.ldlt().solve(moved))) / kMotion);
 }
 
+bool is_expected(const Params& params, const Prediction& prediction, const Registration::Estimate& aligned,
+                 double innovation) {
+  const Eigen::Vector3d away_m = aligned.state.p_WI_m - prediction.prior.mean.state.p_WI_m;
+  return innovation * innovation * Registration::kMotion <= unknowns::kAgrees &&
+         away_m.norm() <= params.expert.matching.distance_m;
+}
+
 void border_after(const Params& params, const Belief& start, const MotionWindow& window,
                   const SweepTrajectory& trajectory, const Registration::Result* alignment, Border& border) {
   border.end_by_start = unknowns_at(trajectory, trajectory.duration_s());

@@ -60,6 +60,11 @@ Belief posterior(const Prediction& prediction, const Registration::Result& align
 /// See SweepReport::innovation; mapping.md (R51).
 double innovation(const Prediction& prediction, const Registration::Estimate& aligned);
 
+/// Whether a place is where the prediction has it: within its covariance, and no further off than surfaces are matched,
+/// beyond which whichever is nearest fits. `innovation` is that of above. mapping.md (R120).
+bool is_expected(const LidarInertialOdometry::Params& params, const Prediction& prediction,
+                 const Registration::Estimate& aligned, double innovation);
+
 /// The border at the end of a sweep that moved along `trajectory`, by what stands for it at its start. `alignment`
 /// is null where there is none.
 void border_after(const LidarInertialOdometry::Params& params, const Belief& start, const MotionWindow& window,

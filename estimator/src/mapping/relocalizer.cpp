@@ -25,6 +25,11 @@ bool converged(const Registration::Result& found) {
   return found.verdict == RegistrationVerdict::converged;
 }
 
+/// Whether the surfaces fit that it matched. mapping.md (R121).
+bool fits(const Params& params, const Registration::Result& found) {
+  return double(found.inliers) >= params.expert.tracking.borne_out_share * double(found.matches);
+}
+
 /// Registers; where that fails and the rate may be short on a clipped axis, tries again from larger saturation
 /// deficits, since a rail that is left behind within one sweep may put the start a whole radian off.
 void track(const Params& params, const Registration::Prior& prior, const Scene& scene, Aligner& aligner,
@@ -54,18 +59,30 @@ void track(const Params& params, const Registration::Prior& prior, const Scene& 
   found.iterations = iterations;
 }
 
-/// Looks for the way back: from the prior and from starts around it. A search goes on with the next sweep where this
-/// one ended, so that no sweep costs too much.
-void search(const RelocalizationParams& params, const Registration::Prior& prior, const Scene& scene, int failed_before,
+/// Looks for the way back: from the prior and from starts around it, up to a place that its surfaces fit; else that of
+/// which most points do. A search goes on with the next sweep where this one ended, so that no sweep costs too much.
+void search(const Params& params, const Registration::Prior& prior, const Scene& scene, int failed_before,
             Aligner& aligner, SweepTrajectory& trajectory, Registration::Result& found) {
+  const RelocalizationParams& starts = params.expert.search;
+  struct Best {
+    Registration::Result found;
+    SweepTrajectory trajectory;
+  };
+  std::unique_ptr<Best> best;
   aligner.from_afar(prior, prior, scene, trajectory, found);
   const RegistrationVerdict verdict = found.verdict;  // of the sweep where nothing is found
-  const int moved = params.starts_per_sweep - 1;
-  for (int k = 0; k < moved && !converged(found); ++k) {
-    const int index = 1 + (failed_before * moved + k) % (kStartsPerRound * params.rounds);
+  const int moved = starts.starts_per_sweep - 1;
+  for (int k = 0; k < moved && !(converged(found) && fits(params, found)); ++k) {
+    if (converged(found) && (!best || found.inliers > best->found.inliers))
+      best = std::make_unique<Best>(Best{found, trajectory});
+    const int index = 1 + (failed_before * moved + k) % (kStartsPerRound * starts.rounds);
     const auto start = std::make_unique<Registration::Prior>(prior);
-    move_start(params, index, *start);
+    move_start(starts, index, *start);
     aligner.from_afar(*start, prior, scene, trajectory, found);
+  }
+  if (best && !(converged(found) && (fits(params, found) || found.inliers >= best->found.inliers))) {
+    found = best->found;
+    trajectory = best->trajectory;
   }
   if (!converged(found)) found.verdict = verdict;
 }
@@ -95,7 +112,7 @@ Attempt attempt(const Params& params, const TrackingState& tracking, const Regis
   Registration::Result& found = alignment.emplace();
   found.points = scene.points.size();
   if (is_lost(tracking)) {
-    search(params.expert.search, prior, scene, failed_searches(tracking), aligner, trajectory, found);
+    search(params, prior, scene, failed_searches(tracking), aligner, trajectory, found);
   } else {
     track(params, prior, scene, aligner, trajectory, found);
   }
@@ -112,7 +129,10 @@ void judge(const Params& params, const TrackingState& before, std::size_t points
   if (out.alignment) {
     const bool holds = out.alignment->weakest_sigma_m <= params.expert.matching.degenerate_sigma_m;
     out.verdict = holds ? SweepVerdict::registered : SweepVerdict::degenerate;
-    out.placement = Placement::found;
+    const bool fits =
+        double(out.alignment->inliers) >= params.expert.tracking.borne_out_share * double(out.alignment->matches);
+    const bool doubtful = (is_lost(before) && !(out.expected && fits)) || (is_to_be_borne_out(before) && !fits);
+    out.placement = doubtful ? Placement::doubtful : Placement::found;
     return;
   }
   const bool enough = points >= params.expert.matching.least;

@@ -24,13 +24,14 @@ Attempt attempt(const LidarInertialOdometry::Params& params, const TrackingState
 /// How a sweep lies in the map.
 struct Placed {
   SweepVerdict verdict = SweepVerdict::rejected;
+  bool expected = true;  ///< of the alignment: where the sweeps before lead to
   Placement placement = Placement::not_tried;
   bool map_says_nothing = false;                  ///< the sweep has points, but the map too few of them
   std::optional<Registration::Result> alignment;  ///< of its start
 };
 
-/// What an attempt with so many points comes to, whose alignment `placed` has already. Where the map had nothing to
-/// say, or after enough searches in vain, the motion goes on by inertia as `degenerate`.
+/// What an attempt with so many points comes to, whose alignment, and whether that was expected, `placed` has already.
+/// Where the map had nothing to say, or after enough searches in vain, the motion goes on by inertia as `degenerate`.
 void judge(const LidarInertialOdometry::Params& params, const TrackingState& before, std::size_t points,
            bool prior_trusted, const Attempt& attempt, Placed& placed);
 

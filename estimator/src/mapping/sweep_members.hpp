@@ -91,6 +91,8 @@ void members(Self& s, Visitor& visit) {
 template <StateOf<FoundAgain> Self, class Visitor>
 void members(Self& s, Visitor& visit) {
   visit("found_again.after_sweeps", s.after_sweeps, 0.0, 1e9);
+  visit("found_again.failed_searches", s.failed_searches, 0.0, 1e9);
+  visit("found_again.agreeing", s.agreeing, 0.0, 1e9);
 }
 
 template <StateOf<InertialPrior> Self, class Visitor>

@@ -3,11 +3,35 @@
 
 namespace tumble::mapping {
 
+namespace {
+
+constexpr int kAgreeing = 2;  // sweeps that bear a place out: one alone may fit by chance what it was found by
+
+bool is_found(Placement placement) {
+  return placement == Placement::found || placement == Placement::doubtful;
+}
+
+}  // namespace
+
 TrackingState after_sweep(const TrackingState& before, Placement placement, SweepVerdict verdict) {
-  const int failed = placement == Placement::found ? 0 : failed_searches(before) + (placement == Placement::failed);
+  const int failed = is_found(placement) ? 0 : failed_searches(before) + (placement == Placement::failed);
   if (verdict == SweepVerdict::rejected) return Lost{lost_sweeps(before) + 1, failed};
-  if (is_lost(before) && placement == Placement::found) return FoundAgain{lost_sweeps(before)};
+  if (is_lost(before) && placement == Placement::doubtful)
+    return FoundAgain{lost_sweeps(before), failed_searches(before), 0};
+  if (const FoundAgain* found = std::get_if<FoundAgain>(&before); found != nullptr && found->agreeing + 1 < kAgreeing)
+    return FoundAgain{found->after_sweeps, found->failed_searches, found->agreeing + 1};
   return Tracking{failed};
+}
+
+bool contradicts(const TrackingState& before, Placement placement) {
+  return is_to_be_borne_out(before) && placement != Placement::found;
+}
+
+/// A start more has led nowhere.
+Lost given_up(const TrackingState& found_again) {
+  const FoundAgain* found = std::get_if<FoundAgain>(&found_again);
+  if (found == nullptr) return {};
+  return {found->after_sweeps + 1 + found->agreeing, found->failed_searches + 1};
 }
 
 bool has_started(const TrackingState& state) {
@@ -16,6 +40,10 @@ bool has_started(const TrackingState& state) {
 
 bool is_lost(const TrackingState& state) {
   return std::holds_alternative<Lost>(state);
+}
+
+bool is_to_be_borne_out(const TrackingState& state) {
+  return std::holds_alternative<FoundAgain>(state);
 }
 
 int lost_sweeps(const TrackingState& state) {

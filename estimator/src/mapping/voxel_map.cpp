@@ -162,6 +162,10 @@ bool VoxelMap::is_taken(const Eigen::Vector3f& position) const {
 std::uint32_t VoxelMap::add(const Eigen::Vector3f& position, float sigma_m, std::uint32_t sweep, std::uint32_t line) {
   if (!has_room_for(position)) return kNoPoint;
   if (params_.spacing_m > 0.0 && !taken_.add(SpatialHash::key(cube_of(position, cubes_per_m_)))) return kNoPoint;
+  return put(position, sigma_m, sweep, line);
+}
+
+std::uint32_t VoxelMap::put(const Eigen::Vector3f& position, float sigma_m, std::uint32_t sweep, std::uint32_t line) {
   // the newest chunk of a cell stands first and is the only one with room
   std::uint32_t& first = first_of(cube_of(position, cells_per_m_));
   if (first == kNone || chunks_[first].count == kChunk) new_chunk(first);
@@ -214,6 +218,18 @@ std::vector<std::uint32_t> VoxelMap::keep_within(const Eigen::Vector3f& centre, 
   }
   *this = std::move(near);
   return kept;
+}
+
+void VoxelMap::keep_before(std::uint32_t first_sweep) {
+  VoxelMap kept(params_);
+  for (std::uint32_t index = 0; index < index_end(); ++index) {
+    if (!exists(index) || sweep_[index] >= first_sweep) continue;
+    const Eigen::Vector3f position = position_W_m(index);
+    // two that were moved into one cube both stay
+    if (params_.spacing_m > 0.0) kept.taken_.add(SpatialHash::key(cube_of(position, cubes_per_m_)));
+    kept.put(position, sigma_m_[index], sweep_[index], line_[index]);
+  }
+  *this = std::move(kept);
 }
 
 std::size_t VoxelMap::bytes() const {

@@ -3,7 +3,7 @@
 
 #include <cmath>
 
-#include "tests/estimator/mapping/synthetic_room.hpp"
+#include "tests/estimator/mapping/room_rig.hpp"
 #include "tumble/common/so3.hpp"
 #include "tumble/mapping/lidar_inertial_odometry.hpp"
 
@@ -16,20 +16,9 @@ using Odometry = LidarInertialOdometry;
 using test::kHalfColumns;
 using test::kRoomNoise_m;
 using test::kSamplesPerSweep;
-
-Odometry::Params true_params() {
-  Odometry::Params params;
-  params.T_IL.translation() = Eigen::Vector3d(0.02, 0.087, 0.04);
-  params.T_IL.linear() = so3::exp({0.0, 0.0, -1.5707963267948966}).toRotationMatrix();
-  return params;
-}
-
-test::Motion slower() {
-  test::Motion motion;
-  motion.spin_rad_s = 6.0;
-  motion.second_spin_rad_s = 2.0;
-  return motion;
-}
+using test::slower;
+using test::true_params;
+using Rig = test::RoomRig;
 
 /// A spin whose axis turns in the body: about a fixed one, a late clock and a turned mounting look the same.
 test::Motion turning() {
@@ -38,42 +27,6 @@ test::Motion turning() {
   motion.second_spin_rad_s = 5.0;
   return motion;
 }
-
-/// An odometry with its sensors, and the truth beside it.
-struct Rig {
-  explicit Rig(const Odometry::Params& params, const test::Motion& m = slower(),
-               const test::Room& r = test::Room::box_with_pillars())
-      : odometry(params), motion(m), room(r), imu(test::make_imu(m, 7.0)) {}
-
-  void feed_imu(int sweep, const Eigen::Vector3d& rate_error = Eigen::Vector3d::Zero()) {
-    for (int k = sweep * kSamplesPerSweep; k < (sweep + 1) * kSamplesPerSweep; ++k) {
-      RateState rate = test::believe(imu[static_cast<std::size_t>(k)]);
-      rate.w_WI_I_rad_s += rate_error;
-      ASSERT_TRUE(odometry.add_imu(imu[static_cast<std::size_t>(k)], rate).ok());
-    }
-  }
-  std::vector<LidarPoint> points(int sweep) const {
-    return test::make_sweep(room, motion, true_params().T_IL, sweep, kRoomNoise_m, kHalfColumns);
-  }
-  Status sweep(int k, std::span<const LidarPoint> given) {
-    return odometry.add_sweep(k * test::kSweep_ns, (k + 1) * test::kSweep_ns, given, report);
-  }
-  void run(int from, int to) {
-    for (int k = from; k < to; ++k) {
-      feed_imu(k);
-      ASSERT_TRUE(sweep(k, points(k)).ok());
-    }
-  }
-  double error_m() const {
-    return (report.pose.p_WA_m - motion.p_m(1e-9 * static_cast<double>(report.pose.time_ns))).norm();
-  }
-
-  Odometry odometry;
-  Odometry::SweepReport report;
-  test::Motion motion;
-  test::Room room;
-  std::vector<ImuSample> imu;
-};
 
 /// Runs with a mounting that is wrong by a degree and a centimetre and a lidar clock that is late by 4 ms.
 void run_miscalibrated(Odometry& odometry, const test::Motion& motion, int sweeps) {

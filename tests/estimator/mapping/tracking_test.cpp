@@ -21,7 +21,10 @@ std::string text(const TrackingState& state) {
     std::string operator()(const Lost& s) const {
       return "lost " + std::to_string(s.sweeps) + " " + std::to_string(s.failed_searches);
     }
-    std::string operator()(const FoundAgain& s) const { return "found after " + std::to_string(s.after_sweeps); }
+    std::string operator()(const FoundAgain& s) const {
+      return "found after " + std::to_string(s.after_sweeps) + " " + std::to_string(s.failed_searches) + ", agree " +
+             std::to_string(s.agreeing);
+    }
   };
   return std::visit(Name{}, state);
 }
@@ -46,15 +49,26 @@ TEST(Tracking, GoesFromStateToStateAsTheTableSays) {
       {Lost{1, 1}, not_tried, rejected, "lost 2 1"},
       {Lost{5, 29}, failed, degenerate, "tracking 30"},  // given up
       {Lost{2, 0}, not_tried, first, "tracking 0"},
-      {Lost{3, 2}, found, registered, "found after 3"},
-      {Lost{3, 2}, found, degenerate, "found after 3"},
-      {FoundAgain{3}, found, registered, "tracking 0"},
-      {FoundAgain{3}, failed, rejected, "lost 1 1"},
-      {FoundAgain{3}, not_tried, rejected, "lost 1 0"},
+      {Lost{3, 2}, found, registered, "tracking 0"},
+      {Lost{3, 2}, doubtful, registered, "found after 3 2, agree 0"},
+      {Lost{3, 2}, doubtful, degenerate, "found after 3 2, agree 0"},
+      {Tracking{1}, doubtful, registered, "tracking 0"},
+      {FoundAgain{3, 2, 0}, found, degenerate, "found after 3 2, agree 1"},
+      {FoundAgain{3, 2, 1}, found, registered, "tracking 0"},
   };
   for (const Row& row : rows) {
     EXPECT_EQ(text(after_sweep(row.before, row.placement, row.verdict)), row.after) << "from " << text(row.before);
   }
+}
+
+TEST(Tracking, APlaceFoundAgainIsContradictedByAllButOneThatFits) {
+  for (const Placement placement : {not_tried, failed, doubtful}) {
+    EXPECT_TRUE(contradicts(FoundAgain{3, 2, 1}, placement));
+    EXPECT_FALSE(contradicts(Tracking{}, placement));
+    EXPECT_FALSE(contradicts(Lost{}, placement));
+  }
+  EXPECT_FALSE(contradicts(FoundAgain{3, 2, 1}, found));
+  EXPECT_EQ(text(given_up(FoundAgain{3, 2, 1})), "lost 5 3");
 }
 
 TEST(Tracking, AnswersOfItsStates) {
@@ -62,6 +76,8 @@ TEST(Tracking, AnswersOfItsStates) {
   EXPECT_TRUE(has_started(Lost{}));
   EXPECT_TRUE(is_lost(Lost{}));
   EXPECT_FALSE(is_lost(FoundAgain{4}));
+  EXPECT_TRUE(is_to_be_borne_out(FoundAgain{4}));
+  EXPECT_FALSE(is_to_be_borne_out(Lost{4}));
   EXPECT_EQ(lost_sweeps(Lost{4, 2}), 4);
   EXPECT_EQ(lost_sweeps(FoundAgain{4}), 0);
   EXPECT_EQ(failed_searches(Lost{4, 2}), 2);
@@ -113,6 +129,28 @@ TEST(Tracking, VerdictsAreWhatTheAttemptAndThePriorAllow) {
   EXPECT_FALSE(judged(params, Tracking{}, 99, false, failed_with(true)).map_says_nothing);
   EXPECT_EQ(judged(params, Tracking{}, 500, false, aligned(0.1)).placement, found);
   EXPECT_EQ(judged(params, Tracking{}, 500, true, failed_with(true)).placement, failed);
+}
+
+/// A place that a search found, of whose hundred matches so many fit.
+Tried aligned_of(std::size_t inliers, bool expected) {
+  Tried out = aligned(0.1);
+  out.placed.alignment->matches = 100;
+  out.placed.alignment->inliers = inliers;
+  out.placed.expected = expected;
+  return out;
+}
+
+TEST(Tracking, APlaceIsDoubtedWhereInertiaHasItNotOrItsSurfacesDoNotFit) {
+  const LidarInertialOdometry::Params params;
+  const auto placement = [&](const TrackingState& before, std::size_t inliers, bool expected) {
+    return judged(params, before, 500, false, aligned_of(inliers, expected)).placement;
+  };
+  EXPECT_EQ(placement(Lost{}, 95, true), found);
+  EXPECT_EQ(placement(Lost{}, 94, true), doubtful);
+  EXPECT_EQ(placement(Lost{}, 100, false), doubtful);
+  EXPECT_EQ(placement(FoundAgain{}, 95, false), found);  // what a velocity that is off asks for goes on for some sweeps
+  EXPECT_EQ(placement(FoundAgain{}, 94, true), doubtful);
+  EXPECT_EQ(placement(Tracking{}, 50, false), found);
 }
 
 }  // namespace

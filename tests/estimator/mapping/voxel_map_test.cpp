@@ -186,5 +186,34 @@ TEST(PlaneFit, RefusesPointsThatCoincide) {
   EXPECT_EQ(fit_plane(map, all_of(map, {1, 1, 1}), PlaneBounds{}).verdict, PlaneVerdict::collinear);
 }
 
+TEST(VoxelMap, TakesBackTheNewestSweepsAndKeepsTheOthersAsTheyWere) {
+  VoxelMap all({0.5, 0.1}), older({0.5, 0.1});
+  for (std::uint64_t i = 0; i < 3000; ++i) {
+    const auto sweep = static_cast<std::uint32_t>(i / 600);
+    all.insert(random_point(i, 6.0f), 0.01f, sweep, 40);
+    if (sweep < 3) older.insert(random_point(i, 6.0f), 0.01f, sweep, 40);
+  }
+  const Eigen::Vector3f place = all.position_W_m(0) + Eigen::Vector3f::Constant(1e-3f);
+  ASSERT_TRUE(all.move(0, place) && older.move(0, place));
+  ASSERT_GT(all.size(), older.size());
+  all.keep_before(3);
+  EXPECT_EQ(all.size(), older.size());
+  Neighbours of_all, of_older;
+  for (std::uint64_t q = 0; q < 100; ++q) {
+    const Eigen::Vector3f query = random_point(1'000'000 + q, 6.0f);
+    all.nearest(query, 8, 1.0f, of_all);
+    older.nearest(query, 8, 1.0f, of_older);
+    ASSERT_EQ(of_all.count, of_older.count);
+    for (int k = 0; k < of_all.count; ++k) {
+      const auto n = static_cast<std::size_t>(k);
+      EXPECT_EQ(of_all.distance2_m2[n], of_older.distance2_m2[n]);
+      EXPECT_EQ(all.sweep(of_all.index[n]), older.sweep(of_older.index[n]));
+    }
+  }
+  const std::uint32_t taken_back = 3;
+  for (std::uint32_t index = 0; index < all.index_end(); ++index)
+    EXPECT_TRUE(!all.exists(index) || all.sweep(index) < taken_back);
+}
+
 }  // namespace
 }  // namespace tumble

@@ -37,6 +37,9 @@ struct SweepReport {
   double innovation = 0.0;
   int iterations = 0;
   int lost_sweeps = 0;  ///< rejected in a row up to this sweep, this one included
+  /// Found again after lost sweeps, where inertia had not expected it, and not borne out by two further sweeps yet: one
+  /// that contradicts it takes the place back.
+  bool unconfirmed = false;
   /// Direction in which the surfaces hold the pose least: (position, attitude scaled by the rms lever) in W, unit.
   Eigen::Matrix<double, 6, 1> weakest_direction = Eigen::Matrix<double, 6, 1>::Zero();
   Eigen::Vector3d saturation_deficit_rad_s =

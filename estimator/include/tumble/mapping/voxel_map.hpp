@@ -76,6 +76,9 @@ class VoxelMap {
   /// that remain are renumbered in order, and the old number of each is returned. O(number of points).
   std::vector<std::uint32_t> keep_within(const Eigen::Vector3f& centre_W_m, float radius_m);
 
+  /// Forgets the points of this sweep and later ones. Indices change, sweeps keep their numbers. O(number of points).
+  void keep_before(std::uint32_t first_sweep);
+
   /// Memory held [bytes].
   std::size_t bytes() const;
 
@@ -117,6 +120,7 @@ class VoxelMap {
   class Rows;
 
   bool has_room_for(const Eigen::Vector3f& position_W_m) const;
+  std::uint32_t put(const Eigen::Vector3f& position_W_m, float sigma_m, std::uint32_t sweep, std::uint32_t line);
   std::uint32_t& first_of(const Eigen::Vector3i& cell);
   std::uint32_t new_chunk(std::uint32_t& first);
   void search(std::uint32_t chunk, const Eigen::Vector3f& query_W_m, int k, float& worst2, Neighbours& found) const;

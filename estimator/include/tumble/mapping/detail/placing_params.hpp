@@ -83,6 +83,9 @@ struct TrackingParams {
   double trusted_rad = 0.1;
   /// Sweeps in a row with points but no place in the map, after which it goes on `degenerate` by inertia.
   int lost_sweeps_max = 30;
+  /// Of a sweep's matches within three standard deviations (0.997 of normal ones): that many bear out a place that was
+  /// found again, fewer contradict it.
+  double borne_out_share = 0.95;
 
   template <class Self, class Visitor>
   static void fields(Self& p, Visitor& visit) {
@@ -91,6 +94,8 @@ struct TrackingParams {
     visit(p.trusted_rad, {"trusted_prior_rad", "rad", 0.0, 1e3, "and this certain of the attitude"});
     visit(p.lost_sweeps_max, {"lost_sweeps_max", "1", 1, 1e6,
                               "sweeps in a row without a place in the map, after which it goes on by inertia"});
+    visit(p.borne_out_share, {"borne_out_share", "1", 0.0, 1.0,
+                              "of a sweep's matches within three deviations, that bear out a place found again"});
   }
 };
 

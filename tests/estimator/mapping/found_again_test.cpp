@@ -1,0 +1,130 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// A place that a search found: borne out by the sweeps after it, or taken back with all that it drew.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <memory>
+
+#include "estimator/src/common/state_bytes.hpp"
+#include "estimator/src/mapping/odometry_impl.hpp"
+#include "tests/estimator/mapping/room_rig.hpp"
+
+namespace tumble {
+namespace {
+
+using test::RoomRig;
+using test::true_params;
+
+constexpr int kCovered = 20, kSeesAgain = 35;  // sweeps without points in between
+
+/// The room as if the sensor stood elsewhere in it: fits the map wholly, where the sensor is not.
+std::vector<LidarPoint> seen_from_elsewhere(const RoomRig& rig, int sweep, double shift_m) {
+  test::Room room = rig.room;
+  for (test::Room::Plane& plane : room.planes) plane.point_m.x() -= shift_m;
+  for (test::Room::Pillar& pillar : room.pillars) pillar.centre_m.x() -= shift_m;
+  return test::make_sweep(room, rig.motion, true_params().T_IL, sweep, test::kRoomNoise_m, test::kHalfColumns);
+}
+
+/// Returns at any range: they fit nothing.
+std::vector<LidarPoint> of_no_room(const RoomRig& rig, int sweep) {
+  std::vector<LidarPoint> points = rig.points(sweep);
+  std::uint64_t counter = 0;
+  for (LidarPoint& point : points)
+    point.position_L_m *= static_cast<float>((1.0 + 15.0 * test::uniform(++counter)) / point.position_L_m.norm());
+  return points;
+}
+
+/// Tracks, is covered, and then finds a place that is off by so much.
+void find_again(RoomRig& rig, double shift_m) {
+  rig.run(0, kCovered);
+  ASSERT_EQ(rig.report.verdict, SweepVerdict::registered);
+  for (int k = kCovered; k < kSeesAgain; ++k) {
+    rig.feed_imu(k, {0.02, -0.02, 0.02});
+    ASSERT_EQ(rig.sweep(k, {}).trouble, Trouble::empty);
+  }
+  rig.feed_imu(kSeesAgain);
+  ASSERT_TRUE(rig.sweep(kSeesAgain, seen_from_elsewhere(rig, kSeesAgain, shift_m)).ok());
+}
+
+constexpr double kElsewhere_m = 0.8;
+
+TEST(FoundAgain, APlaceThatIsNoneIsTakenBackWithWhatItDrew) {
+  RoomRig rig(true_params());
+  find_again(rig, kElsewhere_m);
+  ASSERT_NE(rig.report.verdict, SweepVerdict::rejected);
+  EXPECT_TRUE(rig.report.unconfirmed);
+  EXPECT_GT(rig.error_m(), 0.5);
+  const std::size_t drawn = rig.report.map_points_added, with_it = rig.odometry.map().size();
+  ASSERT_GT(drawn, 0u);
+
+  rig.feed_imu(kSeesAgain + 1);
+  ASSERT_TRUE(rig.sweep(kSeesAgain + 1, of_no_room(rig, kSeesAgain + 1)).ok());
+  EXPECT_EQ(rig.report.verdict, SweepVerdict::rejected);
+  EXPECT_EQ(rig.report.lost_sweeps, kSeesAgain + 1 - kCovered + 1);  // those before it, it, and this one
+  EXPECT_FALSE(rig.report.unconfirmed);
+  EXPECT_EQ(rig.odometry.map().size(), with_it - drawn + rig.report.map_points_added);
+  const double sigma_m = std::sqrt(rig.report.pose.covariance.topLeftCorner<3, 3>().trace());
+  EXPECT_LT(rig.error_m(), 3.0 * sigma_m);  // as one who is lost says it
+
+  rig.run(kSeesAgain + 2, kSeesAgain + 8);
+  EXPECT_EQ(rig.report.verdict, SweepVerdict::registered);
+  EXPECT_FALSE(rig.report.unconfirmed);
+  EXPECT_LT(rig.error_m(), 0.06);
+}
+
+TEST(FoundAgain, OnePlaceThatTwoSweepsBearOutStands) {
+  RoomRig rig(true_params());
+  find_again(rig, kElsewhere_m);
+  ASSERT_TRUE(rig.report.unconfirmed);
+  for (const bool unconfirmed : {true, false}) {
+    const int k = unconfirmed ? kSeesAgain + 1 : kSeesAgain + 2;
+    rig.feed_imu(k);
+    ASSERT_TRUE(rig.sweep(k, seen_from_elsewhere(rig, k, kElsewhere_m)).ok());
+    EXPECT_EQ(rig.report.unconfirmed, unconfirmed);
+    EXPECT_EQ(rig.report.lost_sweeps, 0);
+  }
+  // what was borne out by what the sensor saw is not taken back by one sweep
+  rig.feed_imu(kSeesAgain + 3);
+  ASSERT_TRUE(rig.sweep(kSeesAgain + 3, of_no_room(rig, kSeesAgain + 3)).ok());
+  EXPECT_EQ(rig.report.lost_sweeps, 1);
+  EXPECT_GT(rig.error_m(), 0.5);
+}
+
+TEST(FoundAgain, WhereInertiaHasItItIsBelievedAtOnce) {
+  RoomRig rig(true_params());
+  rig.run(0, kCovered);
+  rig.feed_imu(kCovered);
+  ASSERT_EQ(rig.sweep(kCovered, {}).trouble, Trouble::empty);
+  rig.run(kCovered + 1, kCovered + 2);
+  EXPECT_EQ(rig.report.verdict, SweepVerdict::registered);
+  EXPECT_FALSE(rig.report.unconfirmed);
+  EXPECT_LT(rig.error_m(), 0.05);
+}
+
+std::vector<std::byte> bytes(const LidarInertialOdometry& odometry) {
+  std::vector<std::byte> out;
+  StateWriter writer(out);
+  odometry.save(writer);
+  return out;
+}
+
+TEST(FoundAgain, GoesOnFromASavedStateWithTheSameBits) {
+  RoomRig rig(true_params());
+  find_again(rig, kElsewhere_m);
+  ASSERT_TRUE(rig.report.unconfirmed);
+  const std::vector<std::byte> saved = bytes(rig.odometry);
+  RoomRig again(true_params());
+  StateReader reader(saved);
+  again.odometry.load(reader);
+  ASSERT_TRUE(reader.status().ok());
+  for (RoomRig* one : {&rig, &again}) {
+    one->feed_imu(kSeesAgain + 1);
+    ASSERT_TRUE(one->sweep(kSeesAgain + 1, of_no_room(*one, kSeesAgain + 1)).ok());
+    EXPECT_EQ(one->report.verdict, SweepVerdict::rejected);
+  }
+  EXPECT_EQ(bytes(rig.odometry), bytes(again.odometry));
+  EXPECT_NE(bytes(rig.odometry), saved);
+}
+
+}  // namespace
+}  // namespace tumble
