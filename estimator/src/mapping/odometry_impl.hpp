@@ -44,8 +44,9 @@ struct SweepScratch {
 struct LidarInertialOdometry::Impl {
   explicit Impl(const Params& given);
 
-  /// As LidarInertialOdometry::add_sweep, with stamps by the IMU's clock.
-  Status add_sweep(TimeNs start_ns, TimeNs end_ns, std::span<const LidarPoint> returns, SweepReport& report);
+  /// As LidarInertialOdometry::add_sweep, with stamps by the IMU's clock. `contradicted`: of mapping::Whereabouts.
+  Status add_sweep(TimeNs start_ns, TimeNs end_ns, std::span<const LidarPoint> returns, SweepReport& report,
+                   const MotionState* contradicted = nullptr);
 
   Status check_sweep(TimeNs start_ns, TimeNs end_ns, std::span<const LidarPoint> returns) const;
   /// Where nothing has been seen yet: the belief at the start, by the IMU at rest.
@@ -53,9 +54,9 @@ struct LidarInertialOdometry::Impl {
   bool rests(const mapping::InertialTrack& heard, const SweepTrajectory& motion, TimeNs end_ns) const;
   /// `trajectory` is the IMU's motion from the border on; on return that of the alignment where there is one, else one
   /// that was tried.
-  void register_to_map(const mapping::Prediction& prediction, const mapping::MotionWindow& motion,
-                       mapping::SweepPoints& points, SweepTrajectory& trajectory, SweepReport& report,
-                       mapping::Placed& placed);
+  void register_to_map(const mapping::Prediction& prediction, const MotionState* contradicted,
+                       const mapping::MotionWindow& motion, mapping::SweepPoints& points, SweepTrajectory& trajectory,
+                       SweepReport& report, mapping::Placed& placed);
   /// What stands; of a lost sensor at rest the prediction is that of the rest from here on.
   mapping::Belief update(const mapping::MotionWindow& motion, const mapping::Placed& placed,
                          mapping::Prediction& prediction) const;

@@ -13,7 +13,7 @@ using mapping::Belief, mapping::InsertedPoint, mapping::MotionWindow, mapping::P
 using mapping::UpdatedSweep, mapping::WindowSweep;
 
 Status LidarInertialOdometry::Impl::add_sweep(TimeNs start_ns, TimeNs end_ns, std::span<const LidarPoint> returns,
-                                              SweepReport& report) {
+                                              SweepReport& report, const MotionState* contradicted) {
   if (Status status = check_sweep(start_ns, end_ns, returns); !status.ok()) return status;
   if (Status status = level_at_first(); !status.ok()) return status;
 
@@ -37,12 +37,13 @@ Status LidarInertialOdometry::Impl::add_sweep(TimeNs start_ns, TimeNs end_ns, st
   report.points_used = counts.used;
   report.points_alone = counts.alone;
   const auto placed = std::make_unique<Placed>();
-  if (points_status.ok()) register_to_map(*prediction, motion, points, trajectory, report, *placed);
+  if (points_status.ok()) register_to_map(*prediction, contradicted, motion, points, trajectory, report, *placed);
   if (by_inertia && mapping::contradicts(tracking, placed->placement)) {  // anew, as lost as it was
+    const MotionState by_the_place = prediction->prior.mean.state;
     go_back_to_inertia();
     resting_sweeps = rested_sweeps;
     report = SweepReport{};
-    return add_sweep(start_ns, end_ns, returns, report);
+    return add_sweep(start_ns, end_ns, returns, report, &by_the_place);
   }
   report.verdict = placed->verdict;
 
@@ -100,9 +101,9 @@ bool LidarInertialOdometry::Impl::rests(const mapping::InertialTrack& heard, con
   return !(gained_m_s.norm() > params.expert.rest.force_m_s2 * motion.duration_s());
 }
 
-void LidarInertialOdometry::Impl::register_to_map(const Prediction& prediction, const MotionWindow& motion,
-                                                  mapping::SweepPoints& points, SweepTrajectory& trajectory,
-                                                  SweepReport& report, Placed& placed) {
+void LidarInertialOdometry::Impl::register_to_map(const Prediction& prediction, const MotionState* contradicted,
+                                                  const MotionWindow& motion, mapping::SweepPoints& points,
+                                                  SweepTrajectory& trajectory, SweepReport& report, Placed& placed) {
   if (map.empty()) {
     if (points.all().size() >= params.expert.matching.least) placed.verdict = SweepVerdict::first;
     return;
@@ -110,8 +111,8 @@ void LidarInertialOdometry::Impl::register_to_map(const Prediction& prediction, 
   const bool prior_trusted = mapping::prior_is_trusted(params, border, motion, trajectory);
   points.choose(params, trajectory);
   const mapping::Scene scene{motion.samples, motion.end_ns, points.chosen(), map.voxels()};
-  const mapping::Attempt attempt =
-      mapping::attempt(params, tracking, prediction.prior, scene, scratch.aligner, trajectory, placed.alignment);
+  const mapping::Attempt attempt = mapping::attempt(params, {tracking, prediction.prior, contradicted}, scene,
+                                                    scratch.aligner, trajectory, placed.alignment);
   report.points_registered = scene.points.size();
   report.iterations = attempt.iterations;
   report.inlier_share = attempt.inlier_share;

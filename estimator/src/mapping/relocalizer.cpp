@@ -61,9 +61,16 @@ void track(const Params& params, const Registration::Prior& prior, const Scene& 
 
 /// Looks for the way back: from the prior and from starts around it, up to a place that its surfaces fit; else that of
 /// which most points do. A search goes on with the next sweep where this one ended, so that no sweep costs too much.
-void search(const Params& params, const Registration::Prior& prior, const Scene& scene, int failed_before,
-            Aligner& aligner, SweepTrajectory& trajectory, Registration::Result& found) {
+void search(const Params& params, const Whereabouts& from, const Scene& scene, Aligner& aligner,
+            SweepTrajectory& trajectory, Registration::Result& found) {
   const RelocalizationParams& starts = params.expert.search;
+  const Registration::Prior& prior = from.prior;
+  if (from.contradicted != nullptr) {
+    const auto start = std::make_unique<Registration::Prior>(prior);
+    start->mean.state = *from.contradicted;
+    aligner.from_afar(*start, prior, scene, trajectory, found);
+    if (converged(found) && fits(params, found)) return;
+  }
   struct Best {
     Registration::Result found;
     SweepTrajectory trajectory;
@@ -75,7 +82,7 @@ void search(const Params& params, const Registration::Prior& prior, const Scene&
   for (int k = 0; k < moved && !(converged(found) && fits(params, found)); ++k) {
     if (converged(found) && (!best || found.inliers > best->found.inliers))
       best = std::make_unique<Best>(Best{found, trajectory});
-    const int index = 1 + (failed_before * moved + k) % (kStartsPerRound * starts.rounds);
+    const int index = 1 + (failed_searches(from.tracking) * moved + k) % (kStartsPerRound * starts.rounds);
     const auto start = std::make_unique<Registration::Prior>(prior);
     move_start(starts, index, *start);
     aligner.from_afar(*start, prior, scene, trajectory, found);
@@ -106,15 +113,14 @@ void move_start(const RelocalizationParams& params, int index, Registration::Pri
   }
 }
 
-Attempt attempt(const Params& params, const TrackingState& tracking, const Registration::Prior& prior,
-                const Scene& scene, Aligner& aligner, SweepTrajectory& trajectory,
-                std::optional<Registration::Result>& alignment) {
+Attempt attempt(const Params& params, const Whereabouts& from, const Scene& scene, Aligner& aligner,
+                SweepTrajectory& trajectory, std::optional<Registration::Result>& alignment) {
   Registration::Result& found = alignment.emplace();
   found.points = scene.points.size();
-  if (is_lost(tracking)) {
-    search(params, prior, scene, failed_searches(tracking), aligner, trajectory, found);
+  if (is_lost(from.tracking)) {
+    search(params, from, scene, aligner, trajectory, found);
   } else {
-    track(params, prior, scene, aligner, trajectory, found);
+    track(params, from.prior, scene, aligner, trajectory, found);
   }
   Attempt out;
   out.iterations = found.iterations;

@@ -15,11 +15,18 @@ struct Attempt {
   double inlier_share = 0.0;  ///< of the points of the last registration
 };
 
+/// Where a sweep may have begun.
+struct Whereabouts {
+  const TrackingState& tracking;
+  const Registration::Prior& prior;
+  /// By a place that this sweep has contradicted: a little off it is one to search from. Null: none.
+  const MotionState* contradicted = nullptr;
+};
+
 /// Aligns a sweep by all means that its tracking state allows. `trajectory` is the alignment's, or one that was tried;
 /// `alignment` is that of the sweep's start, empty where none was found.
-Attempt attempt(const LidarInertialOdometry::Params& params, const TrackingState& tracking,
-                const Registration::Prior& prior, const Scene& scene, Aligner& aligner, SweepTrajectory& trajectory,
-                std::optional<Registration::Result>& alignment);
+Attempt attempt(const LidarInertialOdometry::Params& params, const Whereabouts& from, const Scene& scene,
+                Aligner& aligner, SweepTrajectory& trajectory, std::optional<Registration::Result>& alignment);
 
 /// How a sweep lies in the map.
 struct Placed {
