@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "lost_heading.hpp"
+#include "node_rows.hpp"
 #include "rolling_node.hpp"
 #include "tumble/rolling/rolling_filter.hpp"
 
@@ -96,24 +97,6 @@ double log_moving(const rolling::Contact& c, const RollingFilter::Hypothesis& h,
   if (mode == RollingMode::bump) return horizontal + log_rise(change.z());
   const double vertical = c.H.row(2) * h.P * c.H.row(2).transpose() + squared(params.expert.contact.vertical_sigma_m_s);
   return horizontal + log_normal(u.z(), vertical);
-}
-
-/// The contact point stands still (or, slipping, stays on the floor), and a velocity that is lost is no great one.
-void measure_contact(const rolling::Contact& c, RollingMode mode, double node_s, const Eigen::Vector3d& v_WI_m_s,
-                     const RollingParams& params, RollingFilter::Hypothesis& h) {
-  // what the length of the normal adds is no error of the state
-  const Eigen::Vector3d u = c.velocity(h.x) - c.H * h.x, variance = rolling::contact_variance(params, c, mode);
-  if (!slips(mode)) {
-    for (int axis = 0; axis < 2; ++axis) rolling::update(c.H.row(axis), -u[axis], variance[axis], h.x, h.P);
-  }
-  if (mode != RollingMode::bump) {
-    rolling::update(c.H.row(2), -u.z(), variance.z(), h.x, h.P);
-  }
-  if (const auto lost = rolling::lost_velocity_variance(params, node_s, h.P)) {
-    for (int axis = 0; axis < 2; ++axis) {
-      rolling::update(rolling::kVelocity + axis, -v_WI_m_s[axis], *lost, h.x, h.P);
-    }
-  }
 }
 
 /// rolling.md (R21).
@@ -256,7 +239,9 @@ void RollingFilter::choose_modes(const Eigen::Vector3d& rate_I_rad_s, bool lost_
     const Candidate& candidate = kept.of[k];
     Hypothesis& h = state.hypotheses[k];
     rolling::change_floor(params_, h.mode, candidate.mode, node_s, state.nominal, h.x, h.P);
-    measure_contact(c, candidate.mode, node_s, state.nominal.v_WI_m_s, params_, h);
+    rolling::contact_rows(
+        params_, c, candidate.mode, node_s, state.nominal.v_WI_m_s, h.x, h.P,
+        [&](const auto& row, double measured, double variance) { rolling::update(row, measured, variance, h.x, h.P); });
     h.u_W_m_s = c.velocity(h.x);
     h.log_weight = candidate.log_weight - ordered[0].log_weight;
     h.mode = candidate.mode;
@@ -274,22 +259,17 @@ void RollingFilter::keep_first(std::size_t count, State& state) {
   state.count = static_cast<int>(count);
 }
 
-/// Every hypothesis stands still: velocity and, unless it spins in place, rate are zero, the contact grips. rolling.md
-/// (R27).
+/// Every hypothesis stands still, and its contact grips: rolling.md (R27).
 void RollingFilter::correct_at_rest(State& state) const {
   for (int k = 0; k < state.count; ++k) {
     Hypothesis& h = state.hypotheses[static_cast<std::size_t>(k)];
     double likelihood = 0.0;
-    for (int axis = 0; axis < 3; ++axis) {
-      const double variance = squared(params_.expert.contact.rest_velocity_sigma_m_s);
-      const int velocity = rolling::kVelocity + axis;
-      const double v = state.nominal.v_WI_m_s[axis] + h.x[velocity];
-      likelihood += log_normal(v, h.P(velocity, velocity) + variance);
-      rolling::update(velocity, -state.nominal.v_WI_m_s[axis], variance, h.x, h.P);
-      if (state.spins_in_place) continue;
-      const double bias = state.sums.w_I_rad[axis] / state.sums.node_s;  // already without the nominal bias
-      rolling::update(rolling::kGyroBias + axis, bias, squared(params_.expert.contact.rest_rate_sigma_rad_s), h.x, h.P);
-    }
+    rolling::rest_rows(params_, state.sums, state.nominal, state.spins_in_place,
+                       [&](int index, double measured, double variance) {
+                         if (index < rolling::kPosition)  // a velocity: what a bias tells is no evidence of a mode
+                           likelihood += log_normal(measured - h.x[index], h.P(index, index) + variance);
+                         rolling::update(index, measured, variance, h.x, h.P);
+                       });
     h.log_weight += std::max(likelihood, kRestFloor);
     h.parent = k;
     if (slips(h.mode)) {

@@ -5,6 +5,7 @@
 
 #include "../common/symmetric.hpp"
 #include "lost_heading.hpp"
+#include "node_rows.hpp"
 #include "tumble/common/so3.hpp"
 
 namespace tumble::rolling {
@@ -27,33 +28,8 @@ void measure(const Row& H, double measured, double variance, NodeRecord& record,
   P.noalias() -= PHt * record.gain[k].transpose();
 }
 
-/// rolling.md (R27).
-void measure_rest(const RollingParams& params, const RollingSums& sums, const RollingNominal& nominal,
-                  NodeRecord& record, Vector& x, Covariance& P) {
-  for (int axis = 0; axis < 3; ++axis) {
-    const Row velocity = Vector::Unit(kVelocity + axis).transpose(), bias = Vector::Unit(kGyroBias + axis).transpose();
-    measure(velocity, -nominal.v_WI_m_s[axis], squared(params.expert.contact.rest_velocity_sigma_m_s), record, x, P);
-    if (record.path.spins_in_place) continue;
-    measure(bias, sums.w_I_rad[axis] / sums.node_s, squared(params.expert.contact.rest_rate_sigma_rad_s), record, x, P);
-  }
-}
-
-/// "u is zero", by rolling.md (R16), (R19).
-void measure_contact(const RollingParams& params, const Contact& c, double node_s, const Eigen::Vector3d& v_WI_m_s,
-                     NodeRecord& record, Vector& x, Covariance& P) {
-  const Eigen::Vector3d u = c.velocity(x) - c.H * x, variance = contact_variance(params, c, record.path.mode);
-  if (!slips(record.path.mode)) {
-    for (int axis = 0; axis < 2; ++axis) measure(c.H.row(axis), -u[axis], variance[axis], record, x, P);
-  }
-  if (record.path.mode != RollingMode::bump) {
-    measure(c.H.row(2), -u.z(), variance.z(), record, x, P);
-  }
-  if (const auto lost = lost_velocity_variance(params, node_s, P)) {
-    for (int axis = 0; axis < 2; ++axis) {
-      const Row velocity = Vector::Unit(kVelocity + axis).transpose();
-      measure(velocity, -v_WI_m_s[axis], *lost, record, x, P);
-    }
-  }
+void measure(int index, double measured, double variance, NodeRecord& record, Vector& x, Covariance& P) {
+  measure(Row(Vector::Unit(index).transpose()), measured, variance, record, x, P);
 }
 
 Reported reported(const Vector& x) {
@@ -137,12 +113,15 @@ void close_node(const RollingParams& params, const RollingSums& sums, const Eige
   record.forgets_slope = forgets_slope(filter.mode, path.mode);
   change_floor(params, filter.mode, path.mode, sums.node_s, filter.nominal, x, filter.P);
   record.lost_heading = lost_heading(filter.P);
+  const auto take = [&](const auto& row, double measured, double variance) {
+    measure(row, measured, variance, record, x, filter.P);
+  };
   if (path.at_rest) {
-    measure_rest(params, sums, filter.nominal, record, x, filter.P);
+    rest_rows(params, sums, filter.nominal, path.spins_in_place, take);
   } else {
     Contact c = contact(params, filter.nominal, rate_I_rad_s, sums);
     if (record.lost_heading) blind_to_heading(c);
-    measure_contact(params, c, sums.node_s, filter.nominal.v_WI_m_s, record, x, filter.P);
+    contact_rows(params, c, path.mode, sums.node_s, filter.nominal.v_WI_m_s, x, filter.P, take);
   }
   make_symmetric(filter.P);
   filter.P.block<3, 3>(kPosition, kPosition) += path.spread_m2;
