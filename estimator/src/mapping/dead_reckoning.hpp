@@ -9,13 +9,13 @@
 
 namespace tumble::mapping {
 
-/// What stands if a place that was found again is none: the motion by inertia alone from before it was found, and from
-/// which of the map's sweeps on the place has drawn.
+/// A second opinion of where the sensor is, by inertia alone: beside a place that was found again, what stands if it is
+/// none; beside one who is lost again, the place that was contradicted.
 struct DeadReckoning {
   Border border;
   LagWindow window;
   WorldCovariance world;
-  std::uint32_t drawn_from = 0;
+  std::uint32_t drawn_from = 0;  ///< the first of the map's sweeps that the place drew
 };
 
 }  // namespace tumble::mapping

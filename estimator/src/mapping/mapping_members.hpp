@@ -47,10 +47,10 @@ void LagWindow::members(Self& s, Visitor& visit) {
 
 template <StateOf<DeadReckoning> Self, class Visitor>
 void members(Self& s, Visitor& visit) {
-  visit("alone.border", s.border);
-  visit("alone.window", s.window);
-  visit("alone.world", s.world);
-  visit("alone.drawn_from", s.drawn_from);
+  visit("other.border", s.border);
+  visit("other.window", s.window);
+  visit("other.world", s.world);
+  visit("other.drawn_from", s.drawn_from);
 }
 
 template <class Self, class Visitor>
@@ -112,7 +112,8 @@ void LidarInertialOdometry::Impl::members(Self& s, Visitor& visit) {
   visit("window", s.window);
   visit("local map", s.map);
   visit("world", s.world);
-  visit("by inertia", s.by_inertia);
+  visit("other", s.other);
+  visit("other_is_inertia", s.other_is_inertia);
   visit.scratch(s.scratch);
 }
 

@@ -44,9 +44,8 @@ struct SweepScratch {
 struct LidarInertialOdometry::Impl {
   explicit Impl(const Params& given);
 
-  /// As LidarInertialOdometry::add_sweep, with stamps by the IMU's clock. `contradicted`: of mapping::Whereabouts.
-  Status add_sweep(TimeNs start_ns, TimeNs end_ns, std::span<const LidarPoint> returns, SweepReport& report,
-                   const MotionState* contradicted = nullptr);
+  /// As LidarInertialOdometry::add_sweep, with stamps by the IMU's clock.
+  Status add_sweep(TimeNs start_ns, TimeNs end_ns, std::span<const LidarPoint> returns, SweepReport& report);
 
   Status check_sweep(TimeNs start_ns, TimeNs end_ns, std::span<const LidarPoint> returns) const;
   /// Where nothing has been seen yet: the belief at the start, by the IMU at rest.
@@ -54,9 +53,9 @@ struct LidarInertialOdometry::Impl {
   bool rests(const mapping::InertialTrack& heard, const SweepTrajectory& motion, TimeNs end_ns) const;
   /// `trajectory` is the IMU's motion from the border on; on return that of the alignment where there is one, else one
   /// that was tried.
-  void register_to_map(const mapping::Prediction& prediction, const MotionState* contradicted,
-                       const mapping::MotionWindow& motion, mapping::SweepPoints& points, SweepTrajectory& trajectory,
-                       SweepReport& report, mapping::Placed& placed);
+  void register_to_map(const mapping::Prediction& prediction, const mapping::MotionWindow& motion,
+                       mapping::SweepPoints& points, SweepTrajectory& trajectory, SweepReport& report,
+                       mapping::Placed& placed);
   /// What stands; of a lost sensor at rest the prediction is that of the rest from here on.
   mapping::Belief update(const mapping::MotionWindow& motion, const mapping::Placed& placed,
                          mapping::Prediction& prediction) const;
@@ -70,8 +69,10 @@ struct LidarInertialOdometry::Impl {
   /// Of a lost sensor, where nothing but the IMU is known of its motion.
   void stop_at_rest(const mapping::MotionWindow& motion, const mapping::Border& from,
                     mapping::Prediction& prediction) const;
-  void go_on_by_inertia(const mapping::MotionWindow& motion);
+  void carry_on_other(const mapping::MotionWindow& motion);
   void go_back_to_inertia();
+  /// Of one who is lost: where a place that was contradicted has the border; null where there was none.
+  const MotionState* by_the_place() const;
   void part_from_world(const mapping::UpdatedSweep& sweep, const SweepReport& report);
   void forget_until(TimeNs end_ns);
 
@@ -86,7 +87,7 @@ struct LidarInertialOdometry::Impl {
   static void members(Self& s, Visitor& visit);
   /// What holds between the members of every state; the first that does not.
   Status check_state() const;
-  Status check_by_inertia() const;
+  Status check_other() const;
 
   Params params;
   mapping::TrackingState tracking;
@@ -97,7 +98,8 @@ struct LidarInertialOdometry::Impl {
   mapping::LagWindow window;
   mapping::LocalMap map;
   mapping::WorldCovariance world;
-  std::optional<mapping::DeadReckoning> by_inertia;  // while a place found again is not borne out
+  std::optional<mapping::DeadReckoning> other;  // while a place found again is not borne out, or one was contradicted
+  bool other_is_inertia = false;                // in the first case
   mapping::SweepScratch scratch;
 };
 

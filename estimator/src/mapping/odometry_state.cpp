@@ -33,21 +33,22 @@ Status check_window(const mapping::LagWindow& window, std::size_t length) {
 
 }  // namespace
 
-Status LidarInertialOdometry::Impl::check_by_inertia() const {
-  if (!by_inertia) return {};
-  if (!mapping::is_to_be_borne_out(tracking)) return {Trouble::out_of_range, "by inertia", 1.0, 0.0};
-  if (by_inertia->drawn_from > map.sweeps())
-    return {Trouble::out_of_range, "alone.drawn_from", double(by_inertia->drawn_from), double(map.sweeps())};
-  for (const mapping::WindowSweep& sweep : by_inertia->window.sweeps()) {
+Status LidarInertialOdometry::Impl::check_other() const {
+  if (!other) return {};
+  if (other_is_inertia != mapping::is_to_be_borne_out(tracking))
+    return {Trouble::out_of_range, "other_is_inertia", double(other_is_inertia), double(!other_is_inertia)};
+  if (other->drawn_from > map.sweeps())
+    return {Trouble::out_of_range, "alone.drawn_from", double(other->drawn_from), double(map.sweeps())};
+  for (const mapping::WindowSweep& sweep : other->window.sweeps()) {
     if (!sweep.inserted.empty()) return {Trouble::out_of_range, "alone.inserted", double(sweep.inserted.size()), 0.0};
   }
-  return check_window(by_inertia->window, window.length());
+  return check_window(other->window, window.length());
 }
 
 Status LidarInertialOdometry::Impl::check_state() const {
   const auto most = static_cast<std::size_t>(params.expert.window_sweeps);
   if (Status status = check_window(window, most); !status.ok()) return status;
-  if (Status status = check_by_inertia(); !status.ok()) return status;
+  if (Status status = check_other(); !status.ok()) return status;
   for (const mapping::WindowSweep& sweep : window.sweeps()) {
     for (const mapping::InsertedPoint& inserted : sweep.inserted) {
       if (inserted.index >= map.voxels().index_end() || !map.voxels().exists(inserted.index))

@@ -13,7 +13,7 @@ using mapping::Belief, mapping::InsertedPoint, mapping::MotionWindow, mapping::P
 using mapping::UpdatedSweep, mapping::WindowSweep;
 
 Status LidarInertialOdometry::Impl::add_sweep(TimeNs start_ns, TimeNs end_ns, std::span<const LidarPoint> returns,
-                                              SweepReport& report, const MotionState* contradicted) {
+                                              SweepReport& report) {
   if (Status status = check_sweep(start_ns, end_ns, returns); !status.ok()) return status;
   if (Status status = level_at_first(); !status.ok()) return status;
 
@@ -37,13 +37,12 @@ Status LidarInertialOdometry::Impl::add_sweep(TimeNs start_ns, TimeNs end_ns, st
   report.points_used = counts.used;
   report.points_alone = counts.alone;
   const auto placed = std::make_unique<Placed>();
-  if (points_status.ok()) register_to_map(*prediction, contradicted, motion, points, trajectory, report, *placed);
-  if (by_inertia && mapping::contradicts(tracking, placed->placement)) {  // anew, as lost as it was
-    const MotionState by_the_place = prediction->prior.mean.state;
+  if (points_status.ok()) register_to_map(*prediction, motion, points, trajectory, report, *placed);
+  if (other && mapping::contradicts(tracking, placed->placement)) {  // anew, as lost as it was
     go_back_to_inertia();
     resting_sweeps = rested_sweeps;
     report = SweepReport{};
-    return add_sweep(start_ns, end_ns, returns, report, &by_the_place);
+    return add_sweep(start_ns, end_ns, returns, report);
   }
   report.verdict = placed->verdict;
 
@@ -101,9 +100,9 @@ bool LidarInertialOdometry::Impl::rests(const mapping::InertialTrack& heard, con
   return !(gained_m_s.norm() > params.expert.rest.force_m_s2 * motion.duration_s());
 }
 
-void LidarInertialOdometry::Impl::register_to_map(const Prediction& prediction, const MotionState* contradicted,
-                                                  const MotionWindow& motion, mapping::SweepPoints& points,
-                                                  SweepTrajectory& trajectory, SweepReport& report, Placed& placed) {
+void LidarInertialOdometry::Impl::register_to_map(const Prediction& prediction, const MotionWindow& motion,
+                                                  mapping::SweepPoints& points, SweepTrajectory& trajectory,
+                                                  SweepReport& report, Placed& placed) {
   if (map.empty()) {
     if (points.all().size() >= params.expert.matching.least) placed.verdict = SweepVerdict::first;
     return;
@@ -111,7 +110,7 @@ void LidarInertialOdometry::Impl::register_to_map(const Prediction& prediction, 
   const bool prior_trusted = mapping::prior_is_trusted(params, border, motion, trajectory);
   points.choose(params, trajectory);
   const mapping::Scene scene{motion.samples, motion.end_ns, points.chosen(), map.voxels()};
-  const mapping::Attempt attempt = mapping::attempt(params, {tracking, prediction.prior, contradicted}, scene,
+  const mapping::Attempt attempt = mapping::attempt(params, {tracking, prediction.prior, by_the_place()}, scene,
                                                     scratch.aligner, trajectory, placed.alignment);
   report.points_registered = scene.points.size();
   report.iterations = attempt.iterations;
@@ -163,12 +162,8 @@ void LidarInertialOdometry::Impl::carry_on(const UpdatedSweep& sweep, const Plac
                                            std::vector<InsertedPoint> inserted, SweepReport& report) {
   const Registration::Result* aligned = placed.alignment ? &*placed.alignment : nullptr;
   tracking = mapping::after_sweep(tracking, placed.placement, placed.verdict);
-  if (mapping::is_to_be_borne_out(tracking)) {
-    report.unconfirmed = true;
-    go_on_by_inertia(motion);
-  } else {
-    by_inertia.reset();
-  }
+  report.unconfirmed = mapping::is_to_be_borne_out(tracking);
+  carry_on_other(motion);
   report.lost_sweeps = mapping::lost_sweeps(tracking);
   if (aligned && placed.verdict == SweepVerdict::degenerate && motion.resting_sweeps == 0)
     world.add_drift(report.weakest_sigma_m, report.weakest_direction);
@@ -199,25 +194,29 @@ void LidarInertialOdometry::Impl::part_from_world(const UpdatedSweep& sweep, con
 void LidarInertialOdometry::Impl::forget_until(TimeNs end_ns) {
   known = mapping::InertialPrior{};
   track.forget_until(end_ns);
-  if (by_inertia) return;  // what it drew may be taken back: by numbers that pruning changes
+  if (mapping::is_to_be_borne_out(tracking)) return;  // what it drew may be taken back: by numbers that pruning changes
   if (map.prune(params, border.belief.mean.state.p_WI_m)) window.forget_inserted();
 }
 
-/// A place found again that has nothing to bear it out yet: what would stand without it goes on too.
-void LidarInertialOdometry::Impl::go_on_by_inertia(const MotionWindow& motion) {
-  if (!by_inertia) {
-    mapping::DeadReckoning& from_here = by_inertia.emplace();  // in its place: too large for the stack
+/// Where there is a second opinion it goes on by inertia: beside a place found again, what stands without it; beside
+/// one who is lost again, the place that was contradicted.
+void LidarInertialOdometry::Impl::carry_on_other(const MotionWindow& motion) {
+  const bool found_again = mapping::is_to_be_borne_out(tracking), begins = found_again && !other_is_inertia;
+  other_is_inertia = found_again;
+  if (!found_again && !(other && mapping::is_lost(tracking))) return other.reset();
+  if (begins) {
+    mapping::DeadReckoning& from_here = other.emplace();  // in its place: too large for the stack
     from_here.border = border;
     from_here.window = window;
     from_here.window.forget_inserted();
     from_here.world = world;
     from_here.drawn_from = map.sweeps() - 1;
   }
-  mapping::Border& alone = by_inertia->border;
+  mapping::Border& alone = other->border;
   const Registration::Estimate& before = alone.belief.mean;
   SweepTrajectory trajectory;
   Status status = trajectory.build(before.state, motion.samples, motion.end_ns, before.calibration.gravity_W_m_s2);
-  if (!status.ok()) return by_inertia.reset();
+  if (!status.ok()) return other.reset();
   const std::unique_ptr<Prediction> prediction(
       new Prediction(mapping::predict(params, alone, motion, trajectory, known)));
   stop_at_rest(motion, alone, *prediction);
@@ -225,19 +224,25 @@ void LidarInertialOdometry::Impl::go_on_by_inertia(const MotionWindow& motion) {
   const Registration::Estimate& mean = start->mean;
   status =
       trajectory.build(mean.state, motion.samples, motion.end_ns, mean.calibration.gravity_W_m_s2, mean.deficit_rad_s);
-  if (!status.ok()) return by_inertia.reset();
-  enter_window({*prediction, *start, trajectory}, motion, alone, by_inertia->window);
+  if (!status.ok()) return other.reset();
+  enter_window({*prediction, *start, trajectory}, motion, alone, other->window);
   mapping::border_after(params, *start, motion, trajectory, nullptr, alone);
 }
 
-/// The place found again was none: what it drew is taken from the map, and inertia stands.
+/// The place found again was none: what it drew is taken from the map, and inertia stands. A little off it is one to
+/// search from.
 void LidarInertialOdometry::Impl::go_back_to_inertia() {
-  map.withdraw(by_inertia->drawn_from);
-  border = by_inertia->border;
-  window = std::move(by_inertia->window);
-  world = by_inertia->world;
+  map.withdraw(other->drawn_from);
+  std::swap(border, other->border);
+  std::swap(window, other->window);
+  other->window.forget_inserted();
+  std::swap(world, other->world);
   tracking = mapping::given_up(tracking);
-  by_inertia.reset();
+  other_is_inertia = false;
+}
+
+const MotionState* LidarInertialOdometry::Impl::by_the_place() const {
+  return other && mapping::is_lost(tracking) ? &other->border.belief.mean.state : nullptr;
 }
 
 WindowSweep& LidarInertialOdometry::Impl::enter_window(const UpdatedSweep& sweep, const MotionWindow& motion,

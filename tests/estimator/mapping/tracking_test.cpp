@@ -145,11 +145,11 @@ TEST(Tracking, APlaceIsDoubtedWhereInertiaHasItNotOrItsSurfacesDoNotFit) {
   const auto placement = [&](const TrackingState& before, std::size_t inliers, bool expected) {
     return judged(params, before, 500, false, aligned_of(inliers, expected)).placement;
   };
-  EXPECT_EQ(placement(Lost{}, 95, true), found);
-  EXPECT_EQ(placement(Lost{}, 94, true), doubtful);
+  EXPECT_EQ(placement(Lost{}, 90, true), found);
+  EXPECT_EQ(placement(Lost{}, 89, true), doubtful);
   EXPECT_EQ(placement(Lost{}, 100, false), doubtful);
-  EXPECT_EQ(placement(FoundAgain{}, 95, false), found);  // what a velocity that is off asks for goes on for some sweeps
-  EXPECT_EQ(placement(FoundAgain{}, 94, true), doubtful);
+  EXPECT_EQ(placement(FoundAgain{}, 90, false), found);  // what a velocity that is off asks for goes on for some sweeps
+  EXPECT_EQ(placement(FoundAgain{}, 89, true), doubtful);
   EXPECT_EQ(placement(Tracking{}, 50, false), found);
 }
 

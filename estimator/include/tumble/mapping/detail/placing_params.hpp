@@ -85,7 +85,7 @@ struct TrackingParams {
   int lost_sweeps_max = 30;
   /// Of a sweep's matches within three standard deviations (0.997 of normal ones): that many bear out a place that was
   /// found again, fewer contradict it.
-  double borne_out_share = 0.95;
+  double borne_out_share = 0.9;
 
   template <class Self, class Visitor>
   static void fields(Self& p, Visitor& visit) {
