@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 #include <memory>
+#include <variant>
 
 #include "odometry_impl.hpp"
 #include "unknowns.hpp"
@@ -61,6 +62,16 @@ Status LidarInertialOdometry::add_velocity(const Eigen::Vector3d& v_WI_I_m_s, do
   return {};
 }
 
+Status LidarInertialOdometry::add_reading(const OdometerReading& reading) {
+  const Status status = check_reading(reading);
+  if (status.ok()) impl_->known = reading;
+  return status;
+}
+
+void LidarInertialOdometry::leave_out_force() {
+  impl_->known = mapping::ConstantVelocity{};
+}
+
 Status LidarInertialOdometry::add_sweep(TimeNs lidar_start_ns, TimeNs lidar_end_ns, std::span<const LidarPoint> points,
                                         SweepReport& report) {
   report = SweepReport{};
@@ -81,6 +92,7 @@ Status LidarInertialOdometry::predict(std::span<const ImuSample> samples, std::s
   }
   if (track.samples().empty()) return pose_at(my.border.time_ns(), pose);
   const TimeNs end_ns = track.samples().back().time_ns;
+  if (std::holds_alternative<mapping::ConstantVelocity>(my.known)) track.leave_out_force(end_ns);
   const Registration::Estimate& last = my.border.belief.mean;
   SweepTrajectory trajectory;
   if (Status status = trajectory.build(last.state, track.samples(), end_ns, last.calibration.gravity_W_m_s2);
