@@ -28,7 +28,8 @@ StrokeSums struck_every_tenth(int late, int intervals, double between_m_s2 = 1.0
   for (int k = 0; k < intervals; ++k) {
     StrokeSums::Tried force;
     const auto at = [&](double eighth) {
-      const double phase = std::remainder(8.0 * k + eighth, 80.0) / 8.0;  // samples from the nearest stroke
+      const double since = std::fmod(8.0 * k + eighth + 800.0, 80.0);
+      const double phase = std::min(since, 80.0 - since) / 8.0;  // samples from the nearest stroke
       return between_m_s2 + 100.0 * std::exp(-0.5 * phase * phase);
     };
     for (int i = 0; i < StrokeSums::kTried; ++i) force[i] = at(i - StrokeSums::kMost - late);
