@@ -22,7 +22,9 @@ constexpr double kMoved_s = 3e-4;
 constexpr double kPlainOdds = 0.05, kGuessFar = 3.0;
 // Intervals, and what the correlation must gain over that at the delay that is given: the first strokes of a tumble
 // correlate by chance.
-constexpr double kIntervalsMin = 100.0, kGainMin = 0.03;
+constexpr double kIntervalsMin = 150.0, kGainMin = 0.06;
+// No delay that is further off than so many deviations of a device that nobody has calibrated.
+constexpr double kReach = 3.0;
 
 double seconds_from(const RateStream::Knot& a, const RateStream::Knot& b) {
   return seconds(b.observation.sample.time_ns - a.observation.sample.time_ns);
@@ -130,7 +132,9 @@ void RateStream::seek_delay(State& state) const {
   if (delay.found && correlates(given_delay_s_) - correlates(delay.in_use_s) > kGainMin)
     return take_delay(given_delay_s_, false, state);
   if (const TriadDelay guess = guessed_delay(state); guess.sigma_s > 0.0) {
-    const bool gains = correlates(guess.delay_s) - correlates(given_delay_s_) > kGainMin;
+    const bool gains =
+        correlates(guess.delay_s) - correlates(given_delay_s_) > kGainMin &&
+        std::abs(guess.delay_s - given_delay_s_) < kReach * params_.model.expert.error_sizes.delay_unknown_s;
     const bool plain = gains && device_.odds_of_sheet(guess.delay_s - given_delay_s_, guess.sigma_s) < kPlainOdds;
     const bool far = std::abs(guess.delay_s - delay.in_use_s) > kGuessFar * guess.sigma_s;
     delay.guess = guess;
