@@ -72,6 +72,26 @@ TYPED_TEST(SavedStreams, BytesTellTheirParameters) {
     EXPECT_EQ(saved_params<TypeParam>(std::span(saved).first(length), told).trouble, Trouble::too_few);
 }
 
+/// Forces that wait for the rates of their instants are part of it.
+TEST(SavedStreams, ALateAccelerometerGoesOn) {
+  RateStream::Params params = test::params_of_stream<RateStream>();
+  params.model.errors.accel_delay_s = 1.3 * params.period_s;
+  const std::vector<ImuSample> samples = test::thrown_samples();
+  Kept<RateStream> whole(params);
+  std::vector<std::byte> saved;
+  std::size_t told = 0;
+  for (std::size_t k = 0; k < samples.size(); ++k) {
+    if (k == samples.size() / 3) saved = whole.save(), told = whole.told.size();
+    ASSERT_TRUE(whole.push(samples[k]).ok());
+  }
+  Kept<RateStream> rebooted(params);
+  ASSERT_TRUE(rebooted.load(saved).ok());
+  for (std::size_t k = samples.size() / 3; k < samples.size(); ++k) ASSERT_TRUE(rebooted.push(samples[k]).ok());
+  EXPECT_EQ(rebooted.told,
+            std::vector<double>(whole.told.begin() + static_cast<std::ptrdiff_t>(told), whole.told.end()));
+  EXPECT_EQ(rebooted.save(), whole.save());
+}
+
 TEST(SavedStreams, OtherParametersAndStreamsAreNamed) {
   RateStream::Params params = test::params_of_stream<RateStream>();
   const std::vector<std::byte> saved = Kept<RateStream>(params).save();

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <algorithm>
+#include <cmath>
 #include <memory>
 #include <optional>
 #include <utility>
@@ -59,7 +60,7 @@ RegimeStream::Params stream_params(const sim::Sensors& sensors, const sim::Value
   return params;
 }
 
-LearntRig learnt_by(const RateStream& stream, const RateStream::Params& params, const RateStream::State& state) {
+LearntRig rig_of(const RateStream& stream, const RateStream::Params& params, const RateStream::State& state) {
   LearntRig rig{stream.calibration(state), {}};
   const RailDetector upright_rails(params.rails);
   const KnownRails& known = state.rails.known;
@@ -71,6 +72,26 @@ LearntRig learnt_by(const RateStream& stream, const RateStream::Params& params, 
   }
   if (!known.upright) rig.keep(known.planes);
   if (!known.accel_upright) rig.keep(known.accel_planes, Triad::accelerometer);
+  return rig;
+}
+
+/// `at_prior`: nothing of the rig's constants. Of the device's errors the stream finds a delay alone.
+std::optional<LearntRig> learnt_by(const RateStream& stream, const RateStream::Params& params, const LearntRig* given,
+                                   bool at_prior, const RateStream::State& state) {
+  const bool late = state.device.front().delay.found;
+  std::optional<LearntRig> rig;
+  if (!at_prior) {
+    rig = rig_of(stream, params, state);
+    if (given != nullptr) rig->device_errors = given->device_errors;
+  } else {
+    const LearntRig before = known_before(given, params.model);
+    rig = with_rails(before, state.rails.known);
+    if (!rig && late) {
+      rig = before;
+      rig->rails_alone = true;
+    }
+  }
+  if (late) rig->device_errors = stream.sensor_errors(state);
   return rig;
 }
 
@@ -110,6 +131,10 @@ Estimate rates_of_stream(const sim::Sensors& sensors, const sim::Values& paramet
   estimate.health["calibration_at_prior"] = at_prior ? 1.0 : 0.0;
   estimate.health["rig_resets"] = static_cast<double>(state.rig_resets);
   estimate.health["device_unlike"] = state.device.front().open.unlike;
+  const KnownSensorErrors device = stream.sensor_errors(state);
+  constexpr int kDelay = SensorErrors::kDelay;
+  estimate.health["accel_delay_s"] = device.errors.accel_delay_s;
+  estimate.health["accel_delay_sigma_s"] = std::sqrt(device.covariance(kDelay, kDelay));
   estimate.health["steps_skipped"] = static_cast<double>(state.failures);
   tell_rails(state.rails.known, estimate.health);
   std::optional<double> carried_share;
@@ -124,12 +149,7 @@ Estimate rates_of_stream(const sim::Sensors& sensors, const sim::Values& paramet
   estimate.health["regime_carried_starts"] = static_cast<double>(all.starts);
   estimate.health["carried_steps_skipped"] = static_cast<double>(all.carried.failures);
   if (estimate.status.ok() && found != nullptr) {
-    if (!at_prior) {
-      *found = learnt_by(stream, params.rate, state);
-      if (given != nullptr) (*found)->device_errors = given->device_errors;  // the stream does not estimate them
-    } else if (auto rig = with_rails(known_before(given, params.rate.model), state.rails.known)) {
-      *found = std::move(rig);
-    }
+    if (std::optional<LearntRig> rig = learnt_by(stream, params.rate, given, at_prior, state)) *found = std::move(rig);
   }
   if (estimate.status.ok()) {
     check_rates(sensors, samples, carried_share, estimate);

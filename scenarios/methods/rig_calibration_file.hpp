@@ -22,7 +22,8 @@ struct LearntRig {
   Eigen::Matrix<double, 6, 1> accelerometer_elements = Eigen::Matrix<double, 6, 1>::Zero();
   /// What the device makes of the motion: delay, g-sensitivity, scale; none: nothing was learnt of it.
   std::optional<KnownSensorErrors> device_errors = std::nullopt;
-  /// The run learnt of rails alone (with_rails): all else is what was known before it. Not in the file.
+  /// The run learnt of rails alone (with_rails), or of a late accelerometer: all else is what was known before it. Not
+  /// in the file.
   bool rails_alone = false;
 
   /// The rails of a triad's elements, for the search of the next run.

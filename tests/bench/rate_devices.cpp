@@ -1,13 +1,15 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// rate_devices FIRST LAST [--method NAME]... [--keep FOLDER] [--row N] [--draws] [--ablation]: what real devices do
-// besides clipping, one row each, on the same draws of `hill` without lidar: the accelerometer late, a gyro's window
-// too long, a low-pass, errors of scale, g-sensitivity, readings that repeat, and all of it together (`hill_consumer`).
-// Prints for each method of kind `rate` the error at clipped samples, the same against the first row, the share of
-// clipped axes within three reported deviations (all draws, the worst draw), their mean squared error over variance,
-// and of the elements from which the rail took more than 0.1 rad/s the share that the method calls clipped, and of
-// those it calls so the share from which it took anything. FOLDER keeps recordings; --draws prints a line a draw too;
-// --ablation takes `hill_consumer` with one of its errors switched off at a time instead. Not a test: 2 to 3 s of one
-// core a draw and row.
+// rate_devices FIRST LAST [--method NAME]... [--keep FOLDER] [--row N] [--draws] [--ablation] [--learnt]: what real
+// devices do besides clipping, one row each, on the same draws of `hill` without lidar: the accelerometer late, a
+// gyro's window too long, a low-pass, errors of scale, g-sensitivity, readings that repeat, and all of it together
+// (`hill_consumer`). Prints for each method of kind `rate` the error at clipped samples, the same against the first
+// row, the share of clipped axes within three reported deviations (all draws, the worst draw), their mean squared error
+// over variance, and of the elements from which the rail took more than 0.1 rad/s the share that the method calls
+// clipped, and of those it calls so the share from which it took anything. FOLDER keeps recordings; --draws prints a
+// line a draw too;
+// --ablation takes `hill_consumer` with one of its errors switched off at a time instead; with --learnt methods start
+// from what they have learnt in another tumble of the same rig and device, those that learn alone. Not a test: 2 to 3 s
+// of one core a draw and row.
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
@@ -19,6 +21,7 @@
 
 #include "scenarios/draw/scenario.hpp"
 #include "scenarios/draw/without_lidars.hpp"
+#include "scenarios/methods/rate_tumble.hpp"
 #include "scenarios/statistics/statistics.hpp"
 #include "scenarios/sweep/evaluate.hpp"
 #include "tests/bench/kept_recording.hpp"
@@ -98,7 +101,7 @@ struct Request {
   std::vector<std::string> methods;
   std::filesystem::path keep;
   int row = -1;
-  bool draws = false, ablation = false;
+  bool draws = false, ablation = false, learnt = false;
 
   const std::vector<Row>& table() const { return ablation ? ablations() : rows(); }
 };
@@ -111,6 +114,10 @@ bool parse(int count, char** words, Request& request) {
     if (option && i + 1 == count) return false;
     if (word == "--draws") {
       request.draws = true;
+      continue;
+    }
+    if (word == "--learnt") {
+      request.learnt = true;
       continue;
     }
     if (word == "--ablation") {
@@ -134,12 +141,19 @@ bool parse(int count, char** words, Request& request) {
   return true;
 }
 
+// Draw `seed`; with `other`, its rig and device on the way of another draw.
 sim::Recording recording_of(const scenarios::DataRoot& data, const Row& row, std::size_t index, std::uint64_t seed,
-                            const std::string& prefix, const std::filesystem::path& keep) {
-  const std::string name = prefix + std::to_string(index) + "_" + std::to_string(seed);
+                            const std::string& prefix, const std::filesystem::path& keep, bool other = false) {
+  constexpr std::uint64_t kOther = 1'000'000;
+  const std::string name = prefix + std::to_string(index) + "_" + std::to_string(seed) + (other ? "_other" : "");
   return tumble::bench::kept_recording(data, keep, name, row.scenario, seed, [&] {
-    sim::Situation out =
-        scenarios::without_lidars(scenarios::draw(data, scenarios::load_scenario(data, row.scenario), seed));
+    const scenarios::Scenario scenario = scenarios::load_scenario(data, row.scenario);
+    sim::Situation out = scenarios::without_lidars(scenarios::draw(data, scenario, seed));
+    if (other) {
+      const sim::Situation far = scenarios::without_lidars(scenarios::draw(data, scenario, seed + kOther));
+      out.world = far.world;
+      out.motion = far.motion;
+    }
     for (const auto& [parameter, value] : row.changes) out.sensors.front().values.set(parameter, value);
     return out;
   });
@@ -194,15 +208,27 @@ struct Figures {
   Rails rails;
 };
 
-Figures figures(const Request& request, const std::vector<sim::Recording>& recordings, const std::string& name) {
+// What a method tells of a draw; `other`: in which it learns first, null where it does not.
+scenarios::Estimate estimate_of(const scenarios::Method& method, const sim::Recording& recording,
+                                const sim::Recording* other) {
+  if (other == nullptr)
+    return method.run(recording.sensors, {}, {method.info.needs_truth ? &recording.truth : nullptr});
+  scenarios::Learning before, learning;
+  (void)scenarios::learning_method(method, before).run(other->sensors, {}, {});
+  if (before.found() != nullptr) learning.given = *before.found();
+  return scenarios::learning_method(method, learning).run(recording.sensors, {}, {});
+}
+
+Figures figures(const Request& request, const std::vector<sim::Recording>& recordings,
+                const std::vector<sim::Recording>& others, const std::string& name) {
   RatePool pool(name);
   Figures out;
   const scenarios::Method& method = *scenarios::find_methods("rate/" + name).front();
   for (std::size_t i = 0; i < recordings.size(); ++i) {
     const sim::Recording& recording = recordings[i];
     const double start_s = scenarios::process_cpu_s();
-    const scenarios::Estimate estimate =
-        method.run(recording.sensors, {}, {method.info.needs_truth ? &recording.truth : nullptr});
+    const bool learns = request.learnt && method.info.learns_rig;
+    const scenarios::Estimate estimate = estimate_of(method, recording, learns ? &others[i] : nullptr);
     const std::size_t flights = pool.normalised_flight().size(), contacts = pool.normalised_contact().size();
     const std::size_t before = pool.clipped_rad_s().size();
     pool.add(request.first + i, recording, estimate, scenarios::process_cpu_s() - start_s);
@@ -249,12 +275,15 @@ int run(const Request& request) {
   const std::vector<Row>& table = request.table();
   for (std::size_t r = 0; r < table.size(); ++r) {
     if (request.row >= 0 && r != 0 && r != static_cast<std::size_t>(request.row)) continue;
-    std::vector<sim::Recording> recordings;
+    std::vector<sim::Recording> recordings, others;
+    const std::string prefix = request.ablation ? "ablation" : "row";
     bench::for_each_draw(request.first, request.last, [&](std::uint64_t seed) {
-      recordings.push_back(recording_of(data, table[r], r, seed, request.ablation ? "ablation" : "row", request.keep));
+      sim::Recording own = recording_of(data, table[r], r, seed, prefix, request.keep);
+      if (request.learnt) others.push_back(recording_of(data, table[r], r, seed, prefix, request.keep, true));
+      recordings.push_back(std::move(own));
     });
     for (std::size_t m = 0; m < request.methods.size(); ++m) {
-      const Figures f = figures(request, recordings, request.methods[m]);
+      const Figures f = figures(request, recordings, others, request.methods[m]);
       if (r == 0) as_it_is[m] = f.median;
       std::printf("%-31s %-12s %8.4f %6.2fx %8.3f %8.4f %7.2f %7.2f %8.2f %7.2f %6.2f %6.2f\n", table[r].title.c_str(),
                   request.methods[m].c_str(), f.median, f.median / as_it_is[m], f.p99, f.free, 100.0 * f.share,
@@ -269,6 +298,7 @@ int run(const Request& request) {
 
 int main(int count, char** words) {
   return tumble::bench::run_program(
-      count, words, "rate_devices FIRST LAST [--method NAME]... [--keep FOLDER] [--row N] [--draws] [--ablation]",
-      parse, run);
+      count, words,
+      "rate_devices FIRST LAST [--method NAME]... [--keep FOLDER] [--row N] [--draws] [--ablation] [--learnt]", parse,
+      run);
 }

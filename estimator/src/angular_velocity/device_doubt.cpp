@@ -2,6 +2,7 @@
 #include "tumble/angular_velocity/detail/device_doubt.hpp"
 
 #include <Eigen/Cholesky>
+#include <algorithm>
 #include <cmath>
 #include <limits>
 
@@ -12,10 +13,9 @@ namespace {
 using Matrix = SensorErrors::Matrix;
 using Vector = SensorErrors::Vector;
 
-// Samples err in common: what the model of flight misses lasts longer than one of them. Of what they say of where the
-// errors lie this share is believed, as in fit_sensor_errors(), and of whether there are any ten times as much: with
-// all of it half the devices that are as on their sheet are taken for others, by a rig that is not known yet.
-constexpr double kDoubtBelieved = 0.03, kDoubtBelievedOfOdds = 0.3;
+// Of whether there are any errors ten times as much is believed as of where they lie: with all of it half the devices
+// that are as on their sheet are taken for others, by a rig that is not known yet.
+constexpr double kDoubtBelievedOfOdds = 0.3;
 
 // I + share U L U, L's lower and upper triangle alike
 void set_system(const SensorErrorEvidence& evidence, const Vector& deviation, double share, Matrix& system) {
@@ -39,11 +39,12 @@ double log_odds(const SensorErrorEvidence& evidence, const Vector& deviation, Ma
 // rate_stream.md (R103): cov_i + m_i m_i' of one device; false where the evidence is indefinite
 bool about_corrected(const SensorErrorEvidence& evidence, const Vector& deviation, DeviceDoubt::Work& work) {
   constexpr int kRest = SensorErrors::kSize - SensorErrors::kFelt;
-  set_system(evidence, deviation, kDoubtBelieved, work.system);
+  constexpr double kBelieved = DeviceDoubt::kBelieved;
+  set_system(evidence, deviation, kBelieved, work.system);
   // scale and misalignment stay what they are held for: what the model of flight misses looks like them
   Vector mean = Vector::Zero();
   const Eigen::Matrix<double, kRest, kRest> rest = work.system.bottomRightCorner<kRest, kRest>();
-  mean.tail<kRest>() = rest.llt().solve(kDoubtBelieved * deviation.cwiseProduct(evidence.gradient).tail<kRest>());
+  mean.tail<kRest>() = rest.llt().solve(kBelieved * deviation.cwiseProduct(evidence.gradient).tail<kRest>());
   mean = deviation.cwiseProduct(mean).eval();
   const Eigen::LLT<Eigen::Ref<Matrix>> factor(work.system);
   if (factor.info() != Eigen::Success) return false;
@@ -65,7 +66,13 @@ void DeviceDoubt::forget(Open& open) const {
   open.covariance = ((1.0 - uncalibrated_) * sheet_.cwiseAbs2() + uncalibrated_ * unknown_.cwiseAbs2()).asDiagonal();
 }
 
-void DeviceDoubt::ask(const SensorErrorEvidence& evidence, Work& work, Open& open) const {
+void DeviceDoubt::ask(const SensorErrorEvidence& evidence, Work& work, Open& open, bool unlike_sheet) const {
+  if (unlike_sheet) {
+    if (!about_corrected(evidence, unknown_, work)) work.about_corrected = unknown_.cwiseAbs2().asDiagonal();
+    open.covariance = work.about_corrected;
+    open.unlike = 1.0;
+    return;
+  }
   const double odds = std::log(uncalibrated_ / (1.0 - uncalibrated_)) + log_odds(evidence, unknown_, work.system) -
                       log_odds(evidence, sheet_, work.system);
   const double unlike = 1.0 / (1.0 + std::exp(-odds));
@@ -75,6 +82,29 @@ void DeviceDoubt::ask(const SensorErrorEvidence& evidence, Work& work, Open& ope
   if (!known) return forget(open);
   open.covariance += unlike * work.about_corrected;
   open.unlike = unlike;
+}
+
+double DeviceDoubt::odds_of_sheet(double delay_s, double sigma_s) const {
+  const auto variance = [&](const Vector& deviation) {
+    return sigma_s * sigma_s + deviation[SensorErrors::kDelay] * deviation[SensorErrors::kDelay];
+  };
+  const double sheet = variance(sheet_), unknown = variance(unknown_);
+  const double log_odds = 0.5 * delay_s * delay_s * (1.0 / unknown - 1.0 / sheet) + 0.5 * std::log(unknown / sheet);
+  return (1.0 - uncalibrated_) / uncalibrated_ * std::exp(log_odds);
+}
+
+double DeviceDoubt::further_delay_s(const SensorErrorEvidence& evidence, double reach_s) const {
+  constexpr int kFirst = SensorErrors::kFelt, kRest = SensorErrors::kSize - kFirst, kAt = SensorErrors::kDelay - kFirst;
+  using Rest = Eigen::Matrix<double, kRest, kRest>;
+  Eigen::Matrix<double, kRest, 1> deviation = unknown_.tail<kRest>();
+  deviation[kAt] = reach_s;
+  const Rest told = evidence.information.bottomRightCorner<kRest, kRest>(), both = 0.5 * (told + told.transpose());
+  const Rest system = Rest::Identity() + deviation.asDiagonal() * (kBelieved * both) * deviation.asDiagonal();
+  const Eigen::LLT<Rest> factor(system);
+  if (factor.info() != Eigen::Success) return 0.0;
+  const Eigen::Matrix<double, kRest, 1> z = kBelieved * deviation.cwiseProduct(evidence.gradient.tail<kRest>());
+  const double out = reach_s * factor.solve(z)[kAt];
+  return std::isfinite(out) ? std::clamp(out, -reach_s, reach_s) : 0.0;
 }
 
 double DeviceDoubt::shared_delay_s2(const Open& open) const {

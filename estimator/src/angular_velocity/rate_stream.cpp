@@ -73,6 +73,9 @@ RateStream::RateStream(const Params& params)
   if (params.learnt_errors) require_known(*params.learnt_errors);
   require_within("lag_s", params.lag_s, 2.0 * params.period_s, params.lag_max_s());
   capacity_ = static_cast<std::size_t>(std::lround(params.lag_s / params.period_s)) + 1;
+  given_delay_s_ = corrected_for(params).errors.accel_delay_s;
+  const SensorErrorSizes& sizes = params.model.expert.error_sizes;
+  delay_open_ = !params.learnt_errors && sizes.delay_unknown_s > sizes.delay_s && params.expert.uncalibrated > 0.0;
   every_ = std::clamp(static_cast<std::size_t>(params.step_s / params.period_s + 1e-6), std::size_t{1}, capacity_);
 }
 
@@ -84,6 +87,7 @@ RateStream::State RateStream::start() const {
   RateStreamDevice& device = state.device.front();
   device.moved.resize(capacity_ + every_);
   device_.forget(device.open);
+  device.delay.in_use_s = device.delay.told_s = given_delay_s_;
   if (params_.learnt_errors) {
     device.open.covariance = params_.learnt_errors->covariance;
     device.open.unlike = 0.0;
@@ -109,6 +113,7 @@ Status RateStream::push(const ImuSample& sample, std::span<const AuxiliaryReadin
   const bool due = ++state.waiting >= every_;
   if (due) forget_oldest(state);
   append(sample, auxiliary_imus, state);
+  if (due) seek_delay(state);
   if (!due) {
     predict_covariance(state);
   } else if (weigh(state); !step(state)) {
@@ -181,10 +186,7 @@ void RateStream::marginalise(std::size_t first, State& state) const {
   state.prior_rig = state.rig;
   if (model_.calibration_mahalanobis(state.rig) > params_.calibration_mahalanobis_max) {
     // contact was taken for flight of another rig: drop what was learnt of the rig and of the motion with it
-    state.rig = state.prior_rig = model_.prior_constants();
-    state.rig_covariance = model_.prior_covariance();
-    forget_left(state);
-    state.learnt_from = 0;
+    forget_rig(state);
     ++state.rig_resets;
   }
 }
@@ -203,6 +205,8 @@ void RateStream::append(const ImuSample& sample, std::span<const AuxiliaryReadin
   knot.by_upright_rails = rails_.upright_rails().classify(sample, state.rails.known.upright_rails);
   holds_.observe(sample, (knot.by_upright_rails.gyro | knot.by_upright_rails.missing_gyro) != 0, state.holds);
   knot.observation = {sample, knot.by_upright_rails, rests_.observe(sample, state.rests)};
+  knot.read = {sample.specific_force_m_s2, static_cast<std::uint8_t>(sample.device_clip_flags & kClipAccel),
+               knot.by_upright_rails.accel};
   std::copy(auxiliary_imus.begin(), auxiliary_imus.end(), knot.observation.auxiliary_imus.begin());
   const HeldReading& held = state.holds.of(Triad::gyro);
   knot.repeats = held.repeats && !knot.observation.at_rest;
@@ -212,10 +216,12 @@ void RateStream::append(const ImuSample& sample, std::span<const AuxiliaryReadin
   knot.covariance_rad2_s2 = std::pow(params_.model.rate_max_rad_s, 2) * Eigen::Matrix3d::Identity();
   state.window.push_back(knot);
   state.window.back().approach_rad_s = approach(state.window);
+  const std::size_t paired = pair_newest(state);
   ++state.samples;
   if (knot.by_upright_rails.missing_gyro == 0) state.least.add(sample.angular_velocity_rad_s);
   if (changed) classify_again(state);
-  judge(changed, state);
+  judge_from(changed ? 0 : paired, state);
+  count_strokes(state);
   state.extremes[0] = state.extremes[0].cwiseMin(sample.angular_velocity_rad_s);
   state.extremes[1] = state.extremes[1].cwiseMax(sample.angular_velocity_rad_s);
   doubt_possible_rails(state);

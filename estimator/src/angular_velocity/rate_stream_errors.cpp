@@ -50,6 +50,22 @@ void RateStream::forget_left(State& state) const {
   device.evidence.gradient.setZero();
 }
 
+// Back to what was known of the rig beforehand, and nothing of the motion before the window.
+void RateStream::forget_rig(State& state) const {
+  state.rig = state.prior_rig = model_.prior_constants();
+  state.rig_covariance = model_.prior_covariance();
+  forget_left(state);
+  state.learnt_from = 0;
+}
+
+KnownSensorErrors RateStream::sensor_errors(const State& state) const {
+  const RateStreamDevice& device = state.device.front();
+  KnownSensorErrors out{params_.learnt_errors ? params_.learnt_errors->errors : params_.model.errors,
+                        device.open.covariance};
+  out.errors.accel_delay_s = device.delay.in_use_s;
+  return out;
+}
+
 // rate_stream.md (R102) over the window, whose blocks are eliminated; before its estimates and the rig are moved.
 void RateStream::consider_errors(const arrow::BorderVector& rig_step, State& state) const {
   RateStreamDevice& device = state.device.front();
@@ -82,7 +98,18 @@ void RateStream::consider_errors(const arrow::BorderVector& rig_step, State& sta
   told.information.noalias() -= border.transpose().lazyProduct(of_rig);
   told.gradient.noalias() += border.transpose().lazyProduct(rig_step);
   discount_untold(model_.said_once_share(), told);
-  device_.ask(told, doubt, device.open);
+  RateStreamDelay& delay = device.delay;
+  if (delay.found) {
+    if (const TriadDelay& guess = delay.guess; guess.sigma_s > 0.0) {
+      // strokes are believed in full
+      const double information = 1.0 / (DeviceDoubt::kBelieved * guess.sigma_s * guess.sigma_s);
+      told.information(SensorErrors::kDelay, SensorErrors::kDelay) += information;
+      told.gradient[SensorErrors::kDelay] += information * (guess.delay_s - delay.in_use_s);
+    }
+    delay.told_s =
+        std::clamp(delay.in_use_s + device_.further_delay_s(told, delay_reach_s()), -delay_reach_s(), delay_reach_s());
+  }
+  device_.ask(told, doubt, device.open, delay.found);
 }
 
 // What is open of the device's errors, and of a delay that both triads share, in the rate of a sample.

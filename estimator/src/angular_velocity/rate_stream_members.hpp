@@ -14,9 +14,17 @@
 /// Members of a RateStream's state and of what its Params hold beside Fields: state_visitor.hpp.
 namespace tumble {
 
+template <StateOf<RateStreamForce> Self, class Visitor>
+void members(Self& s, Visitor& visit) {
+  visit("read.force_m_s2", s.force_m_s2);
+  visit("read.device_clip_flags", s.device_clip_flags);
+  visit("read.clipped", s.clipped);
+}
+
 template <StateOf<RateStream::Knot> Self, class Visitor>
 void members(Self& s, Visitor& visit) {
   visit("knot.observation", s.observation);
+  visit("knot.read", s.read);
   visit("knot.by_upright_rails", s.by_upright_rails);
   visit("knot.estimate", s.estimate);
   visit("knot.covariance_rad2_s2", s.covariance_rad2_s2);
@@ -47,6 +55,29 @@ void members(Self& s, Visitor& visit) {
   visit("sense.started", s.started);
 }
 
+template <StateOf<StrokeSums> Self, class Visitor>
+void members(Self& s, Visitor& visit) {
+  visit("strokes.intervals", s.intervals);
+  visit("strokes.turn", s.turn);
+  visit("strokes.turn_squared", s.turn_squared);
+  visit("strokes.force", s.force);
+  visit("strokes.force_squared", s.force_squared);
+  visit("strokes.product", s.product);
+  visit("strokes.strokes", s.strokes);
+  visit("strokes.flying", s.flying);
+}
+
+template <StateOf<RateStreamDelay> Self, class Visitor>
+void members(Self& s, Visitor& visit) {
+  visit("delay.strokes", s.strokes);
+  visit("delay.in_use_s", s.in_use_s);
+  visit("delay.told_s", s.told_s);
+  visit("delay.found", s.found);
+  visit("delay.guess_s", s.guess.delay_s);
+  visit("delay.guess_sigma_s", s.guess.sigma_s);
+  visit("delay.asked_ns", s.asked_ns);
+}
+
 template <StateOf<RateStreamDevice> Self, class Visitor>
 void members(Self& s, Visitor& visit) {
   visit("device.prior", s.prior);
@@ -55,6 +86,7 @@ void members(Self& s, Visitor& visit) {
   visit("device.covariance", s.open.covariance);
   visit("device.unlike", s.open.unlike);
   visit("device.asked_ns", s.asked_ns);
+  visit("device.delay", s.delay);
   visit.scratch(s.moved);
   visit.scratch(s.work);
 }

@@ -71,14 +71,21 @@ Beside readings_beside(std::size_t k, const RateStream::State& state) {
 void RateStream::classify_again(State& state) const {
   RailDetector::State& upright_rails = state.rails.known.upright_rails;
   for (RailDetector::Channel& channel : upright_rails.channels) channel.clipped = false;
-  for (Knot& knot : state.window)
-    knot.by_upright_rails = rails_.upright_rails().classify(knot.observation.sample, upright_rails);
+  for (Knot& knot : state.window) {
+    ImuSample sample = knot.observation.sample;
+    sample.specific_force_m_s2 = knot.read.force_m_s2;
+    sample.device_clip_flags =
+        static_cast<std::uint8_t>((sample.device_clip_flags & kClipGyro) | knot.read.device_clip_flags);
+    knot.by_upright_rails = rails_.upright_rails().classify(sample, upright_rails);
+    knot.read.clipped = knot.by_upright_rails.accel;
+  }
+  for (std::size_t k = 0; force_shift(state) != 0 && k < state.window.size(); ++k) pair_force(k, state);
 }
 
-// Reads samples of the window with the rails as they are known: `all`, or the newest and those that say the reading
-// before, which are judged by what lies beside them too. One that turns out to be clipped starts anew.
-void RateStream::judge(bool all, State& state) const {
-  const std::size_t first = all ? 0 : reading_before(state.window.size() - 1, state.window).value_or(0);
+// Reads samples of the window with the rails as they are known: from one that has changed on, with those that say the
+// reading before, which are judged by what lies beside them too. One that turns out to be clipped starts anew.
+void RateStream::judge_from(std::size_t changed, State& state) const {
+  const std::size_t first = reading_before(changed, state.window).value_or(0);
   const KnownRails& rails = state.rails.known;
   const RailPlanes planes = rails.planes_in_use(), accel_planes = rails.planes_in_use(Triad::accelerometer);
   const ElementRows accel_rows = rails.rows(Triad::accelerometer, params_.model.element_sigma);

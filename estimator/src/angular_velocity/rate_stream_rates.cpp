@@ -73,6 +73,34 @@ bool RateStream::near_rails(std::size_t at, const State& state) const {
   return (window[next].near | after.clipping.gyro | after.may_hide()) != 0;
 }
 
+// Where the gyro is the late triad, the rate of a sample is what it says some time after: the cubic between the knots
+// there, as the batch has it. Beyond the newest the acceleration goes on, and what it adds is open. rate_stream.md
+// (R111)
+void RateStream::move_later(std::size_t at, double late_s, const State& state, RateState& out) const {
+  const auto reported = [&](std::size_t k) {
+    const Knot& knot = state.window[k];
+    return model_.reported(doubted(k, state), knot.observation, knot.estimate);
+  };
+  for (; at + 1 < state.window.size(); ++at) {
+    const Knot &from = state.window[at], &to = state.window[at + 1];
+    const double dt_s = seconds(to.observation.sample.time_ns - from.observation.sample.time_ns);
+    if (late_s >= dt_s) {
+      late_s -= dt_s;
+      continue;
+    }
+    const RateKnot &a = from.estimate.knot, &b = to.estimate.knot;
+    const double u = late_s / dt_s, v = 1.0 - u;
+    out.w_WI_I_rad_s = v * v * (1.0 + 2.0 * u) * a.rate_rad_s + u * u * (3.0 - 2.0 * u) * b.rate_rad_s +
+                       u * v * dt_s * (v * a.acceleration_rad_s2 - u * b.acceleration_rad_s2);
+    out.covariance_rad2_s2 = v * reported(at) + u * reported(at + 1);
+    return;
+  }
+  const RateKnot& last = state.window[at].estimate.knot;
+  const Eigen::Vector3d moved = late_s * last.acceleration_rad_s2;
+  out.w_WI_I_rad_s = last.rate_rad_s + moved;
+  out.covariance_rad2_s2 = reported(at) + moved * moved.transpose();
+}
+
 RateState RateStream::to_state(std::size_t at, const State& state) const {
   const Knot& knot = state.window[at];
   const Eigen::Matrix3d covariance = doubted(at, state);
@@ -80,7 +108,11 @@ RateState RateStream::to_state(std::size_t at, const State& state) const {
   out.time_ns = knot.observation.sample.time_ns;
   out.w_WI_I_rad_s = knot.estimate.knot.rate_rad_s;
   out.covariance_rad2_s2 = model_.reported(covariance, knot.observation, knot.estimate);
-  if (const std::optional<HeldRate> own = rate_between_readings(state.window, at, params_.period_s)) {
+  const double gyro_late_s = -state.device.front().delay.in_use_s;
+  if (gyro_late_s > 0.0) {
+    move_later(at, gyro_late_s, state, out);
+    out.covariance_rad2_s2.diagonal() += knot.held.stale().cwiseAbs2();
+  } else if (const std::optional<HeldRate> own = rate_between_readings(state.window, at, params_.period_s)) {
     out.w_WI_I_rad_s = own->rate_rad_s - state.rig.gyro_bias_rad_s;
     out.covariance_rad2_s2.diagonal() += own->variance_rad2_s2;
   } else {

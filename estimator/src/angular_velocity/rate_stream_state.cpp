@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // What holds of the states of a RateStream, and when two of them are the same.
 #include <algorithm>
+#include <cmath>
 
 #include "tumble/angular_velocity/rate_stream.hpp"
 
@@ -17,6 +18,8 @@ Status RateStream::check_state(const State& state) const {
     return {Trouble::out_of_range, "rate.window", double(state.window.size()), double(most)};
   if (state.waiting > every_) return {Trouble::out_of_range, "rate.waiting", double(state.waiting), double(every_)};
   if (!rails_.has_room_for(state.rails)) return {Trouble::out_of_range, "rails.readings", 1.0, 0.0};
+  const double most_s = std::abs(given_delay_s_) + 2.0 * delay_reach_s(), delay_s = state.device.front().delay.in_use_s;
+  if (std::abs(delay_s) > most_s) return {Trouble::out_of_range, "delay.in_use_s", delay_s, most_s};
   for (std::size_t k = 1; k < state.window.size(); ++k) {
     const TimeNs before_ns = state.window[k - 1].observation.sample.time_ns;
     const Status status = check_follows(state.window[k].observation.sample.time_ns, before_ns, params_.gap_max_s);
@@ -29,7 +32,8 @@ bool RateStream::equal(const State& a, const State& b) {
   const auto alike = [](const RateStreamDevice& x, const RateStreamDevice& y) {
     return x.prior == y.prior && x.corner == y.corner && x.evidence.about == y.evidence.about &&
            x.evidence.information == y.evidence.information && x.evidence.gradient == y.evidence.gradient &&
-           x.open.covariance == y.open.covariance && x.open.unlike == y.open.unlike && x.asked_ns == y.asked_ns;
+           x.open.covariance == y.open.covariance && x.open.unlike == y.open.unlike && x.asked_ns == y.asked_ns &&
+           x.delay == y.delay;
   };
   const auto same = [](const Knot& x, const Knot& y) {
     const ImuSample &p = x.observation.sample, &q = y.observation.sample;
@@ -40,8 +44,8 @@ bool RateStream::equal(const State& a, const State& b) {
            x.observation.at_rest == y.observation.at_rest &&
            x.observation.subsample_saturated == y.observation.subsample_saturated &&
            x.observation.lone == y.observation.lone && x.observation.doubted == y.observation.doubted &&
-           x.repeats == y.repeats && x.held == y.held && x.near == y.near &&
-           x.observation.lost_rad_s == y.observation.lost_rad_s &&
+           x.read == y.read && x.observation.accel_age_s == y.observation.accel_age_s && x.repeats == y.repeats &&
+           x.held == y.held && x.near == y.near && x.observation.lost_rad_s == y.observation.lost_rad_s &&
            x.observation.lost_sigma_rad_s == y.observation.lost_sigma_rad_s && e.knot == f.knot &&
            e.flight_weight == f.flight_weight && e.contact_m_s2 == f.contact_m_s2 &&
            e.bound_precision == f.bound_precision && e.bound_shift == f.bound_shift && e.soft_bounds == f.soft_bounds &&

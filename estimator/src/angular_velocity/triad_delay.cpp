@@ -4,6 +4,7 @@
 #include <Eigen/Cholesky>
 #include <Eigen/Geometry>
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <optional>
 #include <vector>
@@ -20,7 +21,7 @@ using Eigen::Matrix3d;
 using Eigen::Vector3d;
 using Unknown = Eigen::Matrix<double, 6, 1>;  // lever arm, bias
 
-constexpr int kDelayMost = 4;  // largest delay, in samples
+constexpr int kDelayMost = StrokeSums::kMostSamples;  // largest delay, in samples
 constexpr int kPerSample = 4;  // delays tried to a sample, on the coarse and, as many again, about the best of them
 constexpr double kRateMin_rad_s = 2.0;
 constexpr std::size_t kSamplesMin = 20, kSamplesMax = 2000;
@@ -31,16 +32,6 @@ constexpr double kApart_s = 1e-4;
 constexpr double kScales_m_s2[] = {3.0, 1.5, 0.8, 0.4, 0.25, 0.2};
 // A gain of robust cost, each sample's at most 1, that chance does not make.
 constexpr double kGainMin = 0.4;
-
-// Readings of a struck body: rate from which it counts as moving, least number and correlation, and how well the delay
-// of the best is known, as a share of the slower triad's period.
-constexpr double kStruckRate_rad_s = 1.0, kCorrelationMin = 0.6, kStruckSigma = 0.15;
-constexpr std::size_t kStruckMin = 30;
-// A force that strikes, and how many of the segments must have met it; one that a body has that nothing holds up, and
-// in what share of the segments: what is struck and never flies is in a hand.
-constexpr double kStroke_m_s2 = 30.0, kFlying_m_s2 = 5.0, kFlyingShareMin = 0.1;
-constexpr std::size_t kStrokesMin = 10;
-constexpr int kStruckPerSample = 8;
 
 // A triad's own readings: those that are not said twice, at the instants of which they tell.
 struct TriadReadings {
@@ -139,23 +130,6 @@ double cost(const TriadReadings& accel, std::span<const Instant> instants, const
   return sum;
 }
 
-// Mean angular acceleration between two free readings of the gyro: x of rate_smoother.md (R44).
-struct Change {
-  double begin_s, end_s, root;  ///< root of its norm
-};
-
-std::vector<Change> changes(const TriadReadings& gyro) {
-  std::vector<Change> out;
-  for (std::size_t k = 1; k < gyro.size(); ++k) {
-    if (gyro.clipped[k] || gyro.clipped[k - 1]) continue;
-    if (std::min(gyro.value[k].norm(), gyro.value[k - 1].norm()) < kStruckRate_rad_s) continue;
-    const double span_s = gyro.time_s[k] - gyro.time_s[k - 1];
-    const double change = (gyro.value[k] - gyro.value[k - 1]).norm() / span_s;
-    out.push_back({gyro.time_s[k - 1], gyro.time_s[k], std::sqrt(change)});
-  }
-  return out;
-}
-
 // The integral of the force's norm, linear between readings, from the first of them on; beyond the ends the nearest
 // reading holds.
 class ForceIntegral {
@@ -182,46 +156,29 @@ class ForceIntegral {
   std::vector<double> norm_, sum_;
 };
 
-// Of the two of rate_smoother.md (R44).
-double correlation(std::span<const Change> changes, const ForceIntegral& force, double delay_s) {
-  double n = 0.0, x = 0.0, y = 0.0, xx = 0.0, yy = 0.0, xy = 0.0;
-  std::size_t begin = 0, end = 0, strokes = 0, flying = 0;
-  for (const Change& change : changes) {
-    const double span_s = change.end_s - change.begin_s;
-    const double mean = (force.to(change.end_s + delay_s, end) - force.to(change.begin_s + delay_s, begin)) / span_s;
-    const double root = std::sqrt(std::max(0.0, mean));
-    strokes += mean > kStroke_m_s2;
-    flying += mean < kFlying_m_s2;
-    n += 1.0;
-    x += change.root, y += root;
-    xx += change.root * change.root, yy += root * root, xy += change.root * root;
-  }
-  const double spread = (n * xx - x * x) * (n * yy - y * y);
-  if (strokes < kStrokesMin || static_cast<double>(flying) < kFlyingShareMin * n) return 0.0;
-  return spread > 0.0 ? (n * xy - x * y) / std::sqrt(spread) : 0.0;
-}
-
-// By what strikes the body; sigma 0 where that tells nothing.
+// By what strikes the body, rate_smoother.md (R44); sigma 0 where that tells nothing.
 TriadDelay struck(const TriadReadings& gyro, const TriadReadings& accel, double period_s) {
-  const std::vector<Change> turns = changes(gyro);
-  if (turns.size() < kStruckMin || accel.size() < 4) return {};
+  if (accel.size() < 4) return {};
   const ForceIntegral force(accel);
-  constexpr int kMost = kDelayMost * kStruckPerSample;
-  const double step_s = period_s / kStruckPerSample;
-  const auto of = [&](int i) { return correlation(turns, force, i * step_s); };
-  int at = -kMost;
-  double best = -1.0;
-  for (int i = -kMost; i <= kMost; ++i) {
-    const double found = of(i);
-    if (found > best) best = found, at = i;
+  const double step_s = period_s / StrokeSums::kPerSample;
+  std::array<std::size_t, StrokeSums::kTried> begin{}, end{};
+  StrokeSums sums;
+  for (std::size_t k = 1; k < gyro.size(); ++k) {
+    if (gyro.clipped[k] || gyro.clipped[k - 1] || !StrokeSums::counts(gyro.value[k - 1], gyro.value[k])) continue;
+    const double begin_s = gyro.time_s[k - 1], end_s = gyro.time_s[k], span_s = end_s - begin_s;
+    StrokeSums::Tried mean;
+    for (int i = 0; i < StrokeSums::kTried; ++i) {
+      const auto at = static_cast<std::size_t>(i);
+      const double delay_s = (i - StrokeSums::kMost) * step_s;
+      mean[i] = (force.to(end_s + delay_s, end[at]) - force.to(begin_s + delay_s, begin[at])) / span_s;
+    }
+    sums.add((gyro.value[k] - gyro.value[k - 1]).norm() / span_s, mean);
   }
-  if (best < kCorrelationMin || std::abs(at) == kMost) return {};
-  const double left = of(at - 1), right = of(at + 1), bend = left - 2.0 * best + right;
-  const double part = bend < 0.0 ? std::clamp(0.5 * (left - right) / bend, -0.5, 0.5) : 0.0;
   const auto mean_period = [](const TriadReadings& triad) {
     return (triad.time_s.back() - triad.time_s.front()) / static_cast<double>(triad.size() - 1);
   };
-  return {(at + part) * step_s, kStruckSigma * std::max(mean_period(gyro), mean_period(accel))};
+  if (gyro.size() < 2) return {};
+  return sums.told(period_s, std::max(mean_period(gyro), mean_period(accel)));
 }
 
 // By how it flies; 0 where that tells nothing.

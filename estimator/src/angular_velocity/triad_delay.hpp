@@ -4,19 +4,14 @@
 #include <Eigen/Core>
 #include <span>
 
+#include "tumble/angular_velocity/detail/stroke_sums.hpp"
 #include "tumble/angular_velocity/rail_detector.hpp"
 #include "tumble/common/imu.hpp"
 
 namespace tumble {
 
-/// How much later than the gyro the accelerometer of a device says the same instant.
-struct TriadDelay {
-  double delay_s = 0.0;
-  double sigma_s = 0.0;  ///< 0: the readings tell nothing, or no more than a place to start from
-};
-
-/// A first guess of it, among delays of up to four samples, in two ways; readings that repeat count once, at the
-/// instants of which they tell.
+/// A first guess of a device's delay, among delays of up to four samples, in two ways; readings that repeat count once,
+/// at the instants of which they tell.
 ///
 /// Where the body is struck: whatever strikes it turns it, so that the angular acceleration is large where the specific
 /// force is. The delay at which the roots of both, taken over the same intervals of time between free readings of the

@@ -2,12 +2,14 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 #include <cstdint>
 #include <limits>
 #include <string>
 
 #include "scenarios/draw/distribution.hpp"
 #include "scenarios/draw/scenario.hpp"
+#include "scenarios/draw/without_lidars.hpp"
 #include "scenarios/errors.hpp"
 #include "scenarios/methods/bridge.hpp"
 #include "scenarios/methods/doubts.hpp"
@@ -16,6 +18,7 @@
 #include "scenarios/methods/synthetic_recording.hpp"
 #include "scenarios/recordings/import.hpp"
 #include "scenarios/sweep/evaluate.hpp"
+#include "sim/simulate.hpp"
 #include "stand_ins/stand_ins.hpp"
 #include "tests/tree.hpp"
 
@@ -181,6 +184,32 @@ TEST(RateLearnt, RailsThatReadingsContradictGoAndOthersStay) {
   EXPECT_FALSE(after->gyro_planes_rad_s[2][0] || after->gyro_planes_rad_s[2][1]) << "the finder has dropped it";
   rails.planes.element[0]->log_odds = 5.0;
   EXPECT_FALSE(with_rails(before, rails).has_value()) << "not sure";
+}
+
+// An accelerometer 10 ms late is found by the stream in the first tumble of a device and known from the start of the
+// next; of one in time nothing is said.
+TEST(RateLearnt, TheStreamLeavesALateAccelerometerToTheNextRun) {
+  const DataRoot data{test::source_dir()};
+  const Scenario hill = load_scenario(data, "hill");
+  for (const double delay_s : {0.0, 0.01}) {
+    sim::Situation situation = without_lidars(draw(data, hill, 40001));
+    situation.sensors.front().values.set("accel_delay_s", delay_s);
+    const sim::Recording recording = sim::simulate(sim::BuiltSituation(sim::resolve(situation), data.models()));
+    Learning first, second;
+    const Method& stream = *find_methods("rate/tumble_lag").front();
+    ASSERT_TRUE(learning_method(stream, first).run(recording.sensors, {}, {}).status.ok());
+    const bool late = delay_s > 0.0;
+    ASSERT_EQ(first.of_stream && first.of_stream->device_errors.has_value(), late);
+    if (!late) continue;
+    const KnownSensorErrors& errors = *first.of_stream->device_errors;
+    const double sigma_s = std::sqrt(errors.covariance(SensorErrors::kDelay, SensorErrors::kDelay));
+    EXPECT_NEAR(errors.errors.accel_delay_s, delay_s, 3.0 * sigma_s);
+    EXPECT_LT(sigma_s, 2e-3);
+    second.given = *first.found();
+    const Estimate next = learning_method(stream, second).run(recording.sensors, {}, {});
+    ASSERT_TRUE(next.status.ok());
+    EXPECT_EQ(next.health.at("accel_delay_s"), errors.errors.accel_delay_s);
+  }
 }
 
 // which rail, by how many samples of either sign, how steep and how sure

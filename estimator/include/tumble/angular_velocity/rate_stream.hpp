@@ -70,6 +70,10 @@ class RateStream {
   /// What has been learnt of the rig.
   RigCalibration calibration(const State& state) const { return {state.rig, inflated(state)}; }
 
+  /// What readings are corrected for of the device's errors, and what is open of them. A late accelerometer is found
+  /// from strokes where the device's sheet leaves it open; see RateStreamDelay.
+  KnownSensorErrors sensor_errors(const State& state) const;
+
   /// True when two states will behave alike for ever (scratch space excluded), bit for bit.
   static bool equal(const State& a, const State& b);
 
@@ -81,13 +85,24 @@ class RateStream {
   void marginalise(std::size_t first, State& state) const;
   void remember_errors(const arrow::Block& block, arrow::ErrorMatrix& errors, State& state) const;
   void forget_left(State& state) const;
+  void forget_rig(State& state) const;
+  double delay_reach_s() const { return StrokeSums::kMostSamples * params_.period_s; }
+  std::ptrdiff_t force_shift(const State& state) const;
+  void pair_force(std::size_t k, State& state) const;
+  std::size_t pair_newest(State& state) const;
+  void count_strokes(State& state) const;
+  TriadDelay guessed_delay(const State& state) const;
+  void seek_delay(State& state) const;
+  void take_delay(double delay_s, bool found, State& state) const;
+  void refine_delay(State& state) const;
   void consider_errors(const arrow::BorderVector& rig_step, State& state) const;
   Eigen::Matrix3d of_device(std::size_t k, const State& state) const;
   void predict_covariance(State& state) const;
   double jump_before(const Knot& oldest, const State& state) const;
   void append(const ImuSample& sample, std::span<const AuxiliaryReading> auxiliary_imus, State& state) const;
   void classify_again(State& state) const;
-  void judge(bool all, State& state) const;
+  void judge(bool all, State& state) const { judge_from(all ? 0 : state.window.size() - 1, state); }
+  void judge_from(std::size_t changed, State& state) const;
   void doubt_unseen(std::size_t k, State& state) const;
   void forget_doubts(State& state) const;
   void doubt_possible_rails(State& state) const;
@@ -105,6 +120,7 @@ class RateStream {
   bool in_long_flight(std::size_t at, const State& state) const;
   double hidden_by_slopes(std::size_t at, int axis, const State& state) const;
   Eigen::Matrix3d doubted(std::size_t at, const State& state) const;
+  void move_later(std::size_t at, double late_s, const State& state, RateState& out) const;
   RateState to_state(std::size_t at, const State& state) const;
 
   Params params_;
@@ -116,7 +132,9 @@ class RateStream {
   RateModel model_;
   DeviceDoubt device_;
   std::size_t capacity_;
-  std::size_t every_;  ///< samples from one step to the next
+  std::size_t every_;     ///< samples from one step to the next
+  double given_delay_s_;  ///< of the accelerometer, as known beforehand
+  bool delay_open_;       ///< the device may have another
 };
 
 }  // namespace tumble

@@ -12,6 +12,10 @@ namespace tumble {
 /// afford. rate_stream.md (R103), (R104).
 class DeviceDoubt {
  public:
+  /// Samples err in common (what the model of flight misses lasts longer than one of them): the share that is believed
+  /// of what they say of where the errors lie, as in fit_sensor_errors().
+  static constexpr double kBelieved = 0.03;
+
   struct Open {
     /// About the errors that readings are corrected for.
     SensorErrors::Matrix covariance = SensorErrors::Matrix::Zero();
@@ -27,7 +31,17 @@ class DeviceDoubt {
   DeviceDoubt(const SensorErrorSizes& sizes, double uncalibrated);
 
   /// O(1): two systems of 29 unknowns; no allocation. Of evidence that is no number what was open before all.
-  void ask(const SensorErrorEvidence& evidence, Work& work, Open& open) const;
+  /// `unlike`: the device is known to be none that is as its sheet says.
+  void ask(const SensorErrorEvidence& evidence, Work& work, Open& open, bool unlike = false) const;
+
+  /// How likely triads are that are sampled as alike as the sheet has it against such that are not, by a delay that
+  /// was measured, with its deviation, less what is given. rate_stream.md (R109).
+  double odds_of_sheet(double delay_s, double sigma_s) const;
+
+  /// The delay by `evidence` about the errors that are corrected for, this among them, of a device that may have any
+  /// within `reach_s`: rate_stream.md (R110), less what is corrected for. 0 where the evidence is indefinite. O(1), no
+  /// allocation.
+  double further_delay_s(const SensorErrorEvidence& evidence, double reach_s) const;
 
   /// Before all evidence.
   void forget(Open& open) const;

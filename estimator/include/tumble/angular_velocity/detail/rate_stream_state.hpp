@@ -15,6 +15,7 @@
 #include "tumble/angular_velocity/detail/least_rails.hpp"
 #include "tumble/angular_velocity/detail/rail_watch.hpp"
 #include "tumble/angular_velocity/detail/rate_observation.hpp"
+#include "tumble/angular_velocity/detail/stroke_sums.hpp"
 #include "tumble/angular_velocity/rail_detector.hpp"
 #include "tumble/angular_velocity/rate_state.hpp"
 #include "tumble/angular_velocity/rest_detector.hpp"
@@ -25,9 +26,18 @@
 /// State of RateStream.
 namespace tumble {
 
+/// What the accelerometer read at the stamp of a sample.
+struct RateStreamForce {
+  Eigen::Vector3d force_m_s2 = Eigen::Vector3d::Zero();
+  std::uint8_t device_clip_flags = 0;  ///< the accelerometer's bits
+  std::uint8_t clipped = 0;            ///< axes at an upright rail, as Clipping::accel
+  bool operator==(const RateStreamForce&) const = default;
+};
+
 /// A sample in the window.
 struct RateStreamKnot {
-  RateObservation observation;
+  RateObservation observation;  ///< with the force of its own instant, where the accelerometer is late: `read`
+  RateStreamForce read;
   Clipping by_upright_rails;  ///< what the device and upright rails say; the observation's knows planes too
   RateEstimate estimate;
   Eigen::Matrix3d covariance_rad2_s2 = Eigen::Matrix3d::Zero();
@@ -37,6 +47,17 @@ struct RateStreamKnot {
   bool repeats = false;   ///< its gyro says the reading of the sample before again: HoldWatch
   HeldReading held;       ///< of its gyro; as if none was held at rest
   std::uint8_t near = 0;  ///< axes that may have met a rail in a part of the reading's window: rails.md (R76)
+};
+
+/// How much later than the gyro the accelerometer speaks: rate_stream.md (R107) to (R110).
+struct RateStreamDelay {
+  StrokeSums strokes;
+  double in_use_s = 0.0;           ///< that readings are taken with; what is given of the device until one is found
+  double told_s = 0.0;             ///< by strokes and by what the readings tell of the device, as asked last
+  bool found = false;              ///< it is not what is given
+  TriadDelay guess;                ///< by strokes alone, as they told it last
+  std::optional<TimeNs> asked_ns;  ///< when strokes were
+  bool operator==(const RateStreamDelay&) const = default;
 };
 
 /// What all that left the window tells of the device's errors, and how it moves with them: rate_stream.md (R101).
@@ -49,8 +70,9 @@ struct RateStreamDevice {
   arrow::ErrorMatrix prior = arrow::ErrorMatrix::Zero();     ///< what each adds to the gradient of the oldest sample
   arrow::BorderErrors corner = arrow::BorderErrors::Zero();  ///< of the rig
   SensorErrorEvidence evidence;
-  DeviceDoubt::Open open;                 ///< by the evidence, as asked last
-  std::optional<TimeNs> asked_ns;         ///< when
+  DeviceDoubt::Open open;          ///< by the evidence, as asked last
+  std::optional<TimeNs> asked_ns;  ///< when
+  RateStreamDelay delay;
   std::vector<arrow::ErrorMatrix> moved;  ///< scratch space: d(sample) / d(errors)
   Work work;                              ///< scratch space
 };

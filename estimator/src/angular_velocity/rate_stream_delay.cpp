@@ -1,0 +1,181 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// How much later than the gyro the accelerometer speaks, as a RateStream finds it: from strokes, then from what the
+// readings tell of the device. Each force stands beside the rate of its instant.
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "tumble/angular_velocity/rate_stream.hpp"
+
+namespace tumble {
+
+namespace {
+
+constexpr int kBeside = StrokeSums::kMostSamples;
+// Intervals for which strokes are remembered.
+constexpr double kMemory = 2000.0;
+// Time between two questions, and what is worth moving the readings for.
+constexpr TimeNs kAskEvery_ns = 50'000'000;
+constexpr double kMoved_s = 3e-4;
+// Odds of a device whose triads are sampled as alike as its sheet has it, below which strokes speak plainly; a guess so
+// many deviations from the delay in use takes its place.
+constexpr double kPlainOdds = 0.05, kGuessFar = 3.0;
+// Intervals, and what the correlation must gain over that at the delay that is given: the first strokes of a tumble
+// correlate by chance.
+constexpr double kIntervalsMin = 150.0, kGainMin = 0.06;
+// No delay that is further off than so many deviations of a device that nobody has calibrated.
+constexpr double kReach = 3.0;
+
+double seconds_from(const RateStream::Knot& a, const RateStream::Knot& b) {
+  return seconds(b.observation.sample.time_ns - a.observation.sample.time_ns);
+}
+
+bool repeats_readings(const RateStream::State& state) {
+  return state.holds.of(Triad::gyro).held() || state.holds.of(Triad::accelerometer).held();
+}
+
+// The integral of the force's norm about a sample of the window: linear between readings, level beyond them.
+class ForceAbout {
+ public:
+  ForceAbout(const std::vector<RateStream::Knot>& window, std::size_t middle, std::size_t first) {
+    for (std::size_t i = 0; i < kReadings; ++i) {
+      const RateStream::Knot& knot = window[first + i];
+      time_s_[i] = seconds_from(window[middle], knot);
+      norm_[i] = knot.read.force_m_s2.norm();
+      if (i > 0) sum_[i] = sum_[i - 1] + 0.5 * (norm_[i] + norm_[i - 1]) * (time_s_[i] - time_s_[i - 1]);
+    }
+  }
+  static constexpr std::size_t kReadings = 2 * kBeside + 2;
+
+  double to(double time_s, std::size_t& from) const {
+    if (time_s <= time_s_.front()) return norm_.front() * (time_s - time_s_.front());
+    if (time_s >= time_s_.back()) return sum_.back() + norm_.back() * (time_s - time_s_.back());
+    while (from + 2 < kReadings && time_s_[from + 1] <= time_s) ++from;
+    const double u = time_s - time_s_[from];
+    const double slope = (norm_[from + 1] - norm_[from]) / (time_s_[from + 1] - time_s_[from]);
+    return sum_[from] + u * (norm_[from] + 0.5 * slope * u);
+  }
+
+ private:
+  std::array<double, kReadings> time_s_{}, norm_{}, sum_{};
+};
+
+}  // namespace
+
+std::ptrdiff_t RateStream::force_shift(const State& state) const {
+  return std::lround(state.device.front().delay.in_use_s / params_.period_s);
+}
+
+// The force of the instant of sample k, or of the nearest that there is, and how much later than it the force was read.
+// rate_stream.md (R108)
+void RateStream::pair_force(std::size_t k, State& state) const {
+  Knot& knot = state.window[k];
+  const auto last = static_cast<std::ptrdiff_t>(state.window.size()) - 1;
+  const std::ptrdiff_t own = static_cast<std::ptrdiff_t>(k), wanted = own + force_shift(state);
+  const std::ptrdiff_t at = wanted < 0 ? own : std::min(wanted, last);  // what has left the window is not there
+  const Knot& source = state.window[static_cast<std::size_t>(at)];
+  RateObservation& o = knot.observation;
+  o.sample.specific_force_m_s2 = source.read.force_m_s2;
+  o.sample.device_clip_flags =
+      static_cast<std::uint8_t>((o.sample.device_clip_flags & kClipGyro) | source.read.device_clip_flags);
+  knot.by_upright_rails.accel = source.read.clipped;
+  o.accel_age_s = (state.device.front().delay.in_use_s - given_delay_s_) - seconds_from(knot, source);
+}
+
+// After a new sample: those whose force has come, or is nearer than before.
+std::size_t RateStream::pair_newest(State& state) const {
+  const std::size_t newest = state.window.size() - 1;
+  if (state.device.front().delay.in_use_s == given_delay_s_ && force_shift(state) == 0) return newest;
+  const auto waiting = static_cast<std::size_t>(std::max<std::ptrdiff_t>(0, force_shift(state)));
+  const std::size_t first = newest - std::min(newest, waiting);
+  for (std::size_t k = first; k <= newest; ++k) pair_force(k, state);
+  return first;
+}
+
+// Takes the interval between two readings that stand as far back in the window as a delay may reach: by then it is
+// known whether they clip. rate_stream.md (R107)
+void RateStream::count_strokes(State& state) const {
+  if (!delay_open_ || state.window.size() < ForceAbout::kReadings) return;
+  const std::size_t first = state.window.size() - ForceAbout::kReadings, after = first + kBeside + 1;
+  const Knot &a = state.window[after - 1], &b = state.window[after];
+  const Eigen::Vector3d &begin = a.observation.sample.angular_velocity_rad_s,
+                        &end = b.observation.sample.angular_velocity_rad_s;
+  if (a.observation.by_elements() || b.observation.by_elements() || !StrokeSums::counts(begin, end)) return;
+  const ForceAbout force(state.window, after, first);
+  const double span_s = seconds_from(a, b), step_s = params_.period_s / StrokeSums::kPerSample;
+  StrokeSums::Tried mean;
+  std::size_t from = 0, to = 0;
+  for (int i = 0; i < StrokeSums::kTried; ++i) {
+    const double delay_s = (i - StrokeSums::kMost) * step_s;
+    mean[i] = (force.to(delay_s, to) - force.to(delay_s - span_s, from)) / span_s;
+  }
+  StrokeSums& strokes = state.device.front().delay.strokes;
+  strokes.forget(1.0 - 1.0 / kMemory);
+  strokes.add((end - begin).norm() / span_s, mean);
+}
+
+// What strokes say; nothing of a log that says readings again, whose repetitions are taken as readings.
+TriadDelay RateStream::guessed_delay(const State& state) const {
+  const StrokeSums& strokes = state.device.front().delay.strokes;
+  if (repeats_readings(state) || strokes.intervals < kIntervalsMin) return {};
+  return strokes.told(params_.period_s, params_.period_s);
+}
+
+// Before a step: whether readings are to be taken at other instants. rate_stream.md (R109)
+void RateStream::seek_delay(State& state) const {
+  RateStreamDelay& delay = state.device.front().delay;
+  const TimeNs now_ns = state.window.back().observation.sample.time_ns;
+  if (!delay_open_ || (delay.asked_ns && now_ns - *delay.asked_ns < kAskEvery_ns)) return;
+  delay.asked_ns = now_ns;
+  if (delay.found && repeats_readings(state)) return take_delay(given_delay_s_, false, state);
+  const auto correlates = [&](double at_s) { return delay.strokes.correlation_at(at_s, params_.period_s); };
+  if (delay.found && correlates(given_delay_s_) - correlates(delay.in_use_s) > kGainMin)
+    return take_delay(given_delay_s_, false, state);
+  if (const TriadDelay guess = guessed_delay(state); guess.sigma_s > 0.0) {
+    const bool gains =
+        correlates(guess.delay_s) - correlates(given_delay_s_) > kGainMin &&
+        std::abs(guess.delay_s - given_delay_s_) < kReach * params_.model.expert.error_sizes.delay_unknown_s;
+    const bool plain = gains && device_.odds_of_sheet(guess.delay_s - given_delay_s_, guess.sigma_s) < kPlainOdds;
+    const bool far = std::abs(guess.delay_s - delay.in_use_s) > kGuessFar * guess.sigma_s;
+    delay.guess = guess;
+    if (plain && (!delay.found || far)) return take_delay(guess.delay_s, true, state);
+    if (!plain && delay.found) return take_delay(given_delay_s_, false, state);
+  }
+  if (delay.found && std::abs(delay.told_s - delay.in_use_s) > kMoved_s) refine_delay(state);
+}
+
+// Another delay: what was learnt with the one before is of another rig, and the window is begun anew.
+void RateStream::take_delay(double delay_s, bool found, State& state) const {
+  RateStreamDelay& delay = state.device.front().delay;
+  delay.in_use_s = delay.told_s = delay_s;
+  delay.found = found;
+  forget_rig(state);
+  for (std::size_t k = 0; k < state.window.size(); ++k) pair_force(k, state);
+  judge(true, state);
+  for (std::size_t k = 1; k < state.window.size(); ++k) {
+    Knot& knot = state.window[k];
+    if (knot.observation.unseen() == 0) continue;
+    knot.age = 0;
+    knot.estimate.soft_bounds = false;
+    guess(knot, state.window[k - 1], state);
+  }
+}
+
+// A little of it: what left the window moves with it to first order. rate_stream.md (R110)
+void RateStream::refine_delay(State& state) const {
+  RateStreamDevice& device = state.device.front();
+  const std::ptrdiff_t before = force_shift(state);
+  const double step_s = device.delay.told_s - device.delay.in_use_s;
+  device.delay.in_use_s = device.delay.told_s;
+  state.prior.gradient += step_s * device.prior.col(SensorErrors::kDelay);
+  state.prior_corner.gradient += step_s * device.corner.col(SensorErrors::kDelay);
+  device.evidence.gradient -= step_s * device.evidence.information.col(SensorErrors::kDelay);
+  if (force_shift(state) == before) {
+    for (Knot& knot : state.window) knot.observation.accel_age_s += step_s;
+    return;
+  }
+  for (std::size_t k = 0; k < state.window.size(); ++k) pair_force(k, state);
+  judge(true, state);
+}
+
+}  // namespace tumble

@@ -1,0 +1,79 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "tumble/angular_velocity/detail/stroke_sums.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace tumble {
+
+namespace {
+
+// Readings of a struck body: rate from which it counts as moving, least number and correlation, and how well the delay
+// of the best is known, as a share of the slower triad's period.
+constexpr double kStruckRate_rad_s = 1.0, kCorrelationMin = 0.6, kStruckSigma = 0.15;
+constexpr double kStruckMin = 30.0;
+// A force that strikes, and how many of the segments must have met it; one that a body has that nothing holds up, and
+// in what share of the segments: what is struck and never flies is in a hand.
+constexpr double kStroke_m_s2 = 30.0, kFlying_m_s2 = 5.0, kFlyingShareMin = 0.1;
+constexpr double kStrokesMin = 10.0;
+
+// Of the two of rate_smoother.md (R44).
+double correlation(const StrokeSums& sums, int i) {
+  const double n = sums.intervals, x = sums.turn, xx = sums.turn_squared;
+  const double y = sums.force[i], yy = sums.force_squared[i], xy = sums.product[i];
+  const double spread = (n * xx - x * x) * (n * yy - y * y);
+  return spread > 0.0 ? (n * xy - x * y) / std::sqrt(spread) : 0.0;
+}
+
+// The same, 0 where it is that of no body that is struck and flies.
+double believed(const StrokeSums& sums, int i) {
+  if (sums.strokes[i] < kStrokesMin || sums.flying[i] < kFlyingShareMin * sums.intervals) return 0.0;
+  return correlation(sums, i);
+}
+
+}  // namespace
+
+bool StrokeSums::counts(const Eigen::Vector3d& before_rad_s, const Eigen::Vector3d& after_rad_s) {
+  return std::min(before_rad_s.norm(), after_rad_s.norm()) >= kStruckRate_rad_s;
+}
+
+void StrokeSums::add(double turn_rad_s2, const Tried& force_m_s2) {
+  const double x = std::sqrt(turn_rad_s2);
+  intervals += 1.0;
+  turn += x;
+  turn_squared += x * x;
+  for (int i = 0; i < kTried; ++i) {
+    const double mean = force_m_s2[i], root = std::sqrt(std::max(0.0, mean));
+    strokes[i] += mean > kStroke_m_s2 ? 1.0 : 0.0;
+    flying[i] += mean < kFlying_m_s2 ? 1.0 : 0.0;
+    force[i] += root;
+    force_squared[i] += root * root;
+    product[i] += x * root;
+  }
+}
+
+void StrokeSums::forget(double share) {
+  for (double* const sum : {&intervals, &turn, &turn_squared}) *sum *= share;
+  for (Tried* const sum : {&force, &force_squared, &product, &strokes, &flying}) *sum *= share;
+}
+
+double StrokeSums::correlation_at(double delay_s, double period_s) const {
+  const double step = std::clamp<double>(delay_s * kPerSample / period_s, -kMost, kMost);
+  return correlation(*this, kMost + static_cast<int>(std::lround(step)));
+}
+
+TriadDelay StrokeSums::told(double period_s, double slower_s) const {
+  if (intervals < kStruckMin) return {};
+  int at = 0;
+  double best = -1.0;
+  for (int i = 0; i < kTried; ++i) {
+    const double found = believed(*this, i);
+    if (found > best) best = found, at = i;
+  }
+  if (best < kCorrelationMin || at == 0 || at == kTried - 1) return {};
+  const double left = believed(*this, at - 1), right = believed(*this, at + 1), bend = left - 2.0 * best + right;
+  const double part = bend < 0.0 ? std::clamp(0.5 * (left - right) / bend, -0.5, 0.5) : 0.0;
+  return {(at - kMost + part) * (period_s / kPerSample), kStruckSigma * slower_s};
+}
+
+}  // namespace tumble

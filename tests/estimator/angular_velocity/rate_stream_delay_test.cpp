@@ -1,0 +1,286 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// A stream whose accelerometer speaks later than its gyro: the delay told by strokes against closed forms and against
+// the batch, taken, carried on, and not found where there is none.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <memory>
+#include <vector>
+
+#include "estimator/angular_velocity/streamed_rates.hpp"
+#include "estimator/angular_velocity/tumble_recording.hpp"
+#include "tumble/angular_velocity/detail/device_doubt.hpp"
+#include "tumble/angular_velocity/detail/stroke_sums.hpp"
+#include "tumble/angular_velocity/rate_smoother.hpp"
+#include "tumble/angular_velocity/rate_stream.hpp"
+
+namespace tumble {
+namespace {
+
+using Eigen::Vector3d;
+
+constexpr double kStrokePeriod_s = 0.01;
+
+// Struck every tenth interval, the accelerometer `late` eighths of a sample behind: turns that go with the force.
+StrokeSums struck_every_tenth(int late, int intervals, double between_m_s2 = 1.0) {
+  StrokeSums out;
+  for (int k = 0; k < intervals; ++k) {
+    StrokeSums::Tried force;
+    const auto at = [&](double eighth) {
+      const double since = std::fmod(8.0 * k + eighth + 800.0, 80.0);
+      const double phase = std::min(since, 80.0 - since) / 8.0;  // samples from the nearest stroke
+      return between_m_s2 + 100.0 * std::exp(-0.5 * phase * phase);
+    };
+    for (int i = 0; i < StrokeSums::kTried; ++i) force[i] = at(i - StrokeSums::kMost - late);
+    out.add(3.0 * at(0.0), force);
+  }
+  return out;
+}
+
+// The accelerometer says what it said `samples` before, or, of a negative number, what it will say; from `from` on.
+void delay_force(int samples, std::size_t from, TumbleRecording& recording) {
+  const std::vector<ImuSample> in_time = recording.samples;
+  const auto size = static_cast<std::ptrdiff_t>(in_time.size());
+  for (auto k = static_cast<std::ptrdiff_t>(from); k < size; ++k) {
+    const std::ptrdiff_t at = std::clamp<std::ptrdiff_t>(k - samples, 0, size - 1);
+    recording.samples[static_cast<std::size_t>(k)].specific_force_m_s2 =
+        in_time[static_cast<std::size_t>(at)].specific_force_m_s2;
+  }
+}
+
+TumbleRecording long_late_tumble(std::uint64_t seed, int late) {
+  TumbleOptions options;
+  options.seed = options.mounting_seed = seed;
+  options.flights = 30;
+  options.speed_low_rad_s = 3.0;  // strokes that the gyro reads
+  options.speed_high_rad_s = 14.0;
+  TumbleRecording out = make_tumble(options);
+  delay_force(late, 0, out);
+  return out;
+}
+
+RateStream::Params looking(bool looks_for_it = true) {
+  auto out = with_lever_arm<RateStream::Params>();
+  if (!looks_for_it) out.model.expert.error_sizes.delay_unknown_s = out.model.expert.error_sizes.delay_s;
+  return out;
+}
+
+TEST(StrokeSums, TellADelayThatIsThere) {
+  for (const int late : {-20, -3, 0, 8, 13, 30}) {
+    const TriadDelay told = struck_every_tenth(late, 200).told(kStrokePeriod_s, kStrokePeriod_s);
+    EXPECT_NEAR(told.delay_s, late * kStrokePeriod_s / 8.0, 1e-9) << late;
+    EXPECT_DOUBLE_EQ(told.sigma_s, 0.15 * kStrokePeriod_s);
+    EXPECT_NEAR(struck_every_tenth(late, 200).correlation_at(told.delay_s, kStrokePeriod_s), 1.0, 0.01);
+  }
+}
+
+TEST(StrokeSums, TellNothingOfFewOrOfAHandOrAtTheEnds) {
+  EXPECT_EQ(struck_every_tenth(8, 29).told(kStrokePeriod_s, kStrokePeriod_s).sigma_s, 0.0);
+  EXPECT_EQ(struck_every_tenth(8, 200, 10.0).told(kStrokePeriod_s, kStrokePeriod_s).sigma_s, 0.0)
+      << "never without a force";
+  EXPECT_EQ(struck_every_tenth(36, 200).told(kStrokePeriod_s, kStrokePeriod_s).sigma_s, 0.0);
+  // what is forgotten counts for less of each, and for the same delay
+  StrokeSums half = struck_every_tenth(8, 200);
+  half.forget(0.5);
+  EXPECT_NEAR(half.intervals, 100.0, 1e-12);
+  EXPECT_NEAR(half.told(kStrokePeriod_s, kStrokePeriod_s).delay_s, kStrokePeriod_s, 1e-9);
+}
+
+// Two Gaussians and their shares, by hand.
+TEST(RateStreamDelay, OddsOfTheSheetAreThoseOfTwoGaussians) {
+  const SensorErrorSizes sizes;
+  const double sigma_s = 1.5e-3;
+  for (const double delay_s : {0.0, 3e-3, 6e-3, 0.01}) {
+    const auto density = [&](double size) {
+      const double variance = size * size + sigma_s * sigma_s;
+      return std::exp(-0.5 * delay_s * delay_s / variance) / std::sqrt(variance);
+    };
+    const double odds = 0.7 / 0.3 * density(sizes.delay_s) / density(sizes.delay_unknown_s);
+    EXPECT_NEAR(DeviceDoubt(sizes, 0.3).odds_of_sheet(delay_s, sigma_s), odds, 1e-9 * odds) << delay_s;
+  }
+  EXPECT_GT(DeviceDoubt(sizes, 0.3).odds_of_sheet(4.5e-3, sigma_s), 0.05);
+  EXPECT_LT(DeviceDoubt(sizes, 0.3).odds_of_sheet(6e-3, sigma_s), 0.05);
+}
+
+// One number alone: of what readings say three hundredths are believed, and strokes are entered to be believed in full.
+TEST(RateStreamDelay, AFurtherDelayIsTheWeightedMean) {
+  SensorErrorEvidence told;
+  const double of_readings_s = 2e-4, of_strokes_s = 1.5e-3, reach_s = 0.04;
+  const double readings = DeviceDoubt::kBelieved / (of_readings_s * of_readings_s),
+               strokes = 1.0 / (of_strokes_s * of_strokes_s);
+  told.information(SensorErrors::kDelay, SensorErrors::kDelay) = (readings + strokes) / DeviceDoubt::kBelieved;
+  told.gradient[SensorErrors::kDelay] = (readings * 1e-3 - strokes * 2e-3) / DeviceDoubt::kBelieved;
+  const double expected = (readings * 1e-3 - strokes * 2e-3) / (readings + strokes + 1.0 / (reach_s * reach_s));
+  EXPECT_NEAR(DeviceDoubt({}, 0.3).further_delay_s(told, reach_s), expected, 1e-12);
+  told.information(SensorErrors::kDelay, SensorErrors::kDelay) = -1e12;
+  EXPECT_EQ(DeviceDoubt({}, 0.3).further_delay_s(told, reach_s), 0.0);
+}
+
+TEST(RateStreamDelay, IsThatOfTheBatch) {
+  int found = 0;
+  for (const std::uint64_t seed : {1u, 2u, 3u, 4u, 5u, 6u}) {
+    const TumbleRecording late = long_late_tumble(seed, 1);
+    const RateStream method(looking());
+    RateStream::State state = method.start();
+    (void)streamed_rates(method, late.samples, state);
+    if (!state.device.front().delay.found) continue;
+    ++found;
+    const KnownSensorErrors errors = method.sensor_errors(state);
+    const double sigma_s = std::sqrt(errors.covariance(SensorErrors::kDelay, SensorErrors::kDelay));
+    std::vector<RateState> states;
+    RateReport report;
+    ASSERT_TRUE(RateSmoother(with_lever_arm<RateSmoother::Params>()).estimate(late.samples, states, report).ok());
+    EXPECT_NEAR(errors.errors.accel_delay_s, 0.01, 3.0 * sigma_s) << seed;
+    EXPECT_NEAR(errors.errors.accel_delay_s, report.sensor_errors.errors.accel_delay_s, 3.0 * sigma_s) << seed;
+    EXPECT_LT(sigma_s, 2e-3);
+    EXPECT_EQ(state.device.front().open.unlike, 1.0);
+  }
+  EXPECT_GE(found, 4);
+}
+
+// Negative controls: in time, and of a device whose sheet is believed.
+TEST(RateStreamDelay, IsNotFoundWhereThereIsNone) {
+  for (const std::uint64_t seed : {1u, 2u, 3u, 4u, 5u, 6u, 7u, 8u}) {
+    const RateStream method(looking()), believes(looking(false));
+    RateStream::State state = method.start();
+    std::optional<RateState> one;
+    for (const ImuSample& sample : long_late_tumble(seed, 0).samples) {
+      ASSERT_TRUE(method.push(sample, state, one).ok());
+      ASSERT_FALSE(state.device.front().delay.found) << seed;
+    }
+    EXPECT_EQ(method.sensor_errors(state).errors.accel_delay_s, 0.0);
+    RateStream::State other = believes.start();
+    (void)streamed_rates(believes, long_late_tumble(seed, 1).samples, other);
+    EXPECT_FALSE(other.device.front().delay.found) << seed;
+  }
+}
+
+// A clock that is none: late, and early from the middle on. At the end it is held for what it was last, or for none.
+TEST(RateStreamDelay, OneThatChangesItsSignIsFollowedOrDropped) {
+  int dropped = 0;
+  for (const std::uint64_t seed : {2u, 3u, 5u}) {
+    const TumbleRecording late = long_late_tumble(seed, 1), early = long_late_tumble(seed, -1);
+    const RateStream method(looking());
+    RateStream::State state = method.start();
+    (void)streamed_rates(method, late.samples, state);
+    const bool found = state.device.front().delay.found;
+    std::optional<RateState> one;
+    for (int again = 1; again <= 4; ++again) {
+      for (ImuSample sample : early.samples) {
+        sample.time_ns += again * late.samples.back().time_ns;
+        ASSERT_TRUE(method.push(sample, state, one).ok());
+      }
+    }
+    EXPECT_LT(state.device.front().delay.in_use_s, 5e-3) << seed;
+    dropped += found ? 1 : 0;
+  }
+  EXPECT_GE(dropped, 2);
+}
+
+// After it was found, in the next run from its start: errors as of an accelerometer in time.
+TEST(RateStreamDelay, OnceFoundTheNextRunIsAsGoodAsInTime) {
+  double unknown = 0.0, carried = 0.0, in_time = 0.0;
+  std::size_t inside = 0, all = 0, found = 0;
+  for (std::uint64_t seed = 1; seed <= 8; ++seed) {
+    const TumbleRecording second = long_late_tumble(seed + 20, 1), clean = long_late_tumble(seed + 20, 0);
+    const RateStream method(looking());
+    RateStream::State state = method.start();
+    (void)streamed_rates(method, long_late_tumble(seed, 1).samples, state);
+    if (!state.device.front().delay.found) continue;
+    ++found;
+    auto next = looking();
+    next.learnt_errors = std::make_shared<KnownSensorErrors>(method.sensor_errors(state));
+    const auto run = [](const RateStream::Params& params, const TumbleRecording& recording) {
+      const RateStream stream(params);
+      RateStream::State fresh = stream.start();
+      return streamed_rates(stream, recording.samples, fresh);
+    };
+    const std::vector<RateState> of_next = run(next, second);
+    carried += clipped_errors(second, rates_of(of_next), 10.49).median;
+    unknown += clipped_errors(second, rates_of(run(looking(false), second)), 10.49).median;
+    in_time += clipped_errors(clean, rates_of(run(looking(), clean)), 10.49).median;
+    for (std::size_t k = 0; k < of_next.size(); ++k) {
+      for (int j = 0; j < 3; ++j) {
+        if ((of_next[k].clipped_axes >> j & 1) == 0) continue;
+        const double error = of_next[k].w_WI_I_rad_s[j] - second.truth[k][j];
+        inside += error * error <= 9.0 * of_next[k].covariance_rad2_s2(j, j);
+        ++all;
+      }
+    }
+  }
+  EXPECT_GE(found, 5u);
+  ASSERT_GT(all, 500u);
+  EXPECT_LT(carried, 2.0 * in_time);
+  EXPECT_GT(unknown, 2.0 * carried);
+  EXPECT_GE(static_cast<double>(inside), 0.97 * static_cast<double>(all));
+}
+
+// Split about the sample at which it is found, and long after; a state that differs in it differs.
+TEST(RateStreamDelay, SplittingAnywhereChangesNothing) {
+  const std::vector<ImuSample> samples = long_late_tumble(3, 1).samples;
+  const RateStream method(looking());
+  RateStream::State whole = method.start();
+  std::optional<RateState> one;
+  std::vector<RateState> want;
+  std::size_t found = 0;
+  for (std::size_t k = 0; k < samples.size(); ++k) {
+    ASSERT_TRUE(method.push(samples[k], whole, one).ok());
+    if (one) want.push_back(*one);
+    if (found == 0 && whole.device.front().delay.found) found = k;
+  }
+  ASSERT_GT(found, 30u);
+  for (const std::size_t split : {found - 1, found, found + 1, found + 2, found + 300}) {
+    RateStream::State state = method.start();
+    std::vector<RateState> got;
+    for (std::size_t k = 0; k < samples.size(); ++k) {
+      const RateStream second(looking());
+      if (k == split) state = RateStream::State(state);
+      ASSERT_TRUE((k < split ? method : second).push(samples[k], state, one).ok());
+      if (one) got.push_back(*one);
+    }
+    EXPECT_TRUE(RateStream::equal(state, whole)) << split;
+    ASSERT_EQ(got.size(), want.size());
+    for (std::size_t k = 0; k < got.size(); ++k) ASSERT_EQ(got[k].w_WI_I_rad_s, want[k].w_WI_I_rad_s) << k;
+  }
+  EXPECT_TRUE(method.check_state(whole).ok());
+  RateStream::State other = whole;
+  other.window[3].read.force_m_s2.x() += 1e-12;
+  EXPECT_FALSE(RateStream::equal(other, whole));
+  other = whole;
+  other.device.front().delay.strokes.product[7] += 1e-9;
+  EXPECT_FALSE(RateStream::equal(other, whole));
+  other = whole;
+  other.device.front().delay.in_use_s = 1.0;
+  EXPECT_STREQ(method.check_state(other).field, "delay.in_use_s");
+}
+
+// A delay that is stated is where readings are taken from the start on: forces stand beside the rates of their
+// instants, in the newest sample too. A gyro that is late says the rate of a sample some time after.
+TEST(RateStreamDelay, AStatedOneIsTakenFromTheStart) {
+  for (const int late : {2, -2}) {
+    double stated = 0.0, ignored = 0.0;
+    for (const std::uint64_t seed : {2u, 3u, 5u}) {
+      TumbleRecording recording = long_late_tumble(seed, 0);
+      if (late > 0) {
+        delay_force(late, 0, recording);
+      } else {  // readings of the gyro come late
+        const std::vector<ImuSample> in_time = recording.samples;
+        for (std::size_t k = 2; k < in_time.size(); ++k)
+          recording.samples[k].angular_velocity_rad_s = in_time[k - 2].angular_velocity_rad_s;
+      }
+      for (const bool tells : {true, false}) {
+        RateStream::Params params = looking(false);
+        if (tells) params.model.errors.accel_delay_s = late * kStrokePeriod_s;
+        const RateStream method(params);
+        RateStream::State state = method.start();
+        (tells ? stated : ignored) +=
+            clipped_errors(recording, rates_of(streamed_rates(method, recording.samples, state)), 10.49).median;
+      }
+    }
+    EXPECT_LT(stated, 0.4 * ignored) << late;
+  }
+}
+
+}  // namespace
+}  // namespace tumble
