@@ -61,6 +61,12 @@ Status LidarInertialOdometry::add_velocity(const Eigen::Vector3d& v_WI_I_m_s, do
   return {};
 }
 
+Status LidarInertialOdometry::add_reading(const OdometerReading& reading) {
+  const Status status = check_reading(reading);
+  if (status.ok()) impl_->known = reading;
+  return status;
+}
+
 Status LidarInertialOdometry::add_sweep(TimeNs lidar_start_ns, TimeNs lidar_end_ns, std::span<const LidarPoint> points,
                                         SweepReport& report) {
   report = SweepReport{};

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "../common/imu_members.hpp"
+#include "../common/state_variant.hpp"
 #include "tumble/mapping/detail/localisation.hpp"
 #include "tumble/mapping/detail/sweep_scale.hpp"
 #include "tumble/mapping/lidar_inertial_odometry.hpp"
@@ -15,6 +16,29 @@ void members(Self& s, Visitor& visit) {
   visit.with_nan("point.intensity", s.intensity);
   visit("point.offset_ns", s.offset_ns);
   visit("point.ring", s.ring);
+}
+
+template <StateOf<VelocityReading> Self, class Visitor>
+void members(Self& s, Visitor& visit) {
+  visit("velocity.time_ns", s.time_ns);
+  visit("velocity.v_WI_I_m_s", s.v_WI_I_m_s);
+  visit("velocity.sigma_m_s", s.sigma_m_s);
+}
+
+template <StateOf<MotionReading> Self, class Visitor>
+void members(Self& s, Visitor& visit) {
+  visit("motion.from_ns", s.from_ns);
+  visit("motion.to_ns", s.to_ns);
+  visit("motion.T_from_to", s.T_from_to);
+  visit("motion.covariance", s.covariance);
+}
+
+template <StateOf<OdometerReading> Self, class Visitor>
+void members(Self& s, Visitor& visit) {
+  visit_variant("reading", s, visit);
+  if constexpr (Visitor::kReads) {
+    if (visit.going()) visit.refuse(check_reading(s));
+  }
 }
 
 template <StateOf<LidarInertialOdometry::SweepReport> Self, class Visitor>

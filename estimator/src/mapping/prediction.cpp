@@ -95,8 +95,6 @@ void Prediction::zero_velocity_update(double sigma_m_s) {
   u::variances(noise, u::velocity).setConstant(sigma_m_s * sigma_m_s);
 }
 
-void impose(const InertialPrior&, Prediction&) {}
-
 /// mapping.md (R30).
 void impose(const KnownVelocity& known, Prediction& prediction) {
   prediction.zero_velocity_update(known.sigma_m_s);
@@ -118,12 +116,15 @@ Prediction predict(const Params& params, const Border& border, const MotionWindo
     next.zero_velocity_update(params.expert.standstill.sigma_m_s);
   impose(known, next);
   const std::uint8_t axes = params.expert.rails.estimate_deficit ? trajectory.clipped_axes() : 0;
-  u::block(next.noise, u::motion) += inertial_noise(params, trajectory, window.samples, axes);
+  MotionNoise within = inertial_noise(params, trajectory, window.samples, axes);
+  const Eigen::Matrix3d railed_m2_s2 = railed_velocity_variance(params, trajectory, window.samples);
+  u::block(next.noise, u::motion) += within;
   // a force that comes late in a segment is not in the velocity that the segment is fitted with: the next one hears of
   // it as well
-  u::block(next.noise, u::velocity) +=
-      border.railed_velocity_m2_s2 + railed_velocity_variance(params, trajectory, window.samples);
+  u::block(next.noise, u::velocity) += border.railed_velocity_m2_s2 + railed_m2_s2;
+  u::block(within, u::velocity) += railed_m2_s2;
   add_deficit_noise(params, window, trajectory, next);
+  weigh(known, border, window, within, next);
   next.prior.deficit_start_rad_s = next.prior.mean.deficit_rad_s;
   next.compose(border.belief);
   return next;

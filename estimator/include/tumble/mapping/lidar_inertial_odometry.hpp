@@ -12,6 +12,7 @@
 #include "tumble/common/pose.hpp"
 #include "tumble/common/status.hpp"
 #include "tumble/mapping/calibration.hpp"
+#include "tumble/mapping/detail/odometer_reading.hpp"
 #include "tumble/mapping/lidar.hpp"
 #include "tumble/mapping/odometry_params.hpp"
 #include "tumble/mapping/sweep_report.hpp"
@@ -62,6 +63,10 @@ class LidarInertialOdometry {
   /// axes, and its standard deviation per axis. It takes the place of the velocity that the last sweep ended with, for
   /// that one sweep. `non_finite`, or `out_of_range` where the standard deviation is not above 0; nothing is changed.
   Status add_velocity(const Eigen::Vector3d& v_WI_I_m_s, double sigma_m_s);
+  /// What an odometer says of the motion within the next sweep, from where the last one ended to its end and 20 ms
+  /// about it, to be weighed against what the IMU tells (check_reading); in the place of add_velocity, or of one
+  /// before. One of another time changes nothing.
+  Status add_reading(const OdometerReading& reading);
 
   /// Registers a sweep of points fired in [start_ns, end_ns]; sweeps do not overlap. Returns that are NaN are misses.
   ///

@@ -1,0 +1,236 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// What an odometer tells of a sweep, against what is predicted of it: mapping.md, section 3.
+#include <Eigen/Cholesky>
+#include <algorithm>
+#include <memory>
+
+#include "../common/symmetric.hpp"
+#include "prediction.hpp"
+#include "tumble/common/so3.hpp"
+#include "unknowns.hpp"
+
+namespace tumble::mapping {
+
+namespace {
+
+namespace u = unknowns;
+using Matrix = Registration::Matrix;
+constexpr int kUnknowns = Registration::kUnknowns, kMotion = Registration::kMotion, kMost = 6;
+
+template <int Columns>
+using Rows = Eigen::Matrix<double, Eigen::Dynamic, Columns, 0, kMost, Columns>;
+using Values = Eigen::Matrix<double, Eigen::Dynamic, 1, 0, kMost, 1>;
+using Covariance = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, kMost, kMost>;
+template <int Values>
+using OfMotion = Eigen::Matrix<double, Values, kMotion>;
+
+constexpr int kIterations = 6;     // of which the first two or three change anything
+constexpr double kSettled = 1e-9;  // m, rad, m/s, rad/s
+
+/// Where the unknowns are taken to stand, from where they are predicted: what the border left, and the noise since.
+struct Offsets {
+  Registration::Vector start = Registration::Vector::Zero();
+  Eigen::Matrix<double, kMotion, 1> noise = Eigen::Matrix<double, kMotion, 1>::Zero();
+};
+
+/// A reading and what it is expected to be.
+struct Expected {
+  Rows<kUnknowns> by_start;
+  Rows<kMotion> by_noise;
+  Values off;  ///< the reading, less what is expected of it
+  Covariance variance;
+};
+
+/// The IMU at an instant of the sweep.
+struct Moment {
+  double noise_share = 0.0;  ///< of the sweep's, that has arisen by then
+  Eigen::Quaterniond q_WI;
+  Eigen::Vector3d p_WI_m, v_WI_m_s;
+  Eigen::Matrix<double, kMotion, kUnknowns> by_start;
+};
+
+class Sweep {
+ public:
+  Sweep(const Registration::Estimate& predicted, const MotionWindow& window) : predicted_(predicted), window_(window) {}
+
+  bool holds(TimeNs time_ns) const {
+    const auto beyond_ns = static_cast<TimeNs>(1e9 * SweepTrajectory::kBeyond_s);
+    return time_ns >= predicted_.state.time_ns - beyond_ns && time_ns <= window_.end_ns + beyond_ns;
+  }
+
+  /// At a time that it holds; the noise grows in proportion to the time, as its deviations do. mapping.md (R107).
+  Moment at(TimeNs time_ns, const Offsets& offsets) const {
+    Moment out;
+    const double t_s = seconds(time_ns - predicted_.state.time_ns);
+    const double length_s = seconds(window_.end_ns - predicted_.state.time_ns);
+    const double inside_s = std::clamp(t_s, 0.0, length_s);
+    out.noise_share = length_s > 0.0 ? inside_s / length_s : 0.0;
+    Registration::Vector moved = offsets.start;
+    u::segment(moved, u::motion) += out.noise_share * offsets.noise;
+    Registration::Estimate start = predicted_;
+    start.add(moved);
+    SweepTrajectory trajectory;
+    // no trouble: the window's samples cover it, which add_sweep has seen to
+    (void)trajectory.build(start.state, window_.samples, window_.end_ns, start.calibration.gravity_W_m_s2,
+                           start.deficit_rad_s);
+    std::size_t hint = 0;
+    const SweepTrajectory::Instant instant = trajectory.at(t_s, Eigen::Vector3d::Zero(), hint, out.v_WI_m_s);
+    out.q_WI = instant.q_WI;
+    out.p_WI_m = trajectory.base_m(t_s) + instant.preintegrated_position_m;
+    const SweepTrajectory::Transition step = trajectory.transition(inside_s);
+    out.by_start.setZero();
+    u::columns(out.by_start, u::motion) = step.by_start;
+    u::columns(out.by_start, u::deficit) = step.by_deficit_s;
+    u::columns(out.by_start, u::gravity) = step.by_gravity;
+    return out;
+  }
+
+ private:
+  const Registration::Estimate& predicted_;
+  const MotionWindow& window_;
+};
+
+/// `by_moment`: of the reading by errors of the motion then.
+template <int Size>
+void add(const OfMotion<Size>& by_moment, const Moment& moment, Expected& out) {
+  const Eigen::Matrix<double, Size, kUnknowns> by_start = by_moment * moment.by_start;
+  out.by_start += by_start;
+  out.by_noise += moment.noise_share * by_start.template leftCols<kMotion>();
+}
+
+template <int Size>
+Expected nothing() {
+  return {Rows<kUnknowns>::Zero(Size, kUnknowns), Rows<kMotion>::Zero(Size, kMotion), Values::Zero(Size),
+          Covariance::Zero(Size, Size)};
+}
+
+/// mapping.md (R108).
+Expected expect(const VelocityReading& reading, const Sweep& sweep, const Offsets& offsets) {
+  Expected out = nothing<3>();
+  const Moment now = sweep.at(reading.time_ns, offsets);
+  const Eigen::Matrix3d to_I = now.q_WI.toRotationMatrix().transpose();
+  OfMotion<3> by_moment = OfMotion<3>::Zero();
+  u::columns(by_moment, u::attitude) = to_I * so3::hat(now.v_WI_m_s);
+  u::columns(by_moment, u::velocity) = to_I;
+  add(by_moment, now, out);
+  out.off = reading.v_WI_I_m_s - to_I * now.v_WI_m_s;
+  out.variance.diagonal().setConstant(reading.sigma_m_s * reading.sigma_m_s);
+  return out;
+}
+
+/// mapping.md (R109).
+Expected expect(const MotionReading& reading, const Sweep& sweep, const Offsets& offsets) {
+  Expected out = nothing<kMost>();
+  const Moment from = sweep.at(reading.from_ns, offsets), to = sweep.at(reading.to_ns, offsets);
+  const Eigen::Matrix3d to_I = from.q_WI.toRotationMatrix().transpose();
+  const Eigen::Vector3d moved_W_m = to.p_WI_m - from.p_WI_m;
+  const Eigen::Quaterniond turned = from.q_WI.conjugate() * to.q_WI;
+  const Eigen::Quaterniond read(Eigen::Matrix3d(reading.T_from_to.linear()));
+  const Eigen::Vector3d off_rad = so3::log((read * turned.conjugate()).normalized());
+  const Eigen::Matrix3d by_turn = so3::left_jacobian_inverse(off_rad).transpose() * to_I;
+  out.off.head<3>() = reading.T_from_to.translation() - to_I * moved_W_m;
+  out.off.tail<3>() = off_rad;
+  OfMotion<kMost> by_from = OfMotion<kMost>::Zero(), by_to = by_from;
+  by_to.topLeftCorner<3, 3>() = to_I;
+  by_to.block<3, 3>(3, 3) = by_turn;
+  by_from.topLeftCorner<3, 3>() = -to_I;
+  by_from.block<3, 3>(0, 3) = to_I * so3::hat(moved_W_m);
+  by_from.block<3, 3>(3, 3) = -by_turn;
+  add(by_from, from, out);
+  add(by_to, to, out);
+  out.variance = reading.covariance;
+  return out;
+}
+
+bool holds(const Sweep& sweep, const OdometerReading& reading) {
+  return sweep.holds(begins_ns(reading)) && sweep.holds(ends_ns(reading));
+}
+
+template <int Size>
+using Gain = Eigen::Matrix<double, Size, Eigen::Dynamic, 0, Size, kMost>;
+
+/// What an update works in: not on the stack, which sandwich() needs for itself.
+struct Work {
+  Matrix at_start, before, left;  ///< covariance at the start, of it the noise; what the gains leave of errors
+  Offsets offsets;
+  Expected expected;
+  Gain<kUnknowns> by_start;  ///< on what the border left
+  Gain<kMotion> by_noise;    ///< on the noise since
+};
+
+/// Gains, of what is expected where the offsets are: mapping.md (R110).
+bool find_gains(const MotionNoise& within, Work& work) {
+  const Expected& expected = work.expected;
+  work.by_start = work.at_start * expected.by_start.transpose();
+  work.by_noise = within * expected.by_noise.transpose();
+  Covariance S = expected.by_start * work.by_start + expected.by_noise * work.by_noise + expected.variance;
+  make_symmetric(S);
+  const Eigen::LLT<Covariance> factors(S);
+  if (factors.info() != Eigen::Success) return false;
+  work.by_start = factors.solve(work.by_start.transpose()).transpose();
+  work.by_noise = factors.solve(work.by_noise.transpose()).transpose();
+  return true;
+}
+
+/// Iterates to where the reading and what is predicted leave the unknowns; false where they leave them nowhere.
+[[gnu::noinline]] bool settle(const OdometerReading& reading, const Sweep& sweep, const MotionNoise& within,
+                              Work& work) {
+  for (int iteration = 0; iteration < kIterations; ++iteration) {
+    work.expected = std::visit([&](const auto& kind) { return expect(kind, sweep, work.offsets); }, reading);
+    if (!find_gains(within, work)) return false;
+    const Values innovation =
+        work.expected.off + work.expected.by_start * work.offsets.start + work.expected.by_noise * work.offsets.noise;
+    const Offsets next{work.by_start * innovation, work.by_noise * innovation};
+    if (!next.start.allFinite() || !next.noise.allFinite()) return false;
+    const double change = std::max((next.start - work.offsets.start).cwiseAbs().maxCoeff(),
+                                   (next.noise - work.offsets.noise).cwiseAbs().maxCoeff());
+    work.offsets = next;
+    if (change < kSettled) return true;
+  }
+  return true;
+}
+
+/// What stands, and what the gains leave of the border's errors: mapping.md (R111).
+[[gnu::noinline]] void move(Work& work, Prediction& prediction) {
+  Registration::Vector moved = work.offsets.start;
+  u::segment(moved, u::motion) += work.offsets.noise;
+  prediction.prior.mean.add(moved);
+  work.by_start.topRows<kMotion>() += work.by_noise;  // from here on of the whole
+  const Rows<kUnknowns> by_last = work.expected.by_start * prediction.by_last;
+  prediction.by_last.noalias() -= work.by_start * by_last;
+  work.left.setIdentity();
+  work.left.noalias() -= work.by_start * work.expected.by_start;
+}
+
+/// The noise that arises within, as far as the gains leave it, and that of the reading: mapping.md (R111).
+[[gnu::noinline]] void add_noise(const MotionNoise& within, Work& work, Prediction& prediction) {
+  const Gain<kUnknowns>& K = work.by_start;
+  Eigen::Matrix<double, kUnknowns, kMotion> left = -K * work.expected.by_noise;
+  left.topRows<kMotion>().diagonal().array() += 1.0;
+  const Eigen::Matrix<double, kUnknowns, kMotion> spread = left * within;
+  prediction.noise.noalias() += spread * left.transpose();
+  const Gain<kUnknowns> read = K * work.expected.variance;
+  prediction.noise.noalias() += read * K.transpose();
+  make_symmetric(prediction.noise);
+}
+
+}  // namespace
+
+void weigh_reading(const OdometerReading& reading, const Border& border, const MotionWindow& window,
+                   const MotionNoise& within, Prediction& prediction) {
+  const Sweep sweep(prediction.prior.mean, window);
+  if (!holds(sweep, reading)) return;
+  const auto work = std::make_unique<Work>();
+  // weighed as the registration weighs: by C, mapping.md section 6
+  sandwich(prediction.by_last, border.belief.weight, work->at_start);
+  Matrix& before = work->before;  // the noise that was there at the start: of the deficit, of rails before
+  before = prediction.noise;
+  u::block(before, u::motion) -= within;
+  work->at_start += before;
+  if (!settle(reading, sweep, within, *work)) return;
+  move(*work, prediction);
+  sandwich(work->left, before, prediction.noise);
+  add_noise(within, *work, prediction);
+}
+
+}  // namespace tumble::mapping
