@@ -57,6 +57,10 @@ struct Tumbling {
       for (std::size_t p = 0; p < sweeps[k].points.size(); p += 17) few.push_back(sweeps[k].points[p]);
       EXPECT_TRUE(door.add_sweep(sweeps[k].start_ns, sweeps[k].end_ns, few).ok());
     }
+    EXPECT_TRUE(door.add_velocity({460'000'000, {0.1, 0.0, 0.0}, 0.5}).ok());
+    MotionReading motion{400'000'000, 450'000'000, Eigen::Isometry3d::Identity(), {}};
+    motion.covariance = 1e-4 * Eigen::Matrix<double, 6, 6>::Identity();
+    EXPECT_TRUE(door.add_motion(motion).ok());
     return door;
   }
   static void go_on(Door& door) {

@@ -129,6 +129,7 @@ TEST(StateMembers, AllOfATumblingOdometry) {
   expect_whole(AuxiliaryImu{}, "auxiliary_imus");
   expect_whole(ImuSample{}, "samples");
   expect_whole(LidarPoint{}, "points");
+  expect_whole(WaitingSweep{}, "waiting");
   expect_whole(PoseState{}, "trajectory");
 }
 
@@ -144,6 +145,8 @@ TEST(StateMembers, AllOfAMapper) {
   expect_whole(mapping::Lost{}, "lost");
   expect_whole(mapping::FoundAgain{}, "found again");
   expect_whole(mapping::KnownVelocity{}, "known");
+  expect_whole(VelocityReading{}, "velocity");
+  expect_whole(MotionReading{}, "motion");
   expect_whole(mapping::WindowSweep{}, "window");
   expect_whole(mapping::InsertedPoint{}, "inserted");
   expect_whole(MotionSample{}, "track");

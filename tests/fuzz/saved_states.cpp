@@ -49,6 +49,9 @@ struct Tumbling {
     const std::vector<LidarPoint> points = some_points();
     for (const TimeNs start_ns : {TimeNs{30'000'000}, TimeNs{80'000'000}, TimeNs{140'000'000}})
       (void)odometry.add_sweep(start_ns, start_ns + 50'000'000, points);
+    MotionReading motion{190'000'000, 200'000'000, Eigen::Isometry3d::Identity(), {}};
+    motion.covariance.setIdentity();
+    (void)odometry.add_motion(motion);
     return odometry.save();
   }
   static void go_on(Door& odometry) {

@@ -63,8 +63,8 @@ void others(Self& p, Visitor& visit) {
   others(p.expert.mapping, visit);
 }
 
-template <class Self, class Visitor>
-void TumblingOdometry::Waiting::members(Self& s, Visitor& visit) {
+template <StateOf<WaitingSweep> Self, class Visitor>
+void members(Self& s, Visitor& visit) {
   visit("waiting.start_ns", s.start_ns);
   visit("waiting.end_ns", s.end_ns);
   visit("waiting.points", s.points);
@@ -83,6 +83,7 @@ void TumblingOdometry::members(Self& s, Visitor& visit) {
   visit("gaps", s.gaps_);
   visit("dropped_sweeps", s.dropped_sweeps_);
   visit("waiting", s.waiting_);
+  visit("readings", s.readings_);
   visit("done", s.done_);
   visit("sweep_end_ns", s.sweep_end_ns_);
 }

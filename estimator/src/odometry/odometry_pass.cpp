@@ -110,7 +110,9 @@ std::optional<TimeNs> OdometryPass::covering_ns(TimeNs end_ns) const {
 }
 
 Status OdometryPass::add_sweep(TimeNs start_ns, TimeNs end_ns, std::span<const LidarPoint> points,
+                               const std::optional<OdometerReading>& reading,
                                LidarInertialOdometry::SweepReport& report) {
+  if (reading) (void)mapper_.add_reading(*reading);  // no trouble: it was checked when it came
   const Status status = mapper_.add_sweep(start_ns, end_ns, points, report);
   if (report.trajectory.empty()) return status;
   scale_.add(report);

@@ -8,6 +8,7 @@
 #include "../mapping/odometry_members.hpp"
 #include "tumble/odometry/detail/odometry_pass.hpp"
 #include "tumble/odometry/detail/second_pass.hpp"
+#include "tumble/odometry/detail/waiting_input.hpp"
 
 /// Members of the two passes of TumblingOdometry: state_visitor.hpp.
 namespace tumble {
@@ -61,10 +62,18 @@ void OdometryPass::members(Self& s, Visitor& visit) {
 }
 
 template <class Self, class Visitor>
+void WaitingReadings::members(Self& s, Visitor& visit) {
+  visit("readings.waiting", s.waiting_);
+  if constexpr (Visitor::kReads) visit.bounded("readings.waiting", double(s.waiting_.size()), 0.0, double(kMost));
+  visit("readings.straddling", s.straddling_);
+}
+
+template <class Self, class Visitor>
 void SecondPass::Sweep::members(Self& s, Visitor& visit) {
   visit("remembered.start_ns", s.start_ns);
   visit("remembered.end_ns", s.end_ns);
   visit("remembered.points", s.points);
+  visit("remembered.reading", s.reading);
   visit("remembered.verdict", s.verdict, SweepVerdict::rejected);
 }
 

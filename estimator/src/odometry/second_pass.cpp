@@ -64,9 +64,10 @@ void SecondPass::remember(const ImuSample& sample) {
   samples_.push(sample);
 }
 
-void SecondPass::remember(TimeNs start_ns, TimeNs end_ns, std::vector<LidarPoint> points, SweepVerdict verdict) {
+void SecondPass::remember(TimeNs start_ns, TimeNs end_ns, std::vector<LidarPoint> points,
+                          const std::optional<OdometerReading>& reading, SweepVerdict verdict) {
   if (!wanted_) return;
-  sweeps_.push_back({start_ns, end_ns, std::move(points), verdict});
+  sweeps_.push_back({start_ns, end_ns, std::move(points), reading, verdict});
   rejected_by_first_ += verdict == SweepVerdict::rejected;
 }
 
@@ -160,7 +161,7 @@ void SecondPass::run(OdometryPass& first, std::size_t sweeps) {
       return;
     }
     LidarInertialOdometry::SweepReport report;
-    (void)pass_->add_sweep(sweep.start_ns, sweep.end_ns, sweep.points, report);
+    (void)pass_->add_sweep(sweep.start_ns, sweep.end_ns, sweep.points, sweep.reading, report);
     lost_ = report.verdict == SweepVerdict::rejected;
     rejected_ += lost_;
     if (!early_) std::vector<LidarPoint>().swap(sweep.points);

@@ -129,6 +129,19 @@ Status TumblingOdometry::add_sweep(TimeNs start_ns, TimeNs end_ns, std::span<con
   return {};
 }
 
+Status TumblingOdometry::add_velocity(const VelocityReading& velocity) {
+  return add_reading(velocity);
+}
+
+Status TumblingOdometry::add_motion(const MotionReading& motion) {
+  return add_reading(motion);
+}
+
+Status TumblingOdometry::add_reading(const OdometerReading& reading) {
+  if (!newest_ns_) return {Trouble::empty, "imu samples", 0.0, 1.0};
+  return readings_.add(reading, pass_.needed_ns(*registered_ns_), *newest_ns_ + static_cast<TimeNs>(1e9 * kAhead_s));
+}
+
 std::optional<TumblingOdometry::Sweep> TumblingOdometry::take() {
   if (done_.empty()) return std::nullopt;
   Sweep out = std::move(done_.front());
@@ -166,9 +179,11 @@ void TumblingOdometry::register_sweep(TimeNs start_ns, TimeNs end_ns, std::vecto
     ++dropped_sweeps_;
   }
   Sweep& out = done_.emplace_back();
-  out.status = pass_.add_sweep(start_ns, end_ns, points, out.report);
+  const std::optional<OdometerReading> reading =
+      readings_.take(pass_.needed_ns(*registered_ns_), pass_.needed_ns(end_ns));
+  out.status = pass_.add_sweep(start_ns, end_ns, points, reading, out.report);
   registered_ns_ = end_ns;
-  again_.remember(start_ns, end_ns, std::move(points), out.report.verdict);
+  again_.remember(start_ns, end_ns, std::move(points), reading, out.report.verdict);
   again_.advance(pass_);
 }
 
@@ -188,7 +203,7 @@ void TumblingOdometry::register_covered() {
     // the sample that covers it ends up to a period later: its rate is given out so much sooner
     if (!pass_.covers(end_ns) && is_due(end_ns)) pass_.flush_until(pass_.needed_ns(end_ns));
     if (!pass_.covers(end_ns)) break;
-    Waiting sweep = std::move(waiting_.front());
+    WaitingSweep sweep = std::move(waiting_.front());
     waiting_.pop_front();
     register_sweep(sweep.start_ns, sweep.end_ns, std::move(sweep.points));
   }

@@ -44,6 +44,7 @@ Status TumblingOdometry::check_state() const {
   if (const Status status = pass_.check_state(); !status.ok()) return status;
   if (const Status status = again_.check_state(pass_); !status.ok()) return status;
   if (pass_.smoothed_rate() && !registered_ns_) return missing("registered_ns");
+  if (newest_ns_ && !registered_ns_) return missing("registered_ns");
   if (newest_rate() && !newest_ns_) return missing("newest_ns");
   return {};
 }

@@ -11,6 +11,7 @@
 #include "tumble/mapping/lidar_inertial_odometry.hpp"
 #include "tumble/odometry/detail/odometry_pass.hpp"
 #include "tumble/odometry/detail/second_pass.hpp"
+#include "tumble/odometry/detail/waiting_input.hpp"
 #include "tumble/odometry/tumbling_params.hpp"
 
 namespace tumble {
@@ -32,9 +33,8 @@ namespace tumble {
 /// An IMU sample costs one step of the stream, and now and then a sweep's registration; one that ends no sweep
 /// allocates nothing once the first have come. While the second pass runs a sweep costs up to four registrations, and
 /// five more once, as it catches up. Memory is bounded by the lag, the map's radius, `sweeps_max` and what the second
-/// pass remembers, but for 12 bytes a sweep while the body stays within ten metres; of stack a call needs 64 KiB at
-/// most. No threads, no files, no printing. Copies carry all state: one goes on with the same bits, so that a run may
-/// be split anywhere. Not modelled: see the two classes above.
+/// pass remembers, but for 12 bytes a sweep while the body stays within ten metres; a call needs 64 KiB of stack at
+/// most. No threads, files, printing. Copies carry all state: runs may be split. Not modelled: see the two classes.
 class TumblingOdometry {
  public:
   using Params = TumblingParams;
@@ -54,16 +54,19 @@ class TumblingOdometry {
   /// bound, a second, is held back: when the next one bears it out the rates begin anew with what is known of the rig
   /// (gaps() counts), and the mapper bridges the gap by inertia; one stamp that is wrong costs one sample.
   Status add_imu(const ImuSample& sample);
-
   /// Takes a sweep of points fired in [start_ns, end_ns], at any time after its last point; they are copied. Those from
   /// before the last sweep's end are left out: stamps jitter. Trouble that leaves the state as it was: `time_order` (an
   /// end before its start, or more than half of it before that end), `out_of_range` (the offset of a point beyond the
   /// sweep; an end more than a second after the newest sample; too many that wait). What the mapper makes: take().
   Status add_sweep(TimeNs start_ns, TimeNs end_ns, std::span<const LidarPoint> points);
-
+  /// What an odometer of the robot's says, if it has one (detail/odometer_reading.hpp), before its sweep is registered,
+  /// which is lag_s after the sweep's end: of each sweep, from the end of the one before, the last reading counts.
+  /// Trouble leaves the state as it was: `empty` (no sample yet), `non_finite`, `time_order` (its sweep is gone),
+  /// `out_of_range` (a deviation not above 0, a second ahead of the newest sample, 1024 that wait).
+  Status add_velocity(const VelocityReading& velocity);
+  Status add_motion(const MotionReading& motion);
   /// The next sweep that was registered, in order; nothing when there is none yet.
   std::optional<Sweep> take();
-
   /// Settles what there is: at the end of a run, or at a halt. Sweeps that the IMU covers are registered; take() gives
   /// them, and mapper().open_trajectories() the last word of those still in the window. What comes later begins the
   /// rates anew, with what is known of the rig.
@@ -94,9 +97,11 @@ class TumblingOdometry {
   std::size_t gaps() const { return gaps_; }
   /// Whether the map and the pose are those of the second pass (SecondPass).
   bool passed_again() const { return again_.taken(); }
-  /// Samples that the mapper refused with their rates, sweeps that nobody took in time: 0 unless something is wrong.
+  /// Samples that the mapper refused with their rates, sweeps that nobody took in time, an odometer's readings that
+  /// reach from one sweep into the next, and are not used: 0 unless something is wrong.
   std::size_t refused_samples() const { return pass_.refused_samples(); }
   std::size_t dropped_sweeps() const { return dropped_sweeps_; }
+  std::size_t unused_readings() const { return readings_.straddling(); }
   /// Standard deviation of the IMU's stamps about a regular clock [s], while that clock's times count for them.
   std::optional<double> mended_jitter_s() const;
   /// The map, and all that the mapper tells beside.
@@ -117,14 +122,8 @@ class TumblingOdometry {
   static void members(Self& s, Visitor& visit);
 
  private:
-  struct Waiting {
-    TimeNs start_ns = 0, end_ns = 0;
-    std::vector<LidarPoint> points;
-    template <class Self, class Visitor>
-    static void members(Self& s, Visitor& visit);
-  };
-
   Status check_state() const;
+  Status add_reading(const OdometerReading& reading);
   Status take_in(const ImuSample& sample);
   void register_sweep(TimeNs start_ns, TimeNs end_ns, std::vector<LidarPoint> points);
   bool is_due(TimeNs end_ns) const;
@@ -142,7 +141,8 @@ class TumblingOdometry {
   std::optional<ImuSample> after_gap_;   ///< held back
   std::optional<TimeNs> registered_ns_;  ///< end of the last sweep that was registered; the first sample before that
   std::size_t gaps_ = 0, dropped_sweeps_ = 0;
-  std::deque<Waiting> waiting_;
+  std::deque<WaitingSweep> waiting_;
+  WaitingReadings readings_;
   std::deque<Sweep> done_;
   std::optional<TimeNs> sweep_end_ns_;  ///< of the last sweep taken in
 };

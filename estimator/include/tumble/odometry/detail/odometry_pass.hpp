@@ -40,8 +40,9 @@ class OdometryPass {
   std::optional<TimeNs> covered_ns() const;
   /// The first sample, by the IMU's clock, that covers this time of the lidar's and whose rate is not given out yet.
   std::optional<TimeNs> covering_ns(TimeNs end_ns) const;
+  /// `reading`: of the sweep, if there is one.
   Status add_sweep(TimeNs start_ns, TimeNs end_ns, std::span<const LidarPoint> points,
-                   LidarInertialOdometry::SweepReport& report);
+                   const std::optional<OdometerReading>& reading, LidarInertialOdometry::SweepReport& report);
   /// As TumblingOdometry::newest.
   Status newest(PoseState& pose) const;
 

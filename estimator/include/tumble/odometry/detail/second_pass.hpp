@@ -60,8 +60,9 @@ class SecondPass {
 
   /// A sample that the first pass has taken. No allocation.
   void remember(const ImuSample& sample);
-  /// A sweep that the first pass has registered.
-  void remember(TimeNs start_ns, TimeNs end_ns, std::vector<LidarPoint> points, SweepVerdict verdict);
+  /// A sweep that the first pass has registered, with the reading of an odometer if there was one.
+  void remember(TimeNs start_ns, TimeNs end_ns, std::vector<LidarPoint> points,
+                const std::optional<OdometerReading>& reading, SweepVerdict verdict);
 
   /// Goes on, after a sweep of the first pass; where it has caught up the map of `first` becomes its own.
   void advance(OdometryPass& first);
@@ -84,6 +85,7 @@ class SecondPass {
   struct Sweep {
     TimeNs start_ns = 0, end_ns = 0;
     std::vector<LidarPoint> points;
+    std::optional<OdometerReading> reading;
     SweepVerdict verdict = SweepVerdict::first;  ///< of the first pass
     template <class Self, class Visitor>
     static void members(Self& s, Visitor& visit);

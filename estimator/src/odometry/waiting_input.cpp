@@ -1,0 +1,47 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "tumble/odometry/detail/waiting_input.hpp"
+
+#include <algorithm>
+
+namespace tumble {
+
+namespace {
+
+TimeNs middle_ns(const OdometerReading& reading) {
+  const TimeNs from_ns = begins_ns(reading);
+  return from_ns + (ends_ns(reading) - from_ns) / 2;
+}
+
+}  // namespace
+
+Status WaitingReadings::add(const OdometerReading& reading, TimeNs done_ns, TimeNs latest_ns) {
+  if (const Status status = check_reading(reading); !status.ok()) return status;
+  const bool motion = std::holds_alternative<MotionReading>(reading);
+  const char* const first = motion ? "from_ns" : "time_ns";
+  const char* const last = motion ? "to_ns" : "time_ns";
+  const TimeNs from_ns = begins_ns(reading), to_ns = ends_ns(reading), earliest_ns = done_ns - kBeyond_ns;
+  if (from_ns < earliest_ns) return {Trouble::time_order, first, double(from_ns), double(earliest_ns)};
+  if (to_ns > latest_ns) return {Trouble::out_of_range, last, double(to_ns), double(latest_ns)};
+  const TimeNs middle = middle_ns(reading);
+  if (middle <= done_ns) return {Trouble::time_order, last, double(to_ns), double(done_ns)};
+  if (waiting_.size() >= kMost)
+    return {Trouble::out_of_range, "readings waiting", double(waiting_.size() + 1), double(kMost)};
+  const auto later = [](TimeNs time_ns, const OdometerReading& other) { return time_ns < middle_ns(other); };
+  waiting_.insert(std::upper_bound(waiting_.begin(), waiting_.end(), middle, later), reading);
+  return {};
+}
+
+std::optional<OdometerReading> WaitingReadings::take(TimeNs from_ns, TimeNs end_ns) {
+  std::optional<OdometerReading> out;
+  for (; !waiting_.empty() && middle_ns(waiting_.front()) <= end_ns; waiting_.pop_front()) {
+    const OdometerReading& reading = waiting_.front();
+    if (begins_ns(reading) >= from_ns - kBeyond_ns && ends_ns(reading) <= end_ns + kBeyond_ns) {
+      out = reading;
+    } else {
+      ++straddling_;
+    }
+  }
+  return out;
+}
+
+}  // namespace tumble

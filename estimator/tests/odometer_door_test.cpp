@@ -1,0 +1,307 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Readings of an odometer at the door: what true ones are worth, what wrong ones do, and that none is lost on the way.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <limits>
+#include <optional>
+#include <vector>
+
+#include "thrown_body.hpp"
+#include "thrown_params.hpp"
+#include "tumble/odometry/detail/odometry_pass.hpp"
+#include "tumble/odometry/detail/second_pass.hpp"
+#include "tumble/tumble.hpp"
+
+namespace tumble {
+namespace {
+
+using test::ThrownBody;
+
+constexpr TimeNs kTenth_ns = 100'000'000;
+constexpr TimeNs kSeesNothingFrom_ns = 1'300'000'000, kSeesNothingTo_ns = 2'300'000'000;  // most of the flight
+
+VelocityReading velocity_of(const ThrownBody& body, TimeNs time_ns, double sigma_m_s) {
+  constexpr double kStep_s = 1e-5;
+  const double t = seconds(time_ns);
+  const Eigen::Vector3d v_W =
+      (body.T_WI(t + kStep_s).translation() - body.T_WI(t - kStep_s).translation()) / (2.0 * kStep_s);
+  return {time_ns, body.T_WI(t).linear().transpose() * v_W, sigma_m_s};
+}
+
+MotionReading motion_of(const ThrownBody& body, TimeNs from_ns, TimeNs to_ns, double sigma_m, double sigma_rad) {
+  MotionReading out{from_ns, to_ns, body.T_WI(seconds(from_ns)).inverse() * body.T_WI(seconds(to_ns)), {}};
+  out.covariance.setZero();
+  out.covariance.diagonal() << Eigen::Vector3d::Constant(sigma_m * sigma_m),
+      Eigen::Vector3d::Constant(sigma_rad * sigma_rad);
+  return out;
+}
+
+/// What is told of a sweep just before it is given.
+using Tell = std::function<void(const ThrownBody&, const ThrownBody::Sweep&, TumblingOdometry&)>;
+
+void nothing(const ThrownBody&, const ThrownBody::Sweep&, TumblingOdometry&) {}
+void true_velocity(const ThrownBody& body, const ThrownBody::Sweep& sweep, TumblingOdometry& odometry) {
+  EXPECT_TRUE(odometry.add_velocity(velocity_of(body, sweep.end_ns - 30'000'000, 0.02)).ok());
+}
+void true_motion(const ThrownBody& body, const ThrownBody::Sweep& sweep, TumblingOdometry& odometry) {
+  EXPECT_TRUE(odometry.add_motion(motion_of(body, sweep.start_ns, sweep.end_ns, 0.005, 0.005)).ok());
+}
+void wrong_velocity(const ThrownBody& body, const ThrownBody::Sweep& sweep, TumblingOdometry& odometry) {
+  VelocityReading reading = velocity_of(body, sweep.end_ns, 0.01);
+  reading.v_WI_I_m_s.x() += 2.0;
+  EXPECT_TRUE(odometry.add_velocity(reading).ok());
+}
+
+struct Course {
+  std::vector<TumblingOdometry::Sweep> sweeps;
+  double worst_m = 0.0, worst_rad = 0.0, end_m = 0.0, sum_m = 0.0;
+};
+
+void take_course(const ThrownBody& body, TumblingOdometry& odometry, Course& run) {
+  while (std::optional<TumblingOdometry::Sweep> sweep = odometry.take()) {
+    const PoseState& pose = sweep->report.pose;
+    const Eigen::Isometry3d T_WI = body.T_WI(seconds(pose.time_ns));
+    run.end_m = (pose.p_WA_m - T_WI.translation()).norm();
+    run.worst_m = std::max(run.worst_m, run.end_m);
+    run.sum_m += run.end_m;
+    run.worst_rad = std::max(run.worst_rad, pose.q_WA.angularDistance(Eigen::Quaterniond(T_WI.linear())));
+    run.sweeps.push_back(std::move(*sweep));
+  }
+}
+
+/// Samples `from` to `to` - 1 and the sweeps that end by then.
+void hand_over(const ThrownBody& body, const std::vector<ThrownBody::Sweep>& sweeps, std::size_t from, std::size_t to,
+               const Tell& tell, TumblingOdometry& odometry, Course& run) {
+  const std::vector<ImuSample> imu = body.imu();
+  for (std::size_t k = from; k < std::min(to, imu.size()); ++k) {
+    ASSERT_TRUE(odometry.add_imu(imu[k]).ok());
+    const TimeNs before_ns = k == 0 ? 0 : imu[k - 1].time_ns;
+    for (const ThrownBody::Sweep& sweep : sweeps) {
+      if (sweep.end_ns <= before_ns || sweep.end_ns > imu[k].time_ns) continue;
+      tell(body, sweep, odometry);
+      ASSERT_TRUE(odometry.add_sweep(sweep.start_ns, sweep.end_ns, sweep.points).ok());
+    }
+    take_course(body, odometry, run);
+  }
+}
+
+constexpr std::size_t kToTheEnd = std::numeric_limits<std::size_t>::max();
+
+Course course_of(const ThrownBody& body, const std::vector<ThrownBody::Sweep>& sweeps, const Tell& tell,
+                 TumblingOdometry& odometry) {
+  Course run;
+  hand_over(body, sweeps, 0, kToTheEnd, tell, odometry, run);
+  odometry.finish();
+  take_course(body, odometry, run);
+  return run;
+}
+
+TumblingOdometry::Params single_pass(const ThrownBody& body) {
+  TumblingOdometry::Params params = params_of(body);
+  params.expert.again.after_s = 0.0;
+  return params;
+}
+
+void expect_same(const Course& a, const Course& b) {
+  ASSERT_EQ(a.sweeps.size(), b.sweeps.size());
+  for (std::size_t k = 0; k < a.sweeps.size(); ++k) {
+    EXPECT_EQ(a.sweeps[k].report.pose.p_WA_m, b.sweeps[k].report.pose.p_WA_m) << k;
+    EXPECT_EQ(a.sweeps[k].report.pose.q_WA.coeffs(), b.sweeps[k].report.pose.q_WA.coeffs()) << k;
+    EXPECT_EQ(a.sweeps[k].report.pose.covariance, b.sweeps[k].report.pose.covariance) << k;
+  }
+}
+
+TEST(OdometerAtTheDoor, TrueReadingsDoNoHarm) {
+  const ThrownBody body;
+  const std::vector<ThrownBody::Sweep> sweeps = body.sweeps();
+  TumblingOdometry plain(single_pass(body)), with_velocity(single_pass(body)), with_motion(single_pass(body));
+  const Course without = course_of(body, sweeps, nothing, plain);
+  for (const auto& [tell, odometry] : {std::pair<Tell, TumblingOdometry*>(true_velocity, &with_velocity),
+                                       std::pair<Tell, TumblingOdometry*>(true_motion, &with_motion)}) {
+    const Course told = course_of(body, sweeps, tell, *odometry);
+    EXPECT_LE(told.worst_m, without.worst_m);
+    EXPECT_LE(told.sum_m, without.sum_m);
+    EXPECT_LE(told.end_m, without.end_m);
+    // a velocity tells an attitude little, and that of the catch is off by three degrees
+    EXPECT_LE(told.worst_rad, (odometry == &with_motion ? 0.5 : 1.25) * without.worst_rad);
+    EXPECT_TRUE(odometry->doubt().ok()) << odometry->doubt().message();
+    EXPECT_EQ(odometry->unused_readings(), 0u);
+  }
+}
+
+/// A lidar that sees nothing from the throw to the catch; by inertia alone the clipped gyro loses the way.
+TEST(OdometerAtTheDoor, TrueReadingsCarryABodyWhoseLidarSeesNothing) {
+  const ThrownBody body;
+  std::vector<ThrownBody::Sweep> sweeps = body.sweeps();
+  for (ThrownBody::Sweep& sweep : sweeps) {
+    if (sweep.start_ns >= kSeesNothingFrom_ns && sweep.end_ns <= kSeesNothingTo_ns) sweep.points.clear();
+  }
+  TumblingOdometry plain(single_pass(body)), with_velocity(single_pass(body)), with_motion(single_pass(body));
+  const Course without = course_of(body, sweeps, nothing, plain);
+  const Course velocity = course_of(body, sweeps, true_velocity, with_velocity);
+  const Course motion = course_of(body, sweeps, true_motion, with_motion);
+  EXPECT_LT(velocity.worst_m, 0.7 * without.worst_m) << without.worst_m;
+  EXPECT_LT(motion.worst_m, 0.5 * without.worst_m) << without.worst_m;
+  EXPECT_LT(motion.worst_rad, 0.5 * without.worst_rad) << without.worst_rad;
+  EXPECT_LT(motion.worst_m, 0.05);
+}
+
+TEST(OdometerAtTheDoor, AWrongOneThatIsSureDoesHarmAndIsTold) {  // negative control
+  const ThrownBody body;
+  TumblingOdometry plain(single_pass(body)), misled(single_pass(body));
+  const Course without = course_of(body, body.sweeps(), nothing, plain);
+  const Course wrong = course_of(body, body.sweeps(), wrong_velocity, misled);
+  EXPECT_GT(wrong.worst_m, without.worst_m);
+  EXPECT_TRUE(plain.doubt().ok());
+  EXPECT_FALSE(misled.doubt().ok());
+}
+
+/// With the lag a sweep waits: what comes after it is as good as what comes before, and it is the second pass's as
+/// well.
+TEST(OdometerAtTheDoor, IsOfItsSweepHoweverLongThatWaits) {
+  ThrownBody body;
+  body.end_s = 4.2;
+  TumblingOdometry::Params params = params_of(body);
+  params.expert.again.after_s = 0.9;
+  const std::vector<ThrownBody::Sweep> sweeps = body.sweeps();
+  TumblingOdometry before(params), after(params), without(params);
+  const Course first = course_of(body, sweeps, true_motion, before);
+  // that of the sweep before, which waits
+  const Tell late = [&](const ThrownBody& of, const ThrownBody::Sweep& sweep, TumblingOdometry& odometry) {
+    if (sweep.start_ns < kTenth_ns) return;
+    (void)odometry.add_motion(motion_of(of, sweep.start_ns - kTenth_ns, sweep.start_ns, 0.005, 0.005));
+    if (sweep.end_ns == sweeps.back().end_ns) true_motion(of, sweep, odometry);
+  };
+  expect_same(first, course_of(body, sweeps, late, after));
+  EXPECT_TRUE(before.passed_again());
+  const Course none = course_of(body, sweeps, nothing, without);
+  EXPECT_NE(first.sweeps.back().report.pose.p_WA_m, none.sweeps.back().report.pose.p_WA_m);
+  EXPECT_EQ(before.save(), after.save());
+}
+
+/// Where the first pass is told nothing, the pose that the second one leaves it with says what that one has heard.
+Eigen::Vector3d after_second_pass(bool told) {
+  const ThrownBody body;
+  RegimeStream::Params rate = TumblingOdometry::Params::Expert::rate_defaults();
+  rate.rate.model.nominal.lever_arm_m = body.lever_arm_I_m;
+  const LidarInertialOdometry::Params mapping = TumblingOdometry::Params::Expert::mapping_defaults();
+  OdometryPass first(rate, mapping);
+  SecondPass again(SecondPass::Params{}, rate, mapping);
+  const std::vector<ThrownBody::Sweep> sweeps = body.sweeps();
+  std::size_t next = 0;
+  for (const ImuSample& sample : body.imu()) {
+    EXPECT_TRUE(first.add_imu(sample).ok());
+    again.remember(sample);
+    for (; next < sweeps.size() && first.covers(sweeps[next].end_ns); ++next) {
+      const ThrownBody::Sweep& sweep = sweeps[next];
+      LidarInertialOdometry::SweepReport report;
+      (void)first.add_sweep(sweep.start_ns, sweep.end_ns, sweep.points, {}, report);
+      std::optional<OdometerReading> reading;
+      if (told) reading = motion_of(body, sweep.start_ns, sweep.end_ns, 0.002, 0.002);
+      again.remember(sweep.start_ns, sweep.end_ns, sweep.points, reading, report.verdict);
+    }
+  }
+  again.complete(first);
+  EXPECT_TRUE(again.taken());
+  PoseState pose;
+  EXPECT_TRUE(first.newest(pose).ok());
+  return pose.p_WA_m;
+}
+
+TEST(OdometerAtTheDoor, TheSecondPassHearsItAgain) {
+  EXPECT_EQ(after_second_pass(false), after_second_pass(false));
+  EXPECT_NE(after_second_pass(false), after_second_pass(true));
+}
+
+TEST(OdometerAtTheDoor, ARunIsSplitAndSavedWhileOneWaits) {
+  const ThrownBody body;
+  TumblingOdometry::Params params = params_of(body);
+  params.expert.again.after_s = 0.9;
+  const std::vector<ThrownBody::Sweep> sweeps = body.sweeps();
+  TumblingOdometry whole(params);
+  const Course run = course_of(body, sweeps, true_motion, whole);
+  for (const std::size_t split : {std::size_t{91}, std::size_t{172}, std::size_t{255}}) {
+    SCOPED_TRACE(split);
+    TumblingOdometry first(params), silent(params), second(params), copy(params);
+    Course parts, other;
+    hand_over(body, sweeps, 0, split, true_motion, first, parts);
+    hand_over(body, sweeps, 0, split, nothing, silent, other);
+    EXPECT_GT(first.save().size(), silent.save().size()) << "else this asks nothing";
+    ASSERT_TRUE(second.load(first.save()).ok());
+    EXPECT_EQ(second.save(), first.save());
+    Course copied = parts;
+    copy = first;
+    for (const auto& [odometry, out] : {std::pair(&second, &parts), std::pair(&copy, &copied)}) {
+      hand_over(body, sweeps, split, kToTheEnd, true_motion, *odometry, *out);
+      odometry->finish();
+      take_course(body, *odometry, *out);
+      expect_same(run, *out);
+      EXPECT_EQ(odometry->save(), whole.save());
+    }
+  }
+}
+
+TEST(OdometerAtTheDoor, TroubleIsAValueAndChangesNothing) {
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  const ThrownBody body;
+  const TimeNs now_ns = 800'000'000;
+  TumblingOdometry odometry(single_pass(body));
+  EXPECT_EQ(odometry.add_velocity({now_ns, Eigen::Vector3d::Zero(), 0.1}).trouble, Trouble::empty);
+  Course run;
+  hand_over(body, body.sweeps(), 0, 80, nothing, odometry, run);
+  ASSERT_GT(run.sweeps.size(), 3u);
+  const TimeNs done_ns = run.sweeps.back().report.pose.time_ns;
+  const std::vector<std::byte> before = odometry.save();
+  EXPECT_EQ(odometry.add_velocity({now_ns, {0.0, nan, 0.0}, 0.1}).trouble, Trouble::non_finite);
+  EXPECT_EQ(odometry.add_velocity({now_ns, Eigen::Vector3d::Zero(), 0.0}).trouble, Trouble::out_of_range);
+  EXPECT_EQ(odometry.add_velocity({now_ns, Eigen::Vector3d::Zero(), -0.1}).trouble, Trouble::out_of_range);
+  EXPECT_EQ(odometry.add_velocity({done_ns, Eigen::Vector3d::Zero(), 0.1}).trouble, Trouble::time_order);
+  constexpr TimeNs kFar_ns = std::numeric_limits<TimeNs>::max();
+  for (const TimeNs time_ns : {now_ns + 1'100'000'000, kFar_ns})
+    EXPECT_EQ(odometry.add_velocity({time_ns, Eigen::Vector3d::Zero(), 0.1}).trouble, Trouble::out_of_range);
+  EXPECT_EQ(odometry.add_velocity({-kFar_ns, Eigen::Vector3d::Zero(), 0.1}).trouble, Trouble::time_order);
+  const auto motion = [&](TimeNs from_ns, TimeNs to_ns) { return motion_of(body, from_ns, to_ns, 0.01, 0.01); };
+  EXPECT_EQ(odometry.add_motion(motion(now_ns, now_ns)).trouble, Trouble::time_order);
+  EXPECT_EQ(odometry.add_motion(motion(done_ns - 50'000'000, now_ns)).trouble, Trouble::time_order);
+  MotionReading reading = motion(done_ns, now_ns);
+  reading.covariance(3, 3) = 0.0;
+  EXPECT_EQ(odometry.add_motion(reading).trouble, Trouble::out_of_range);
+  for (const auto& [from_ns, to_ns] : {std::pair(-kFar_ns, now_ns), std::pair(done_ns, kFar_ns)}) {
+    reading = motion(done_ns, now_ns);
+    reading.from_ns = from_ns;
+    reading.to_ns = to_ns;
+    EXPECT_FALSE(odometry.add_motion(reading).ok());
+  }
+  EXPECT_EQ(odometry.save(), before);
+
+  // one that spans two sweeps is of neither, and so many wait at most
+  EXPECT_TRUE(odometry.add_motion(motion(done_ns + 50'000'000, done_ns + 150'000'000)).ok());
+  Status status;
+  std::size_t waiting = 1;
+  for (; status.ok() && waiting < 5000; ++waiting)
+    status = odometry.add_velocity({done_ns + 500'000'000, Eigen::Vector3d::Zero(), 1.0});
+  EXPECT_EQ(status.trouble, Trouble::out_of_range);
+  EXPECT_STREQ(status.field, "readings waiting");
+  EXPECT_EQ(waiting, 1025u);
+  EXPECT_NE(odometry.save(), before);
+  hand_over(body, body.sweeps(), 80, 130, nothing, odometry, run);
+  EXPECT_EQ(odometry.unused_readings(), 1u);
+  EXPECT_TRUE(odometry.add_velocity({1'300'000'000, Eigen::Vector3d::Zero(), 1.0}).ok()) << "there is room again";
+}
+
+/// A reading that nobody gave is no reading of nothing: the bits are those of a run without.
+TEST(OdometerAtTheDoor, OneThatNoSweepTakesChangesNoBit) {
+  const ThrownBody body;
+  TumblingOdometry plain(single_pass(body)), asked(single_pass(body));
+  const Tell straddling = [](const ThrownBody& of, const ThrownBody::Sweep& sweep, TumblingOdometry& odometry) {
+    (void)odometry.add_motion(motion_of(of, sweep.end_ns - 50'000'000, sweep.end_ns + 50'000'001, 0.01, 0.01));
+  };
+  expect_same(course_of(body, body.sweeps(), nothing, plain), course_of(body, body.sweeps(), straddling, asked));
+  EXPECT_GT(asked.unused_readings(), 20u);
+}
+
+}  // namespace
+}  // namespace tumble
