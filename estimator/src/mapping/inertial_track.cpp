@@ -178,6 +178,14 @@ bool InertialTrack::rests_until(TimeNs end_ns) const {
   return std::all_of(samples_.begin(), samples_.end(), rests);
 }
 
+void InertialTrack::leave_out_force(TimeNs end_ns) {
+  for (MotionSample& sample : samples_) {
+    if (sample.from_ns >= end_ns) break;
+    sample.bridges_gap = true;
+    sample.railed_axes = 0;
+  }
+}
+
 void InertialTrack::forget_until(TimeNs end_ns) {
   const auto after = [&](const MotionSample& sample) { return sample.time_ns > end_ns; };
   samples_.erase(samples_.begin(), std::find_if(samples_.begin(), samples_.end(), after));

@@ -29,6 +29,8 @@ class InertialTrack {
   std::optional<TimeNs> last_ns() const;
   /// Whether the IMU has nothing to say but gravity up to `end_ns`.
   bool rests_until(TimeNs end_ns) const;
+  /// What the accelerometer read before then is left out, as if it had been a gap's; the rates count.
+  void leave_out_force(TimeNs end_ns);
   /// Forgets what ended by then, the end of a sweep.
   void forget_until(TimeNs end_ns);
 

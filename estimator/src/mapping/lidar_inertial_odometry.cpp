@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 #include <memory>
+#include <variant>
 
 #include "odometry_impl.hpp"
 #include "unknowns.hpp"
@@ -67,6 +68,10 @@ Status LidarInertialOdometry::add_reading(const OdometerReading& reading) {
   return status;
 }
 
+void LidarInertialOdometry::leave_out_force() {
+  impl_->known = mapping::ConstantVelocity{};
+}
+
 Status LidarInertialOdometry::add_sweep(TimeNs lidar_start_ns, TimeNs lidar_end_ns, std::span<const LidarPoint> points,
                                         SweepReport& report) {
   report = SweepReport{};
@@ -87,6 +92,7 @@ Status LidarInertialOdometry::predict(std::span<const ImuSample> samples, std::s
   }
   if (track.samples().empty()) return pose_at(my.border.time_ns(), pose);
   const TimeNs end_ns = track.samples().back().time_ns;
+  if (std::holds_alternative<mapping::ConstantVelocity>(my.known)) track.leave_out_force(end_ns);
   const Registration::Estimate& last = my.border.belief.mean;
   SweepTrajectory trajectory;
   if (Status status = trajectory.build(last.state, track.samples(), end_ns, last.calibration.gravity_W_m_s2);

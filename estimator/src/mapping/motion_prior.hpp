@@ -26,7 +26,12 @@ struct KnownVelocity {
   double sigma_m_s = 0.0;
 };
 
-using MotionPrior = std::variant<InertialPrior, KnownVelocity, OdometerReading>;
+/// The velocity goes on, as far as a body that is struck now and then keeps it, and the gyro counts: an accelerometer
+/// that is absent, or at its rail throughout. It needs neither of the two: the samples of the sweep are taken as those
+/// of a gap are (InertialTrack::leave_out_force), and by that the noise is a gap's.
+struct ConstantVelocity {};
+
+using MotionPrior = std::variant<InertialPrior, KnownVelocity, OdometerReading, ConstantVelocity>;
 
 /// Noise of position, attitude and velocity that arises within a sweep.
 using MotionNoise = Eigen::Matrix<double, 9, 9>;

@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <memory>
 #include <utility>
+#include <variant>
 
 #include "odometry_impl.hpp"
 #include "tumble/mapping/detail/sweep_check.hpp"
@@ -17,6 +18,7 @@ Status LidarInertialOdometry::Impl::add_sweep(TimeNs start_ns, TimeNs end_ns, st
   if (Status status = check_sweep(start_ns, end_ns, returns); !status.ok()) return status;
   if (Status status = level_at_first(); !status.ok()) return status;
 
+  if (std::holds_alternative<mapping::ConstantVelocity>(known)) track.leave_out_force(end_ns);
   // where the IMU leads from the border on; an alignment bends the trajectory to where the lidar finds itself
   SweepTrajectory& trajectory = scratch.trajectory;
   const Registration::Estimate& before = border.belief.mean;

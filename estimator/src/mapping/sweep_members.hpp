@@ -96,6 +96,9 @@ void members(Self& s, Visitor& visit) {
 template <StateOf<InertialPrior> Self, class Visitor>
 void members(Self&, Visitor&) {}
 
+template <StateOf<ConstantVelocity> Self, class Visitor>
+void members(Self&, Visitor&) {}
+
 template <StateOf<KnownVelocity> Self, class Visitor>
 void members(Self& s, Visitor& visit) {
   visit("known.v_WI_I_m_s", s.v_WI_I_m_s);

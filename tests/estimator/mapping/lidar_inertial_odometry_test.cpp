@@ -195,6 +195,36 @@ TEST(LidarInertialOdometry, AVelocityThatIsToldHoldsWhatTheSurfacesDoNot) {
   EXPECT_GT(end_error_m(false), 0.15);
 }
 
+/// An accelerometer that reads one value of its rail, or nothing at all, from the throw on.
+TEST(LidarInertialOdometry, AnAccelerometerOfNoUseIsLeftOut) {
+  const test::Motion& motion = test::room_tumble().motion;
+  const auto worst_m = [&](const Eigen::Vector3d& read, bool left_out) {
+    Odometry odometry(rig_params());
+    Odometry::SweepReport report;
+    double worst = 0.0;
+    for (int i = 0; i < 26; ++i) {
+      bool of_no_use = false;
+      for (int k = i * kSamplesPerSweep; k < (i + 1) * kSamplesPerSweep; ++k) {
+        ImuSample sample = test::room_tumble().imu[static_cast<std::size_t>(k)];
+        of_no_use = seconds(sample.time_ns) > motion.rest_s;
+        if (of_no_use) sample.specific_force_m_s2 = read;
+        EXPECT_TRUE(odometry.add_imu(sample, test::believe(sample)).ok());
+      }
+      if (of_no_use && left_out) odometry.leave_out_force();
+      EXPECT_TRUE(add_sweep(odometry, i, test::room_tumble().sweeps[static_cast<std::size_t>(i)], report).ok());
+      worst = std::max(worst, error_of(report.pose).m);
+    }
+    return worst;
+  };
+  for (const Eigen::Vector3d& read : {Eigen::Vector3d(0.0, 0.0, 0.0), Eigen::Vector3d(100.0, -100.0, 100.0)}) {
+    const double with = worst_m(read, false), without = worst_m(read, true);
+    EXPECT_LT(without, 0.08);
+    EXPECT_LT(without, 0.5 * with) << with;
+  }
+  EXPECT_EQ(worst_m(Eigen::Vector3d::Zero(), true), worst_m(Eigen::Vector3d(1.0, 2.0, 3.0), true))
+      << "what it reads has no part in it";
+}
+
 TEST(LidarInertialOdometry, LevelsAtRest) {
   // a tilted start: gravity tells roll and pitch, yaw is zero
   const Eigen::Quaterniond q_true = so3::exp({0.0, 0.3, 0.0}) * so3::exp({0.2, 0.0, 0.0});

@@ -67,6 +67,9 @@ class LidarInertialOdometry {
   /// about it, to be weighed against what the IMU tells (check_reading); in the place of add_velocity, or of one
   /// before. One of another time changes nothing.
   Status add_reading(const OdometerReading& reading);
+  /// What the accelerometer reads within the next sweep is of no use: the velocity goes on as over a gap, and the gyro
+  /// counts. In the place of what was said of that sweep before.
+  void leave_out_force();
 
   /// Registers a sweep of points fired in [start_ns, end_ns]; sweeps do not overlap. Returns that are NaN are misses.
   ///
