@@ -183,8 +183,9 @@ TEST(OdometerReading, OfAVelocityIsTheJointUpdateByDifferences) {
 
 TEST(OdometerReading, OfAMotionIsTheJointUpdateByDifferences) {
   constexpr double kScale = 1e-6;
-  for (const auto& [from_ns, to_ns] :
-       {std::pair(kStart_ns, kEnd_ns), std::pair(kStart_ns + 21'000'000, kStart_ns + 64'000'000)}) {
+  using Span = std::pair<TimeNs, TimeNs>;
+  for (const Span& span : {Span(kStart_ns, kEnd_ns), Span(kStart_ns + 21'000'000, kStart_ns + 64'000'000)}) {
+    const TimeNs from_ns = span.first, to_ns = span.second;
     SCOPED_TRACE(from_ns);
     Case c(kScale);
     MotionReading reading;

@@ -12,6 +12,7 @@
 #include "tumble/common/pose.hpp"
 #include "tumble/common/status.hpp"
 #include "tumble/mapping/calibration.hpp"
+#include "tumble/mapping/detail/odometer_reading.hpp"
 #include "tumble/mapping/lidar.hpp"
 #include "tumble/mapping/detail/odometer_reading.hpp"
 #include "tumble/mapping/odometry_params.hpp"

@@ -6,8 +6,8 @@
 #include <optional>
 #include <vector>
 
-#include "tumble/mapping/lidar.hpp"
 #include "tumble/mapping/detail/odometer_reading.hpp"
+#include "tumble/mapping/lidar.hpp"
 #include "tumble/mapping/sweep_trajectory.hpp"
 
 namespace tumble {
