@@ -14,7 +14,6 @@
 #include "tumble/mapping/calibration.hpp"
 #include "tumble/mapping/detail/odometer_reading.hpp"
 #include "tumble/mapping/lidar.hpp"
-#include "tumble/mapping/detail/odometer_reading.hpp"
 #include "tumble/mapping/odometry_params.hpp"
 #include "tumble/mapping/sweep_report.hpp"
 
