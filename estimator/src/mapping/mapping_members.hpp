@@ -92,7 +92,6 @@ void LidarInertialOdometry::Impl::members(Self& s, Visitor& visit) {
   visit("local map", s.map);
   visit("world", s.world);
   visit("other", s.other);
-  visit("other_is_inertia", s.other_is_inertia);
   visit.scratch(s.scratch);
 }
 

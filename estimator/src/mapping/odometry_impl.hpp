@@ -69,7 +69,7 @@ struct LidarInertialOdometry::Impl {
   /// Of a lost sensor, where nothing but the IMU is known of its motion.
   void stop_at_rest(const mapping::MotionWindow& motion, const mapping::Border& from,
                     mapping::Prediction& prediction) const;
-  void carry_on_other(const mapping::MotionWindow& motion);
+  void carry_on_other(const mapping::MotionWindow& motion, bool doubted_before);
   void go_back_to_inertia();
   /// Of one who is lost: where a place that was contradicted has the border; null where there was none.
   const MotionState* by_the_place() const;
@@ -99,7 +99,6 @@ struct LidarInertialOdometry::Impl {
   mapping::LocalMap map;
   mapping::WorldCovariance world;
   std::optional<mapping::DeadReckoning> other;  // while a place found again is not borne out, or one was contradicted
-  bool other_is_inertia = false;                // in the first case
   mapping::SweepScratch scratch;
 };
 

@@ -35,8 +35,8 @@ Status check_window(const mapping::LagWindow& window, std::size_t length) {
 
 Status LidarInertialOdometry::Impl::check_other() const {
   if (!other) return {};
-  if (other_is_inertia != mapping::is_to_be_borne_out(tracking))
-    return {Trouble::out_of_range, "other_is_inertia", double(other_is_inertia), double(!other_is_inertia)};
+  if (!mapping::is_to_be_borne_out(tracking) && !mapping::is_lost(tracking))
+    return {Trouble::out_of_range, "other", 1.0, 0.0};
   if (other->drawn_from > map.sweeps())
     return {Trouble::out_of_range, "alone.drawn_from", double(other->drawn_from), double(map.sweeps())};
   for (const mapping::WindowSweep& sweep : other->window.sweeps()) {

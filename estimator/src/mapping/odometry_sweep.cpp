@@ -163,9 +163,10 @@ std::vector<InsertedPoint> LidarInertialOdometry::Impl::insert(const UpdatedSwee
 void LidarInertialOdometry::Impl::carry_on(const UpdatedSweep& sweep, const Placed& placed, const MotionWindow& motion,
                                            std::vector<InsertedPoint> inserted, SweepReport& report) {
   const Registration::Result* aligned = placed.alignment ? &*placed.alignment : nullptr;
+  const bool doubted_before = mapping::is_to_be_borne_out(tracking);
   tracking = mapping::after_sweep(tracking, placed.placement, placed.verdict);
   report.unconfirmed = mapping::is_to_be_borne_out(tracking);
-  carry_on_other(motion);
+  carry_on_other(motion, doubted_before);
   report.lost_sweeps = mapping::lost_sweeps(tracking);
   if (aligned && placed.verdict == SweepVerdict::degenerate && motion.resting_sweeps == 0)
     world.add_drift(report.weakest_sigma_m, report.weakest_direction);
@@ -202,11 +203,9 @@ void LidarInertialOdometry::Impl::forget_until(TimeNs end_ns) {
 
 /// Where there is a second opinion it goes on by inertia: beside a place found again, what stands without it; beside
 /// one who is lost again, the place that was contradicted.
-void LidarInertialOdometry::Impl::carry_on_other(const MotionWindow& motion) {
-  const bool found_again = mapping::is_to_be_borne_out(tracking), begins = found_again && !other_is_inertia;
-  other_is_inertia = found_again;
-  if (!found_again && !(other && mapping::is_lost(tracking))) return other.reset();
-  if (begins) {
+void LidarInertialOdometry::Impl::carry_on_other(const MotionWindow& motion, bool doubted_before) {
+  const bool doubted = mapping::is_to_be_borne_out(tracking);
+  if (doubted && !doubted_before) {
     mapping::DeadReckoning& from_here = other.emplace();  // in its place: too large for the stack
     from_here.border = border;
     from_here.window = window;
@@ -214,6 +213,8 @@ void LidarInertialOdometry::Impl::carry_on_other(const MotionWindow& motion) {
     from_here.world = world;
     from_here.drawn_from = map.sweeps() - 1;
   }
+  if (!doubted && !mapping::is_lost(tracking)) other.reset();
+  if (!other) return;
   mapping::Border& alone = other->border;
   const Registration::Estimate& before = alone.belief.mean;
   SweepTrajectory trajectory;
@@ -240,7 +241,6 @@ void LidarInertialOdometry::Impl::go_back_to_inertia() {
   other->window.forget_inserted();
   std::swap(world, other->world);
   tracking = mapping::given_up(tracking);
-  other_is_inertia = false;
 }
 
 const MotionState* LidarInertialOdometry::Impl::by_the_place() const {
