@@ -38,9 +38,9 @@ Status LidarInertialOdometry::Impl::check_other() const {
   if (!mapping::is_to_be_borne_out(tracking) && !mapping::is_lost(tracking))
     return {Trouble::out_of_range, "other", 1.0, 0.0};
   if (other->drawn_from > map.sweeps())
-    return {Trouble::out_of_range, "alone.drawn_from", double(other->drawn_from), double(map.sweeps())};
+    return {Trouble::out_of_range, "other.drawn_from", double(other->drawn_from), double(map.sweeps())};
   for (const mapping::WindowSweep& sweep : other->window.sweeps()) {
-    if (!sweep.inserted.empty()) return {Trouble::out_of_range, "alone.inserted", double(sweep.inserted.size()), 0.0};
+    if (!sweep.inserted.empty()) return {Trouble::out_of_range, "other.inserted", double(sweep.inserted.size()), 0.0};
   }
   return check_window(other->window, window.length());
 }

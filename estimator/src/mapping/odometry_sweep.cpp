@@ -235,7 +235,7 @@ void LidarInertialOdometry::Impl::carry_on_other(const MotionWindow& motion, boo
 /// The place found again was none: what it drew is taken from the map, and inertia stands. A little off it is one to
 /// search from.
 void LidarInertialOdometry::Impl::go_back_to_inertia() {
-  map.withdraw(other->drawn_from);
+  map.withdraw(std::exchange(other->drawn_from, 0));  // numbers change as the map is pruned
   std::swap(border, other->border);
   std::swap(window, other->window);
   other->window.forget_inserted();
