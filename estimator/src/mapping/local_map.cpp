@@ -39,29 +39,42 @@ class PoseVariance {
 
 }  // namespace
 
-std::size_t LocalMap::insert(const Params& params, const SweepTrajectory& trajectory,
-                             const Registration::Matrix& covariance, std::span<const SweepPoint> points,
-                             bool rings_differ, const Registration& noise, std::vector<InsertedPoint>& inserted) {
+std::size_t LocalMap::insert(const Params& params, const SweepToInsert& sweep, const Registration& noise,
+                             std::vector<InsertedPoint>& inserted) {
+  const SweepTrajectory& trajectory = sweep.trajectory;
+  const std::span<const SweepPoint> points = sweep.points;
   compute_levers(trajectory, points, levers_W_m_);
-  const PoseVariance of_pose(covariance, trajectory);
-  const std::uint32_t sweep = static_cast<std::uint32_t>(seen_from_W_m_.size());
+  const PoseVariance of_pose(sweep.covariance, trajectory);
+  const std::uint32_t number = sweeps();
   const MotionState middle = trajectory.state(0.5 * trajectory.duration_s());
-  const std::uint32_t line = scan_lines_.base(middle.q_WI * params.T_IL.linear().col(2), rings_differ);
+  const std::uint32_t line = scan_lines_.base(middle.q_WI * params.T_IL.linear().col(2), sweep.rings_differ);
+  const double moved_m = (trajectory.base_m(trajectory.duration_s()) - trajectory.base_m(0.0)).norm();
+  sight_.start(middle.p_WI_m.cast<float>(), static_cast<float>(0.5 * moved_m));
   std::size_t added = 0;
   for (std::size_t i = 0; i < points.size(); ++i) {
     const Eigen::Vector3f position = levers_W_m_[i] + trajectory.base_m(points[i].t_s).cast<float>();
+    sight_.add(position);
     if (map_.is_taken(position)) continue;  // most are
     // mapping.md (R53)
     const double sigma_m = std::sqrt(noise.point_variance_m2(points[i]) + of_pose.at_m2(points[i]));
     if (sigma_m > params.expert.map.sigma_max_m) continue;
     const std::uint32_t index =
-        map_.add(position, static_cast<float>(sigma_m), sweep, ScanLines::line(line, points[i].ring));
+        map_.add(position, static_cast<float>(sigma_m), number, ScanLines::line(line, points[i].ring));
     if (index == VoxelMap::kNoPoint) continue;
     ++added;
     if (params.expert.window_sweeps > 1) inserted.push_back({index, points[i]});
   }
   seen_from_W_m_.push_back(middle.p_WI_m.cast<float>());
+  if (sweep.sure_of_place) look_through(sight_);
   return added;
+}
+
+void LocalMap::look_through(const SightGrid& sight) {
+  for (std::uint32_t index = 0; index < map_.index_end(); ++index) {
+    if (!map_.exists(index)) continue;
+    const SightGrid::Verdict verdict = sight.verdict(map_.position_W_m(index), map_.sigma_m(index));
+    if (verdict != SightGrid::Verdict::unknown) map_.count_sight(index, verdict == SightGrid::Verdict::seen_through);
+  }
 }
 
 void LocalMap::move(const SweepTrajectory& trajectory, const Eigen::Isometry3d& T_IL, double later_s,

@@ -4,6 +4,7 @@
 #include <span>
 #include <vector>
 
+#include "sight_grid.hpp"
 #include "tumble/mapping/deskew.hpp"
 #include "tumble/mapping/detail/map_drawing.hpp"
 #include "tumble/mapping/lidar_inertial_odometry.hpp"
@@ -18,6 +19,15 @@ struct InsertedPoint {
   SweepPoint point;     ///< by the calibration that it was inserted with
 };
 
+/// A sweep that goes into the map.
+struct SweepToInsert {
+  const SweepTrajectory& trajectory;
+  const Registration::Matrix& covariance;  ///< of its unknowns
+  std::span<const SweepPoint> points;
+  bool rings_differ;
+  bool sure_of_place;  ///< what it saw through may be held against the map
+};
+
 /// The map about the sensor: its points, where each was seen from, and the scan lines that they lie on.
 class LocalMap {
  public:
@@ -28,10 +38,9 @@ class LocalMap {
   const VoxelMap& voxels() const { return map_; }
   bool empty() const { return map_.size() == 0; }
 
-  /// Adds the points of a sweep that moved along `trajectory`, whose unknowns have that covariance; `inserted` gets
-  /// those that were added, appended. `noise` tells a return's own variance.
-  std::size_t insert(const Params& params, const SweepTrajectory& trajectory, const Registration::Matrix& covariance,
-                     std::span<const SweepPoint> points, bool rings_differ, const Registration& noise,
+  /// Adds the points of a sweep; `inserted` gets those that were added, appended. `noise` tells a return's own
+  /// variance. A sweep that is sure of its place is held against each point of the map: O(points of the map).
+  std::size_t insert(const Params& params, const SweepToInsert& sweep, const Registration& noise,
                      std::vector<InsertedPoint>& inserted);
   /// Moves points to where their sweep is now known to have seen them, with `later_s` added to their times, mapping.md
   /// (R3).
@@ -56,11 +65,15 @@ class LocalMap {
   static void members(Self& s, Visitor& visit);
 
  private:
+  /// Holds each point against how far the sweep saw.
+  void look_through(const SightGrid& sight);
+
   VoxelMap map_;
   std::vector<Eigen::Vector3f> seen_from_W_m_;  // per sweep that gave points
   Eigen::Vector3f pruned_at_W_m_ = Eigen::Vector3f::Zero();
   ScanLines scan_lines_;
   std::vector<Eigen::Vector3f> levers_W_m_;  // memory
+  SightGrid sight_;                          // memory
 };
 
 }  // namespace tumble::mapping

@@ -9,6 +9,8 @@ namespace {
 
 constexpr double kSameLineCosine = 0.9988;  // 0.05 rad, less than the angle between two rings
 constexpr int kRingBits = 16;
+// Sweeps that saw through a point's place before it is left out: one may be wrong about an edge.
+constexpr std::uint8_t kSeenThrough = 2;
 
 }  // namespace
 
@@ -27,7 +29,7 @@ std::vector<MapPoint> with_normals(const VoxelMap& map, std::span<const Eigen::V
   out.reserve(map.size());
   Neighbours found;
   for (std::uint32_t index = 0; index < map.index_end(); ++index) {
-    if (!map.exists(index)) continue;
+    if (!map.exists(index) || map.seen_through(index) >= kSeenThrough) continue;
     MapPoint& point = out.emplace_back();
     point.position_W_m = map.position_W_m(index);
     point.sigma_m = map.sigma_m(index);

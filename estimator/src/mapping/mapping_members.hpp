@@ -75,6 +75,7 @@ void LocalMap::members(Self& s, Visitor& visit) {
   visit("map.pruned_at_W_m", s.pruned_at_W_m_);
   visit("map.scan_lines", s.scan_lines_);
   visit.scratch(s.levers_W_m_);
+  visit.scratch(s.sight_);
 }
 
 }  // namespace mapping

@@ -60,7 +60,7 @@ struct LidarInertialOdometry::Impl {
   mapping::Belief update(const mapping::MotionWindow& motion, const mapping::Placed& placed,
                          mapping::Prediction& prediction) const;
   std::vector<mapping::InsertedPoint> insert(const mapping::UpdatedSweep& sweep, mapping::SweepPoints& points,
-                                             bool rings_differ, SweepReport& report);
+                                             bool rings_differ, const mapping::Placed& placed, SweepReport& report);
   void carry_on(const mapping::UpdatedSweep& sweep, const mapping::Placed& placed, const mapping::MotionWindow& motion,
                 std::vector<mapping::InsertedPoint> inserted, SweepReport& report);
   /// Of a sweep that went on from there.

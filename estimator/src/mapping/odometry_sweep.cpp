@@ -60,7 +60,7 @@ Status LidarInertialOdometry::Impl::add_sweep(TimeNs start_ns, TimeNs end_ns, st
   // where the map had nothing to say the prior draws on: points that it leaves too uncertain stay out by themselves
   std::vector<InsertedPoint> inserted;
   if (placed->verdict != SweepVerdict::rejected || placed->map_says_nothing)
-    inserted = insert(sweep, points, counts.rings_differ, report);
+    inserted = insert(sweep, points, counts.rings_differ, *placed, report);
   carry_on(sweep, *placed, motion, std::move(inserted), report);
   return points_status;
 }
@@ -146,14 +146,17 @@ void LidarInertialOdometry::Impl::stop_at_rest(const MotionWindow& motion, const
 }
 
 std::vector<InsertedPoint> LidarInertialOdometry::Impl::insert(const UpdatedSweep& sweep, mapping::SweepPoints& points,
-                                                               bool rings_differ, SweepReport& report) {
+                                                               bool rings_differ, const Placed& placed,
+                                                               SweepReport& report) {
   const Belief& before = border.belief;
   if (mapping::unknowns::variances(before.weight, mapping::unknowns::calibration).maxCoeff() > 0.0) {
     const SweepCalibration& now = sweep.start.mean.calibration;
     points.move(now, now.time_offset_s - before.mean.calibration.time_offset_s);
   }
   std::vector<InsertedPoint> inserted;
-  report.map_points_added = map.insert(params, sweep.trajectory, sweep.start.weight, points.all(), rings_differ,
+  const bool sure = placed.verdict == SweepVerdict::registered && !mapping::is_lost(tracking) &&
+                    !mapping::is_to_be_borne_out(tracking);
+  report.map_points_added = map.insert(params, {sweep.trajectory, sweep.start.weight, points.all(), rings_differ, sure},
                                        scratch.aligner.registration(), inserted);
   return inserted;
 }

@@ -144,6 +144,7 @@ std::uint32_t VoxelMap::new_chunk(std::uint32_t& first) {
   sigma_m_.resize(sigma_m_.size() + kChunk, -1.0f);
   sweep_.resize(sweep_.size() + kChunk, 0);
   line_.resize(line_.size() + kChunk, kNoLine);
+  seen_through_.resize(seen_through_.size() + kChunk, 0);
   vacant_ += kChunk;
   return first;
 }
@@ -193,6 +194,11 @@ bool VoxelMap::move(std::uint32_t index, const Eigen::Vector3f& position) {
   return true;
 }
 
+void VoxelMap::count_sight(std::uint32_t index, bool through) {
+  std::uint8_t& count = seen_through_[index];
+  if (through ? count < std::numeric_limits<std::uint8_t>::max() : count > 0) count += through ? 1 : -1;
+}
+
 Eigen::Vector3f VoxelMap::position_W_m(std::uint32_t index) const {
   const Chunk& chunk = chunks_[index / kChunk];
   const std::uint32_t place = index % kChunk;
@@ -214,7 +220,9 @@ std::vector<std::uint32_t> VoxelMap::keep_within(const Eigen::Vector3f& centre, 
   for (std::uint32_t index = 0; index < index_end(); ++index) {
     if (!stays(index)) continue;
     const auto number = std::lower_bound(kept.begin(), kept.end(), sweep_[index]) - kept.begin();
-    near.insert(position_W_m(index), sigma_m_[index], static_cast<std::uint32_t>(number), line_[index]);
+    const std::uint32_t now =
+        near.add(position_W_m(index), sigma_m_[index], static_cast<std::uint32_t>(number), line_[index]);
+    if (now != kNoPoint) near.seen_through_[now] = seen_through_[index];
   }
   *this = std::move(near);
   return kept;
@@ -227,14 +235,16 @@ void VoxelMap::keep_before(std::uint32_t first_sweep) {
     const Eigen::Vector3f position = position_W_m(index);
     // two that were moved into one cube both stay
     if (params_.spacing_m > 0.0) kept.taken_.add(SpatialHash::key(cube_of(position, cubes_per_m_)));
-    kept.put(position, sigma_m_[index], sweep_[index], line_[index]);
+    const std::uint32_t now = kept.put(position, sigma_m_[index], sweep_[index], line_[index]);
+    kept.seen_through_[now] = seen_through_[index];
   }
   *this = std::move(kept);
 }
 
 std::size_t VoxelMap::bytes() const {
   return groups_of_.bytes() + taken_.bytes() + groups_.capacity() * sizeof(Group) + chunks_.capacity() * sizeof(Chunk) +
-         sigma_m_.capacity() * sizeof(float) + (sweep_.capacity() + line_.capacity()) * sizeof(std::uint32_t);
+         sigma_m_.capacity() * sizeof(float) + (sweep_.capacity() + line_.capacity()) * sizeof(std::uint32_t) +
+         seen_through_.capacity();
 }
 
 /// Takes the points of a cell's chunks that are among the k nearest so far; `worst2` is what they must not be beyond.

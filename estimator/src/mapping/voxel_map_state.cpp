@@ -21,6 +21,7 @@ void VoxelMap::save(StateWriter& out) const {
       out("map.sigma_m", sigma_m_[index]);
       out("map.sweep", sweep_[index]);
       out("map.line", line_[index]);
+      out("map.seen_through", seen_through_[index]);
     }
   }
   const std::vector<std::uint64_t> taken = taken_.keys();
@@ -51,10 +52,12 @@ void VoxelMap::load_chunk(StateReader& in) {
     Eigen::Vector3f position_W_m;
     float sigma_m = 0.0f;
     std::uint32_t sweep = 0, line = 0;
+    std::uint8_t seen_through = 0;
     in("map.position_W_m", position_W_m);
     in("map.sigma_m", sigma_m, 0.0, std::numeric_limits<float>::max());
     in("map.sweep", sweep);
     in("map.line", line);
+    in("map.seen_through", seen_through);
     if (!in.going()) return;
     in.require("map.position_W_m", has_room_for(position_W_m), position_W_m.cwiseAbs().maxCoeff(),
                (SpatialHash::kLimit - 2) / double(cubes_per_m_));
@@ -76,12 +79,13 @@ void VoxelMap::load_chunk(StateReader& in) {
     sigma_m_[index] = sigma_m;
     sweep_[index] = sweep;
     line_[index] = line;
+    seen_through_[index] = seen_through;
     --vacant_;
   }
 }
 
 void VoxelMap::describe(StateLayout& out) {
-  const std::uint8_t count = 0;
+  const std::uint8_t count = 0, seen_through = 0;
   const Eigen::Vector3f position_W_m = Eigen::Vector3f::Zero();
   const float sigma_m = 0.0f;
   const std::uint32_t sweep = 0, line = 0;
@@ -91,6 +95,7 @@ void VoxelMap::describe(StateLayout& out) {
   out("map.sigma_m", sigma_m);
   out("map.sweep", sweep);
   out("map.line", line);
+  out("map.seen_through", seen_through);
   out("map.taken", taken);
 }
 

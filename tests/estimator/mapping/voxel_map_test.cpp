@@ -9,6 +9,7 @@
 #include <map>
 #include <vector>
 
+#include "estimator/src/common/state_bytes.hpp"
 #include "tests/estimator/mapping/synthetic_room.hpp"
 #include "tumble/common/status.hpp"
 #include "tumble/mapping/plane_fit.hpp"
@@ -213,6 +214,36 @@ TEST(VoxelMap, TakesBackTheNewestSweepsAndKeepsTheOthersAsTheyWere) {
   const std::uint32_t taken_back = 3;
   for (std::uint32_t index = 0; index < all.index_end(); ++index)
     EXPECT_TRUE(!all.exists(index) || all.sweep(index) < taken_back);
+}
+
+TEST(VoxelMap, CountsWhatIsSeenThroughAndKeepsTheCount) {
+  VoxelMap map({0.5, 0.1});
+  for (std::uint64_t i = 0; i < 400; ++i) map.insert(random_point(i, 6.0f), 0.01f, i < 200 ? 0 : 1);
+  const std::uint32_t marked_at = 16;  // the first of a chunk
+  const Eigen::Vector3f marked = map.position_W_m(marked_at), other = map.position_W_m(0);
+  ASSERT_TRUE(map.exists(marked_at) && map.sweep(marked_at) == 0);
+  map.count_sight(marked_at, false);
+  EXPECT_EQ(map.seen_through(marked_at), 0);
+  for (int k = 0; k < 300; ++k) map.count_sight(marked_at, true);
+  EXPECT_EQ(map.seen_through(marked_at), 255);
+  map.count_sight(marked_at, false);
+
+  const auto count_at = [](const VoxelMap& given, const Eigen::Vector3f& place) {
+    Neighbours found;
+    given.nearest(place, 1, 1e-4f, found);
+    return found.count == 1 ? int{given.seen_through(found.index[0])} : -1;
+  };
+  VoxelMap older = map, near = map, loaded({0.5, 0.1});
+  older.keep_before(1);
+  near.keep_within(marked, 3.0f);
+  std::vector<std::byte> saved;
+  StateWriter writer(saved);
+  map.save(writer);
+  StateReader reader(saved);
+  loaded.load(reader);
+  ASSERT_TRUE(reader.status().ok());
+  for (const VoxelMap* one : {&map, &older, &near, &loaded}) EXPECT_EQ(count_at(*one, marked), 254);
+  EXPECT_EQ(count_at(loaded, other), 0);
 }
 
 }  // namespace

@@ -103,7 +103,7 @@ class LidarInertialOdometry {
   std::size_t map_bytes() const;
 
   /// The map within map_radius_m, with normals from the nearest neighbours that look towards where the point was seen
-  /// from. O(number of points).
+  /// from; without what two sweeps saw through since (people who went on). O(number of points).
   std::vector<MapPoint> map() const;
 
   /// All of it but what the caller gave for its work (`parallel_for`), into one of the same parameters: a state that

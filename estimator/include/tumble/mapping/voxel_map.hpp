@@ -68,6 +68,9 @@ class VoxelMap {
   /// returned.
   bool move(std::uint32_t index, const Eigen::Vector3f& position_W_m);
 
+  /// A sweep saw through the place of a point, or saw the point again: each takes back one of the other.
+  void count_sight(std::uint32_t index, bool through);
+
   /// The k <= Neighbours::kMax nearest points within `radius_m`; equal distances in order of insertion within a cell.
   /// Exact. Does not allocate; cost grows with the number of cells that the final radius touches.
   void nearest(const Eigen::Vector3f& query_W_m, int k, float radius_m, Neighbours& found) const;
@@ -82,7 +85,7 @@ class VoxelMap {
   /// Memory held [bytes].
   std::size_t bytes() const;
 
-  /// The points, and which cubes of the spacing are taken: 24 bytes a point and 8 a cube. What finds them is built
+  /// The points, and which cubes of the spacing are taken: 25 bytes a point and 8 a cube. What finds them is built
   /// anew.
   void save(StateWriter& out) const;
   /// In place of what there is, into a map of the same parameters. Trouble of the reader: `out_of_range` where points
@@ -99,6 +102,8 @@ class VoxelMap {
   std::uint32_t sweep(std::uint32_t index) const { return sweep_[index]; }
   /// Scan line of a point: returns of one ring while the sensor holds its attitude share a number.
   std::uint32_t line(std::uint32_t index) const { return line_[index]; }
+  /// Sweeps that saw through its place, less those that saw it; at most 255, at least 0.
+  std::uint8_t seen_through(std::uint32_t index) const { return seen_through_[index]; }
 
  private:
   static constexpr int kChunk = 16;
@@ -135,6 +140,7 @@ class VoxelMap {
   std::vector<Chunk> chunks_;
   std::vector<float> sigma_m_;  // per place in the chunks; negative: free
   std::vector<std::uint32_t> sweep_, line_;
+  std::vector<std::uint8_t> seen_through_;
   std::size_t vacant_ = 0;
 };
 

@@ -1,0 +1,81 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "sight_grid.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace tumble::mapping {
+
+namespace {
+
+// Ranges over the sensor's way to each side from which on returns, which are sorted in by their direction from one
+// place, are off by less than the bins that are asked beside: 0.1 rad.
+constexpr float kMovedToRange = 10.0f;
+constexpr int kEmptyMost = 4;  // of nine bins: rings lie wider apart than bins
+// How far beyond a point all returns lie that saw through it: what a float of the ground between two sweeps' poses
+// and a return's own noise may amount to, and what the ground falls away within a bin.
+constexpr float kBeyond_m = 0.3f, kBeyondShare = 0.03f;
+constexpr float kDeviations = 3.0f;
+
+}  // namespace
+
+void SightGrid::start(const Eigen::Vector3f& from_W_m, float moved_m) {
+  from_W_m_ = from_W_m;
+  least_m_ = kMovedToRange * moved_m;
+  nearest_m_.assign(std::size_t{6} * kBins * kBins, std::numeric_limits<float>::infinity());
+}
+
+/// None of the place itself, and of what is not finite.
+std::optional<SightGrid::Direction> SightGrid::direction(const Eigen::Vector3f& lever_m) {
+  Eigen::Index axis = 0;
+  const float along = lever_m.cwiseAbs().maxCoeff(&axis);
+  if (!(along > 0.0f) || !std::isfinite(along)) return std::nullopt;
+  const auto bin = [&](Eigen::Index across) {
+    const float share = 0.5f * (lever_m[(axis + across) % 3] / along + 1.0f);
+    return std::min(static_cast<int>(share * kBins), kBins - 1);
+  };
+  return Direction{2 * static_cast<int>(axis) + (lever_m[axis] < 0.0f ? 1 : 0), bin(1), bin(2)};
+}
+
+void SightGrid::add(const Eigen::Vector3f& return_W_m) {
+  const Eigen::Vector3f lever_m = return_W_m - from_W_m_;
+  const std::optional<Direction> towards = direction(lever_m);
+  if (!towards) return;
+  float& nearest_m = nearest_m_[towards->bin()];
+  nearest_m = std::min(nearest_m, lever_m.norm());
+}
+
+/// The range that all returns about a direction reach; 0 where too few returned, or the cube ends.
+float SightGrid::free_m(const Direction& towards) const {
+  float nearest_m = std::numeric_limits<float>::infinity();
+  int empty = 0;
+  for (int v = towards.v - 1; v <= towards.v + 1; ++v) {
+    for (int u = towards.u - 1; u <= towards.u + 1; ++u) {
+      if (u < 0 || v < 0 || u >= kBins || v >= kBins) return 0.0f;
+      const float beside_m = nearest_m_[Direction{towards.face, u, v}.bin()];
+      if (std::isfinite(beside_m)) {
+        nearest_m = std::min(nearest_m, beside_m);
+      } else if (++empty > kEmptyMost) {
+        return 0.0f;
+      }
+    }
+  }
+  return nearest_m;
+}
+
+/// mapping.md (R122).
+SightGrid::Verdict SightGrid::verdict(const Eigen::Vector3f& point_W_m, float sigma_m) const {
+  const Eigen::Vector3f lever_m = point_W_m - from_W_m_;
+  const float range_m = lever_m.norm();
+  if (!(range_m > least_m_)) return Verdict::unknown;
+  const std::optional<Direction> towards = direction(lever_m);
+  if (!towards) return Verdict::unknown;
+  const float beyond_m = kBeyond_m + kBeyondShare * range_m + kDeviations * sigma_m;
+  const float there_m = nearest_m_[towards->bin()];
+  if (there_m > range_m + beyond_m)  // of all but few points this says enough
+    return free_m(*towards) > range_m + beyond_m ? Verdict::seen_through : Verdict::unknown;
+  return there_m > range_m - beyond_m ? Verdict::seen : Verdict::unknown;
+}
+
+}  // namespace tumble::mapping
