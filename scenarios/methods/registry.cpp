@@ -37,6 +37,7 @@ std::vector<Method> all_methods() {
       attitude_autogain(),
       attitude_vqf(),
       attitude_tumble(),
+      attitude_tumble_lag(),
       attitude_tumble_batch(),
       attitude_oracle(),
       position_rolling(),  // the first of a kind is what the others are held against, where no raw one is

@@ -41,6 +41,7 @@ Method attitude_eskf();
 Method attitude_autogain();
 Method attitude_vqf();
 Method attitude_tumble();
+Method attitude_tumble_lag();
 Method attitude_tumble_batch();
 Method attitude_oracle();
 Method position_double_integration();
