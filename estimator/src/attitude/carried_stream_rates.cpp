@@ -75,7 +75,7 @@ RateState CarriedStream::to_rate(const Reading& reading, const State& state, con
   return out;
 }
 
-// Whether reading `at`, which is being given out, makes its stretch one that may hide a whole turn: carried.md (C44).
+// Whether reading `at`, which is being given out, makes its segment one that may hide a whole turn: carried.md (C44).
 void CarriedStream::count_revolutions(std::size_t at, const RateState& rate, State& state) const {
   const Reading& reading = state.readings[at];
   const double since_s = at > 0 ? reading.end_s - state.readings[at - 1].end_s : params_.period_s;

@@ -32,7 +32,7 @@ CarriedStream::Params calm_hand(double lag_s) {
 
 /// One clipped sample: error of the rate about the spin's axis, and its stated deviation.
 struct HiddenRate {
-  double error_rad_s = 0.0, sigma_rad_s = 0.0, at = 0.0;  ///< `at`: share of the stretch that has passed
+  double error_rad_s = 0.0, sigma_rad_s = 0.0, at = 0.0;  ///< `at`: share of the segment that has passed
 };
 
 struct LiveSpin {
@@ -78,13 +78,13 @@ double once_more(double lasts_s) {
   return 4.0 * std::numbers::pi / lasts_s;
 }
 
-/// Deviation in the middle of a stretch at whose ends rate, angular acceleration and angle are known: carried.md (C43).
+/// Deviation in the middle of a segment at whose ends rate, angular acceleration and angle are known: carried.md (C43).
 double closed_form_sigma(const CarriedStream::Params& params, double lasts_s) {
   const double q = std::pow(params.body.expert.jerk_inflation * params.body.jerk_rad_s3_sqrts, 2.0);
   return std::sqrt(q * std::pow(lasts_s + 1.0 / SpinReadings::kHz, 3.0) * (1.0 / 192.0 - 720.0 / (384.0 * 384.0)));
 }
 
-/// A whole turn more, a half or none, in a stretch in which white jerk makes any of them: what is stated holds them,
+/// A whole turn more, a half or none, in a segment in which white jerk makes any of them: what is stated holds them,
 /// and it is told. Where the rate lay along its rail it was stated to a hundredth of a radian per second, and a quarter
 /// of these samples lay beyond three deviations. What is left is a moment in which the descent is on its way.
 TEST(CarriedRevolutions, ATurnThatNothingTellsIsStated) {
@@ -106,7 +106,7 @@ TEST(CarriedRevolutions, ATurnThatNothingTellsIsStated) {
   EXPECT_LT(static_cast<double>(beyond), 0.03 * static_cast<double>(all));
 }
 
-/// Where all of the stretch is in the window, the deviation is that of the jerk between what is known on either side,
+/// Where all of the segment is in the window, the deviation is that of the jerk between what is known on either side,
 /// along the rail as well as far beyond it.
 TEST(CarriedRevolutions, ABoundSaysNothingOfHowFar) {
   const CarriedStream::Params params = calm_hand(0.6);
@@ -120,8 +120,8 @@ TEST(CarriedRevolutions, ABoundSaysNothingOfHowFar) {
   }
 }
 
-/// Negative controls: a stretch too short for a turn hides none, and one in which gravity is seen to turn is known.
-TEST(CarriedRevolutions, AShortStretchAndOneThatIsSeenAreNotOpen) {
+/// Negative controls: a segment too short for a turn hides none, and one in which gravity is seen to turn is known.
+TEST(CarriedRevolutions, AShortSegmentHidesNoTurn) {
   const LiveSpin brief({.more_rad_s = 3.0, .from_s = 2.0, .lasts_s = 0.15, .duration_s = 4.5}, calm_hand(0.2));
   EXPECT_EQ(brief.revolutions_open, 0u);
   EXPECT_LT(brief.middle().sigma_rad_s, 1.5);

@@ -24,7 +24,7 @@ namespace tumble {
 /// Differs from the batch: while nothing in the window clips, only each fifth node is a step; the first attitude stands
 /// on one force and not on a filter; the hand's liveliness follows the nodes that have left, with the memory
 /// `hand_window_s` / 2, and not the time to come; whole turns are not asked for, their deviation is stated and the
-/// stretches that may hide one are counted (C43, C44 of carried.md); readings that have left were read with
+/// segments that may hide one are counted (C43, C44 of carried.md); readings that have left were read with
 /// the rails known then; the prior of the past keeps the assumed jerk where covariances are those of a larger one.
 /// Work: one step per node that begins, O(window).
 class CarriedStream {
@@ -78,10 +78,10 @@ class CarriedStream {
     std::int64_t start_ns = 0;
     std::size_t samples = 0;
     std::size_t failures = 0;  ///< steps whose system was not positive definite and was skipped
-    /// Of the stretch in which each element of the gyro is clipped now, as far as it was given out: how long it is, and
+    /// Of the segment in which each element of the gyro is clipped now, as far as it was given out: how long it is, and
     /// the integral of the rate's deviation.
     Eigen::Vector3d hidden_s = Eigen::Vector3d::Zero(), hidden_rad = Eigen::Vector3d::Zero();
-    std::size_t revolutions_open = 0;          ///< stretches in which a whole turn more was not excluded
+    std::size_t revolutions_open = 0;          ///< segments in which a whole turn more was not excluded
     std::vector<carried::System::Block> work;  ///< scratch space, no part of the state proper
   };
 
