@@ -148,6 +148,7 @@ Estimate rates_of_stream(const sim::Sensors& sensors, const sim::Values& paramet
   estimate.health["regime_carried_joined"] = static_cast<double>(all.joined);
   estimate.health["regime_carried_starts"] = static_cast<double>(all.starts);
   estimate.health["carried_steps_skipped"] = static_cast<double>(all.carried.failures);
+  estimate.health["carried_revolutions_open"] = static_cast<double>(all.carried.revolutions_open);
   if (estimate.status.ok() && found != nullptr) {
     if (std::optional<LearntRig> rig = learnt_by(stream, params.rate, given, at_prior, state)) *found = std::move(rig);
   }

@@ -204,7 +204,7 @@ double add_force(const NodeReadings& readings, const Vector3d& g_W_m_s2, const R
       const double sigma = std::sqrt(variance);
       const double u = readings.force_bound[i] * error / sigma;
       const double h = hazard(u);
-      weight[i] = h * (h + u) / variance;
+      weight[i] = noise.force_bound * h * (h + u) / variance;
       slope[i] = -readings.force_bound[i] * h / sigma;
       cost += minus_two_log_phi(u);
     } else {

@@ -112,6 +112,8 @@ void CarriedStream::restart(State& state) const {
   fresh.work.swap(state.work);
   fresh.readings.clear();
   fresh.window.clear();
+  fresh.failures = state.failures;
+  fresh.revolutions_open = state.revolutions_open;
   state = std::move(fresh);
 }
 
@@ -146,7 +148,9 @@ Status CarriedStream::push(const ImuSample& sample, const ClippedElements& known
   const bool factorised = due && step(state);
   if (due && !factorised) ++state.failures;
   if (wanted && state.readings.size() > delay_) {
-    out = give(state.readings.size() - 1 - delay_, due, due && factorised, state);
+    const std::size_t at = state.readings.size() - 1 - delay_;
+    out = give(at, due, due && factorised, state);
+    count_revolutions(at, *out, state);
   }
   return {};
 }
@@ -345,10 +349,10 @@ void CarriedStream::forget_readings(State& state) const {
 }
 
 // carried.md (C14), (C15)
-bool CarriedStream::factorise(const carried::Motion& motion, State& state, System::BorderVector& step) const {
+bool CarriedStream::factorise(const carried::Motion& motion, const carried::ReadingNoise& noise, State& state,
+                              System::BorderVector& step) const {
   const std::size_t count = state.window.size();
   const double lively = hand(state);
-  const carried::ReadingNoise noise = noise_of(state);
   System::Corner corner;
   state.work[0] = {};
   add_prior(state, state.work[0], corner);
@@ -370,7 +374,7 @@ bool CarriedStream::factorise(const carried::Motion& motion, State& state, Syste
 // carried.md (C16)
 bool CarriedStream::step(State& state) const {
   System::BorderVector border;
-  if (!factorise(motion_, state, border)) return false;
+  if (!factorise(motion_, noise_of(state), state, border)) return false;
   double turn = 0.0;
   for (std::size_t i = state.window.size(); i-- > 0;) {
     System::StateVector* const next = i + 1 < state.window.size() ? &state.work[i + 1].gradient : nullptr;

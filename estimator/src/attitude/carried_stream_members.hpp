@@ -102,6 +102,9 @@ void members(Self& s, Visitor& visit) {
   visit("carried.start_ns", s.start_ns);
   visit("carried.samples", s.samples);
   visit("carried.failures", s.failures);
+  visit("carried.hidden_s", s.hidden_s);
+  visit("carried.hidden_rad", s.hidden_rad);
+  visit("carried.revolutions_open", s.revolutions_open);
   visit.scratch(s.work);
 }
 

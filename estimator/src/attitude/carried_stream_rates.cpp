@@ -3,8 +3,10 @@
 #include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 #include "carried_problem.hpp"
+#include "revolution_hypotheses.hpp"
 #include "tumble/attitude/carried_stream.hpp"
 
 namespace tumble {
@@ -73,7 +75,28 @@ RateState CarriedStream::to_rate(const Reading& reading, const State& state, con
   return out;
 }
 
-// Rates of the readings [first, last], with their covariances: near to clipped nodes those of carried.md (C19).
+// Whether reading `at`, which is being given out, makes its segment one that may hide a whole turn: carried.md (C44).
+void CarriedStream::count_revolutions(std::size_t at, const RateState& rate, State& state) const {
+  const Reading& reading = state.readings[at];
+  const double since_s = at > 0 ? reading.end_s - state.readings[at - 1].end_s : params_.period_s;
+  const auto open = [&](Eigen::Index j) {
+    return state.hidden_rad[j] > carried::kAngleShare * std::numbers::pi &&
+           carried::revolution_cost(state.hidden_s[j], params_.body.jerk_rad_s3_sqrts) < 2.0 * carried::kLogOdds;
+  };
+  for (Eigen::Index j = 0; j < 3; ++j) {
+    if (reading.signs.gyro[static_cast<std::size_t>(j)] == 0) {
+      state.hidden_s[j] = state.hidden_rad[j] = 0.0;
+      continue;
+    }
+    const Eigen::RowVector3d m = state.rows.row(j);
+    const bool before = open(j);
+    state.hidden_s[j] += since_s;
+    state.hidden_rad[j] += since_s * std::sqrt(std::max(0.0, m.dot(rate.covariance_rad2_s2 * m.transpose())));
+    if (!before && open(j)) ++state.revolutions_open;
+  }
+}
+
+// Rates of the readings [first, last], with their covariances: near to clipped nodes those of carried.md (C19), (C43).
 // `factorised`: the work holds the equations with the jerk that is assumed.
 void CarriedStream::publish(std::size_t first, std::size_t last, bool factorised, State& state,
                             std::span<RateState> out) const {
@@ -86,7 +109,10 @@ void CarriedStream::publish(std::size_t first, std::size_t last, bool factorised
   bool clipped = false;
   for (std::size_t i = from; i < to; ++i) clipped = clipped || carried::clips(state.window[i].readings);
   System::BorderVector unused;
-  const bool known = (factorised && !clipped) || factorise(clipped ? doubted_ : motion_, state, unused);
+  carried::ReadingNoise noise = noise_of(state);
+  // a bound says nothing of how far beyond it a rate or a force lies: carried.md (C43)
+  if (clipped) noise.bound = noise.force_bound = 0.0;
+  const bool known = (factorised && !clipped) || factorise(clipped ? doubted_ : motion_, noise, state, unused);
   System::Conditional here, next;
   Eigen::Matrix3d covariance = kUnknown_rad2_s2 * Eigen::Matrix3d::Identity();
   std::size_t k = last + 1;

@@ -21,11 +21,9 @@ using Vector9 = Eigen::Matrix<double, 9, 1>;
 using Matrix9 = Eigen::Matrix<double, 9, 9>;
 
 constexpr double kPi = std::numbers::pi;
-constexpr double kAngleShare = 1.0 / 3.0;  // of pi: a deviation of the angle that may hide a turn at six sigma
 constexpr double kAgainst = 3.0;           // deviations of the rail beyond it, on the mean of a segment
 constexpr double kRevolutionCost = 100.0;  // of the jerk that makes a turn: ten deviations
 constexpr double kAround_s = 0.3;          // solved with a segment, on either side
-constexpr double kLogOdds = 6.9;           // 1 to 1000: less likely turns are not counted
 constexpr double kTakeLogOdds = 3.0;       // 1 to 20: for a turn that is taken, costs leave out what the model misses
 constexpr int kTurnsMax = 2;               // more or less than the descent says
 constexpr int kRounds = 3;                 // of asking, solving the whole between them
@@ -48,10 +46,9 @@ struct Open {
   std::vector<std::pair<double, std::vector<Node>>> others;
 };
 
-/// Least cost of white jerk for a whole turn more within so many steps, carried.md (C30): 2 pi / T 30 u^2 (1 - u)^2.
+/// Of a turn within so many steps.
 double revolution_cost(const Problem& problem, std::size_t steps) {
-  const double span_s = static_cast<double>(steps) * problem.node_s(), jerk = problem.jerk_rad_s3_sqrts();
-  return 720.0 * std::pow(2.0 * kPi / jerk, 2.0) / std::pow(span_s, 5.0);
+  return carried::revolution_cost(static_cast<double>(steps) * problem.node_s(), problem.jerk_rad_s3_sqrts());
 }
 
 /// carried.md (C30)
@@ -228,6 +225,10 @@ Status solve_again(Problem& problem, CarriedSmoother::Report& report) {
 }
 
 }  // namespace
+
+double revolution_cost(double span_s, double jerk) {
+  return 720.0 * std::pow(2.0 * kPi / jerk, 2.0) / std::pow(span_s, 5.0);
+}
 
 void ask_revolutions(Problem& problem, CarriedSmoother::Report& report) {
   ask_revolutions(problem, report, solve_again);

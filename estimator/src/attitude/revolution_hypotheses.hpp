@@ -5,6 +5,13 @@
 
 namespace tumble::carried {
 
+inline constexpr double kAngleShare = 1.0 / 3.0;  ///< of pi: a deviation of the angle that may hide a turn at six sigma
+inline constexpr double kLogOdds = 6.9;           ///< 1 to 1000: less likely turns are not counted
+
+/// Least cost of white jerk of a root density [rad/s^3 sqrt(s)] for a whole turn more within a time, both ends given:
+/// carried.md (C30), 2 pi / T 30 u^2 (1 - u)^2.
+double revolution_cost(double span_s, double jerk_rad_s3_sqrts);
+
 /// Asks, segment by segment, whether the body turned once more or once less while an element of its gyro was clipped.
 ///
 /// What follows a segment tells its angle but for whole turns: a descent ends at the number of turns next to its start.

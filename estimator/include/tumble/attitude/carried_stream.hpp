@@ -23,7 +23,8 @@ namespace tumble {
 ///
 /// Differs from the batch: while nothing in the window clips, only each fifth node is a step; the first attitude stands
 /// on one force and not on a filter; the hand's liveliness follows the nodes that have left, with the memory
-/// `hand_window_s` / 2, and not the time to come; whole turns are not asked for; readings that have left were read with
+/// `hand_window_s` / 2, and not the time to come; whole turns are not asked for, their deviation is stated and the
+/// segments that may hide one are counted (C43, C44 of carried.md); readings that have left were read with
 /// the rails known then; the prior of the past keeps the assumed jerk where covariances are those of a larger one.
 /// Work: one step per node that begins, O(window).
 class CarriedStream {
@@ -76,7 +77,11 @@ class CarriedStream {
     Eigen::Matrix3d given_covariance_rad2_s2 = Eigen::Matrix3d::Zero();
     std::int64_t start_ns = 0;
     std::size_t samples = 0;
-    std::size_t failures = 0;                  ///< steps whose system was not positive definite and was skipped
+    std::size_t failures = 0;  ///< steps whose system was not positive definite and was skipped
+    /// Of the segment in which each element of the gyro is clipped now, as far as it was given out: how long it is, and
+    /// the integral of the rate's deviation.
+    Eigen::Vector3d hidden_s = Eigen::Vector3d::Zero(), hidden_rad = Eigen::Vector3d::Zero();
+    std::size_t revolutions_open = 0;          ///< segments in which a whole turn more was not excluded
     std::vector<carried::System::Block> work;  ///< scratch space, no part of the state proper
   };
 
@@ -85,7 +90,7 @@ class CarriedStream {
 
   /// A state before the first sample, with all memory that push() needs.
   State start() const;
-  /// Makes of a state one before the first sample, in the memory that it has.
+  /// Makes of a state one before the first sample, in the memory that it has. What it has counted stays.
   void restart(State& state) const;
 
   /// Takes one sample. `known.signs`: of the newest samples as they are known now, this one's last, at least this one;
@@ -119,11 +124,13 @@ class CarriedStream {
   void marginalise_oldest(State& state) const;
   double hand(const State& state) const;
   void add_prior(const State& state, carried::System::Block& block, carried::System::Corner& corner) const;
-  bool factorise(const carried::Motion& motion, State& state, carried::System::BorderVector& step) const;
+  bool factorise(const carried::Motion& motion, const carried::ReadingNoise& noise, State& state,
+                 carried::System::BorderVector& step) const;
   bool step(State& state) const;
   void extend(State& state) const;
   RateState give(std::size_t at, bool due, bool factorised, State& state) const;
   void publish(std::size_t first, std::size_t last, bool factorised, State& state, std::span<RateState> out) const;
+  void count_revolutions(std::size_t at, const RateState& rate, State& state) const;
   RateState to_rate(const Reading& reading, const State& state, const Eigen::Matrix3d& covariance_rad2_s2) const;
 
   Params params_;

@@ -67,6 +67,7 @@ struct ReadingNoise {
   double tilt_share = 0.0;    ///< of a free element while another clips, per rad/s of that one's deficit
   double rail_rad_s = 0.0;    ///< of a rail
   double bound = 1.0;         ///< share of a gyro's bounds that counts as information
+  double force_bound = 1.0;   ///< likewise of an accelerometer's
   double accel_m_s2 = 0.0;    ///< of one reading
   double accel_share = 0.0;   ///< more, per m/s^2 away from gravity
   double rest_rad_s = 0.0;    ///< of the rate at rest, one node
