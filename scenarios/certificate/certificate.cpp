@@ -69,6 +69,8 @@ std::span<const CertificateRow> certificate_rows() {
                      as_certified<certify_imu_noise>},
       CertificateRow{"tilted_rail", "planes of the clipped readings of tilted sensing elements against the drawn ones",
                      as_certified<certify_tilted_rail>},
+      CertificateRow{"real_rails", "planes measured at the rails of real gyros, of simulated devices and as drawn",
+                     as_certified<certify_real_rails>},
       CertificateRow{"pendulum", "energy, periods and specific force of the pendulum against Lagrange's equations",
                      as_certified<certify_pendulum>},
       CertificateRow{"digests", "equal digests for threads, order and restart", as_certified<certify_digests>},

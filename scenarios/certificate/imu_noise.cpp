@@ -3,6 +3,7 @@
 #include <initializer_list>
 
 #include "scenarios/certificate/rows.hpp"
+#include "scenarios/certificate/set_up.hpp"
 #include "scenarios/draw/data_sheet.hpp"
 #include "scenarios/standard_gravity.hpp"
 #include "sim/imu/allan.hpp"
@@ -23,11 +24,7 @@ struct RestReadings {
 /// The device with its noise and bias alone: filters need a faster rate than this one, and the rest is constant at
 /// rest.
 sim::SensorSpec resting(const DataSheet& sheet) {
-  sim::SensorSpec sensor;
-  sensor.name = sheet.device;
-  sensor.kind = sheet.sensor_kind;
-  sensor.device = sheet.device;
-  sensor.values = sim::resolve(sheet.device, sheet.values(), sim::imu_parameters());
+  sim::SensorSpec sensor = imu_of_sheet(sheet);
   for (const char* off :
        {"gyro_bandwidth_hz", "accel_bandwidth_hz", "digital_bandwidth_hz", "gyro_quantum_rad_s", "accel_quantum_m_s2",
         "gyro_precise_quantum_rad_s", "accel_precise_quantum_m_s2", "gyro_window_s", "accel_window_s", "gyro_update_hz",

@@ -93,6 +93,18 @@ struct TiltedRailSetup {
 };
 std::vector<CertificateEntry> certify_tilted_rail(const CertificateInput& input, const TiltedRailSetup& setup = {});
 
+/// The planes measured at the rails of real gyros (a wand, a pendulum): of a simulated device that is given the
+/// elements which belong to them, and against the spread that the sheets of IMUs have elements drawn with.
+struct RealRailsSetup {
+  double tilt_factor = 1.0;         ///< of the slopes that the elements are given; 0: the rail is level
+  double added_tilt = 0.0;          ///< to each of them
+  double rail_factor = 1.0;         ///< of the rail that the device is given
+  double added_offset_rad_s = 0.0;  ///< to the middle between the rails of the two signs
+  double spread_factor = 1.0;       ///< of what the sheets state
+  int devices = 500;                ///< drawn of each sheet
+};
+std::vector<CertificateEntry> certify_real_rails(const CertificateInput& input, const RealRailsSetup& setup = {});
+
 /// The pendulum without friction, swung wildly and gently, against Lagrange's equations of three bars.
 struct PendulumSetup {
   double duration_s = 5.0;

@@ -3,6 +3,8 @@
 
 #include <cmath>
 
+#include "sim/imu/imu_parameters.hpp"
+
 namespace tumble::scenarios {
 
 sim::Situation bare_room(const std::string& robot) {
@@ -46,6 +48,15 @@ sim::Truth fly(sim::Trial& trial, double duration_s) {
     append(trial.state());
   }
   return truth;
+}
+
+sim::SensorSpec imu_of_sheet(const DataSheet& sheet) {
+  sim::SensorSpec sensor;
+  sensor.name = sheet.device;
+  sensor.kind = sheet.sensor_kind;
+  sensor.device = sheet.device;
+  sensor.values = sim::resolve(sheet.device, sheet.values(), sim::imu_parameters());
+  return sensor;
 }
 
 double larger(double a, double b) {

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "scenarios/certificate/certificate.hpp"
+#include "scenarios/draw/data_sheet.hpp"
 #include "sim/built_situation.hpp"
 #include "sim/recording.hpp"
 #include "sim/trial/trial.hpp"
@@ -21,6 +22,9 @@ sim::BodyState thrown(double rate_rad_s);
 
 /// The states of a free flight as the truth of a recording (body alone, no contacts).
 sim::Truth fly(sim::Trial& trial, double duration_s);
+
+/// The IMU of a data sheet, as a sensor that is named after it.
+sim::SensorSpec imu_of_sheet(const DataSheet& sheet);
 
 /// The larger of two; one that is not a number is the largest, so that it cannot hide.
 double larger(double a, double b);

@@ -18,8 +18,8 @@ namespace tumble::sim {
 ///     tilted against the axes, not the same for the two signs;
 ///   - the axes beside it are wrong too, by entries of M^-1 times the deficit, while m_i . y = m_i . u still holds for
 ///     the free elements.
-/// Seen on real devices: planes tilted by 0.02 and 0.05, offsets of 0.05 rad/s between the signs (RepoIMU, the wand and
-/// the pendulum; scenarios/certificate/tilted_rail.cpp has the figures).
+/// Seen on real devices: planes tilted by 0.02 and 0.05, offsets of 0.05 and 0.14 rad/s (RepoIMU, the wand and the
+/// pendulum; scenarios/certificate/real_rails.cpp has the figures).
 /// What it does not model: noise and quantum of their own along the elements' axes (both stay in the device's), a
 /// compensation that errs at the rail other than elsewhere (its errors are in u), offsets that drift within a
 /// recording.

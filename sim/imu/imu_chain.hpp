@@ -46,6 +46,8 @@ class TriadChain {
   TriadReading take(const Eigen::Vector3d& exact, int first_bit, std::uint8_t& flags);
 
   const Elements& elements() const { return elements_; }
+  /// In place of those drawn, before the first step.
+  void set_elements(const Elements& elements) { elements_ = elements; }
 
  private:
   /// From the signal to the mean of a window, with the rail or without.

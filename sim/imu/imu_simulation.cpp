@@ -34,7 +34,8 @@ std::optional<Eigen::Matrix3d> draw_g_sensitivity(const SensorSpec& sensor, std:
 /// Both triads of a device, its stamps, and where the samples go.
 class Device {
  public:
-  Device(const SensorSpec& sensor, double rate_hz, int steps, std::uint64_t seed, ImuRecord& record, ImuTruth& truth)
+  Device(const SensorSpec& sensor, double rate_hz, int steps, std::uint64_t seed, const GivenElements& given,
+         ImuRecord& record, ImuTruth& truth)
       : record_(record),
         truth_(truth),
         gyro_(sensor.values, "gyro", "rad_s", rate_hz, steps, seed, sensor.name + ".gyro"),
@@ -43,6 +44,8 @@ class Device {
         g_sensitivity_(sensor.values.at("gyro_g_sensitivity_s_m")),
         g_sensitivity_drawn_(draw_g_sensitivity(sensor, seed)),
         flagged_(sensor.values.at("clip_flags") > 0.5) {
+    if (given.gyro) gyro_.set_elements(*given.gyro);
+    if (given.accel) accel_.set_elements(*given.accel);
     describe_elements();
   }
 
@@ -190,14 +193,14 @@ void require_bandwidths_below(const SensorSpec& sensor, double rate_hz) {
 }  // namespace
 
 void simulate_imu(const Truth& truth, const SensorSpec& sensor, const Eigen::Isometry3d& T_BI, double gravity_m_s2,
-                  std::uint64_t seed, ImuRecord& record, ImuTruth& imu_truth) {
+                  std::uint64_t seed, ImuRecord& record, ImuTruth& imu_truth, const GivenElements& given) {
   check_imu_values(sensor.values, "sensors." + sensor.name);
   const auto [steps, shares] = pace_of(sensor, static_cast<double>(truth.period_ns));
   const std::int64_t share_ns = truth.period_ns / shares;
   describe(sensor, steps * share_ns, record);
   imu_truth.name = sensor.name;
   imu_truth.T_BI = T_BI;
-  Device device(sensor, 1e9 / static_cast<double>(share_ns), steps, seed, record, imu_truth);
+  Device device(sensor, 1e9 / static_cast<double>(share_ns), steps, seed, given, record, imu_truth);
   std::optional<Compass> compass;
   if (sensor.values.at("magnetometer") > 0.5) {
     compass.emplace(truth, sensor, T_BI, seed);
@@ -241,7 +244,7 @@ void simulate_imu_at_rest(const SensorSpec& sensor, double duration_s, double ch
   const std::int64_t period_ns = std::llround(1e9 / sensor.values.at("output_rate_hz"));
   describe(sensor, period_ns, record);
   imu_truth.name = sensor.name;
-  Device device(sensor, chain_rate_hz, steps, seed, record, imu_truth);
+  Device device(sensor, chain_rate_hz, steps, seed, {}, record, imu_truth);
   const Ideal rest{Eigen::Vector3d::Zero(), Eigen::Vector3d(0.0, 0.0, gravity_m_s2)};
   const std::int64_t windows = std::llround(duration_s * sensor.values.at("output_rate_hz"));
   for (std::int64_t window = 1; window <= windows; ++window) {

@@ -3,12 +3,19 @@
 
 #include <Eigen/Geometry>
 #include <cstdint>
+#include <optional>
 
+#include "sim/imu/elements.hpp"
 #include "sim/imu/imu_parameters.hpp"
 #include "sim/recording.hpp"
 #include "sim/situation.hpp"
 
 namespace tumble::sim {
+
+/// Sensing elements of a device that is known, as one that was measured; a triad without is drawn from `sensor.values`.
+struct GivenElements {
+  std::optional<Elements> gyro, accel;
+};
 
 /// What one IMU says and what truly happened to it, from the body's truth. The ideal reading of a window is the exact
 /// increment over it: the rotation between the attitudes at its ends over its length, and the change of the site's
@@ -23,11 +30,11 @@ namespace tumble::sim {
 /// A twin with the same noise and no rail gives ImuTruth's unclipped readings. `sensor.values` are resolved; `T_BI` is
 /// the true mounting. Clip flags mark windows in which an element met its rail at any moment; with
 /// tilted elements the axes beside it are wrong too, unflagged. A lost sample is lost from
-/// the truth too. Throws InvalidSituation when the output period is no whole number of physics steps, or numbers
-/// contradict each other.
-/// What it does not model: temperature, vibration rectification, bending of the mount.
+/// the truth too. `given` elements change no other draw. Throws InvalidSituation when the output period is no whole
+/// number of physics steps, or numbers contradict each other. What it does not model: temperature, vibration
+/// rectification, bending of the mount.
 void simulate_imu(const Truth& truth, const SensorSpec& sensor, const Eigen::Isometry3d& T_BI, double gravity_m_s2,
-                  std::uint64_t seed, ImuRecord& record, ImuTruth& imu_truth);
+                  std::uint64_t seed, ImuRecord& record, ImuTruth& imu_truth, const GivenElements& given = {});
 
 /// The same device at rest, z up, for `duration_s`: no engine, no body, no magnetometer. The chain runs at
 /// `chain_rate_hz` instead of the physics rate (a low one is fast: an hour at 500 Hz takes about a second); the

@@ -105,6 +105,51 @@ Plane fit(const std::vector<Vector3d>& readings, int axis) {
   return out;
 }
 
+/// The plane of both signs: readings within 0.05 rad/s of it, between others of its sign that are, fitted until they
+/// stay the same. scenarios/certificate/real_rails.cpp has what it says of real gyros.
+void print_both_signs(const std::vector<Vector3d>& gyro, int axis, double rail_rad_s) {
+  constexpr double kFirst_rad_s = 0.15, kSlab_rad_s = 0.05, kLeastShare = 0.9;
+  const auto row = [&](std::size_t k) {
+    const Vector3d& w = gyro[k];
+    return Eigen::Vector4d(w[(axis + 1) % 3], w[(axis + 2) % 3], w[axis] > 0.0 ? 1.0 : -1.0, 1.0);
+  };
+  std::vector<bool> on(gyro.size());
+  for (std::size_t k = 0; k < gyro.size(); ++k) on[k] = std::abs(gyro[k][axis]) > rail_rad_s - kFirst_rad_s;
+  for (int iteration = 0; iteration < 60; ++iteration) {
+    Eigen::Matrix4d normal = Eigen::Matrix4d::Zero();
+    Eigen::Vector4d right = Eigen::Vector4d::Zero();
+    std::vector<std::size_t> inside;
+    for (std::size_t k = 1; k + 1 < gyro.size(); ++k) {
+      const bool one_sign = gyro[k - 1][axis] * gyro[k][axis] > 0.0 && gyro[k + 1][axis] * gyro[k][axis] > 0.0;
+      if (!on[k - 1] || !on[k] || !on[k + 1] || !one_sign) continue;
+      inside.push_back(k);
+      normal += row(k) * row(k).transpose();
+      right += row(k) * gyro[k][axis];
+    }
+    const Eigen::Vector4d plane = normal.ldlt().solve(right);
+    const std::vector<bool> before = on;
+    for (std::size_t k = 0; k < gyro.size(); ++k) {
+      on[k] = std::abs(gyro[k][axis] - plane.dot(row(k))) < kSlab_rad_s &&
+              std::abs(gyro[k][axis]) > kLeastShare * rail_rad_s;
+    }
+    if (on != before && iteration < 59) continue;
+    double squares = 0.0;
+    int positive = 0;
+    for (const std::size_t k : inside) {
+      squares += std::pow(gyro[k][axis] - plane.dot(row(k)), 2);
+      positive += gyro[k][axis] > 0.0;
+    }
+    const double left = std::sqrt(squares / static_cast<double>(inside.size()));
+    const Eigen::Vector4d sigma = left * normal.inverse().diagonal().cwiseSqrt();
+    std::printf(
+        "  both signs: %d, %d readings; slopes %.4f (%.4f), %.4f (%.4f); distance %.4f, offset %.4f (%.4f); "
+        "leaves %.4f rad/s\n",
+        positive, static_cast<int>(inside.size()) - positive, plane[0], sigma[0], plane[1], sigma[1], plane[2],
+        plane[3], sigma[3], left);
+    return;
+  }
+}
+
 void print(const std::string& file, const Readings& readings, int axis, double rail_rad_s) {
   constexpr double kNear_rad_s = 0.3;  // elements' scale, offset and tilt move the rail by about so much
   std::vector<double> rates, segments_s;
@@ -136,6 +181,7 @@ void print(const std::string& file, const Readings& readings, int axis, double r
               quantile(segments_s, 0.5), quantile(segments_s, 1.0), quantile(rates, 0.5), quantile(rates, 0.9),
               quantile(rates, 0.99), plane.readings, plane.before, plane.after, plane.slope_1, plane.slope_2,
               file.c_str());
+  print_both_signs(gyro, axis, rail_rad_s);
 }
 
 }  // namespace

@@ -4,9 +4,11 @@
 
 #include <cmath>
 #include <memory>
+#include <span>
+#include <utility>
 
 #include "estimator/src/common/state_bytes.hpp"
-#include "estimator/src/mapping/odometry_impl.hpp"
+#include "estimator/src/mapping/mapping_members.hpp"
 #include "tests/estimator/mapping/room_rig.hpp"
 
 namespace tumble {
@@ -124,6 +126,117 @@ TEST(FoundAgain, GoesOnFromASavedStateWithTheSameBits) {
   }
   EXPECT_EQ(bytes(rig.odometry), bytes(again.odometry));
   EXPECT_NE(bytes(rig.odometry), saved);
+}
+
+/// A mapper's state with its members open: `head` is what is saved before them.
+struct OpenState {
+  using Impl = LidarInertialOdometry::Impl;
+  explicit OpenState(const LidarInertialOdometry& odometry) : members(std::make_unique<Impl>(true_params())) {
+    const std::vector<std::byte> saved = bytes(odometry);
+    std::vector<std::byte> empty;
+    StateWriter writer(empty);
+    Impl::members(std::as_const(*members), writer);
+    const std::size_t before = bytes(LidarInertialOdometry(true_params())).size() - empty.size();
+    head.assign(saved.begin(), saved.begin() + static_cast<std::ptrdiff_t>(before));
+    StateReader reader(std::span<const std::byte>(saved).subspan(before));
+    Impl::members(*members, reader);
+    EXPECT_TRUE(reader.status().ok());
+  }
+  std::vector<std::byte> saved() const {
+    std::vector<std::byte> out = head;
+    StateWriter writer(out);
+    Impl::members(std::as_const(*members), writer);
+    return out;
+  }
+  std::vector<std::byte> head;  ///< the parameters that another run may have taught
+  std::unique_ptr<Impl> members;
+};
+
+void load(const std::vector<std::byte>& saved, LidarInertialOdometry& into) {
+  StateReader reader(saved);
+  into.load(reader);
+  ASSERT_TRUE(reader.status().ok()) << reader.status().field << " " << reader.status().value << ", bound "
+                                    << reader.status().bound;
+}
+
+// as after a motion of the second opinion that could not be built
+TEST(FoundAgain, ADoubtedPlaceWithoutASecondOpinionIsBorneOutOrLost) {
+  RoomRig rig(true_params());
+  find_again(rig, kElsewhere_m);
+  ASSERT_TRUE(rig.report.unconfirmed);
+  OpenState state(rig.odometry);
+  ASSERT_TRUE(state.saved() == bytes(rig.odometry));
+  ASSERT_TRUE(state.members->other.has_value());
+  state.members->other.reset();
+  const std::vector<std::byte> alone = state.saved();
+  RoomRig agrees(true_params());
+  load(alone, agrees.odometry);
+  for (const bool unconfirmed : {true, false}) {
+    const int k = unconfirmed ? kSeesAgain + 1 : kSeesAgain + 2;
+    agrees.feed_imu(k);
+    ASSERT_TRUE(agrees.sweep(k, seen_from_elsewhere(agrees, k, kElsewhere_m)).ok());
+    EXPECT_EQ(agrees.report.unconfirmed, unconfirmed);
+    EXPECT_EQ(agrees.report.lost_sweeps, 0);
+  }
+  // nothing to go back to: what is there stands, and the sweep alone is lost
+  RoomRig contradicts(true_params());
+  load(alone, contradicts.odometry);
+  const std::size_t with_it = contradicts.odometry.map().size();
+  contradicts.feed_imu(kSeesAgain + 1);
+  ASSERT_TRUE(contradicts.sweep(kSeesAgain + 1, of_no_room(contradicts, kSeesAgain + 1)).ok());
+  EXPECT_EQ(contradicts.report.verdict, SweepVerdict::rejected);
+  EXPECT_EQ(contradicts.report.lost_sweeps, 1);
+  EXPECT_FALSE(contradicts.report.unconfirmed);
+  EXPECT_EQ(contradicts.odometry.map().size(), with_it);
+}
+
+/// Keeps so little about itself that whole sweeps fall out of the map as it moves.
+OdometryParams keeps_little() {
+  OdometryParams params = true_params();
+  params.range_max_m = 40.0;
+  params.expert.map.radius_m = 4.0;
+  return params;
+}
+
+void expect_loads_again(const LidarInertialOdometry& odometry) {
+  const std::vector<std::byte> saved = bytes(odometry);
+  LidarInertialOdometry again(keeps_little());
+  ASSERT_NO_FATAL_FAILURE(load(saved, again));
+  EXPECT_TRUE(bytes(again) == saved);
+}
+
+TEST(FoundAgain, IsLoadedAgainAfterTheMapWasPruned) {
+  RoomRig rig(true_params());
+  find_again(rig, kElsewhere_m);
+  ASSERT_TRUE(rig.report.unconfirmed);
+  const std::vector<std::byte> doubted = bytes(rig.odometry);
+  const std::size_t with_it = rig.odometry.map().size();
+  const std::uint32_t drawn_from = OpenState(rig.odometry).members->other->drawn_from;
+
+  // while the place is doubted nothing is pruned, since what it drew may be taken back
+  RoomRig agrees(keeps_little());
+  load(doubted, agrees.odometry);
+  agrees.feed_imu(kSeesAgain + 1);
+  ASSERT_TRUE(agrees.sweep(kSeesAgain + 1, seen_from_elsewhere(agrees, kSeesAgain + 1, kElsewhere_m)).ok());
+  ASSERT_TRUE(agrees.report.unconfirmed);
+  EXPECT_GE(agrees.odometry.map().size(), with_it);
+  expect_loads_again(agrees.odometry);
+
+  // contradicted: the map is pruned to fewer sweeps than there were before the place
+  RoomRig contradicts(keeps_little());
+  load(doubted, contradicts.odometry);
+  contradicts.feed_imu(kSeesAgain + 1);
+  ASSERT_TRUE(contradicts.sweep(kSeesAgain + 1, of_no_room(contradicts, kSeesAgain + 1)).ok());
+  ASSERT_EQ(contradicts.report.verdict, SweepVerdict::rejected);
+  for (int k = kSeesAgain + 2; k < kSeesAgain + 10; ++k) {
+    ASSERT_NO_FATAL_FAILURE(expect_loads_again(contradicts.odometry));
+    contradicts.feed_imu(k);
+    ASSERT_EQ(contradicts.sweep(k, {}).trouble, Trouble::empty);
+  }
+  const OpenState last(contradicts.odometry);
+  EXPECT_TRUE(last.members->other.has_value());
+  EXPECT_LT(last.members->map.sweeps(), drawn_from);
+  expect_loads_again(contradicts.odometry);
 }
 
 }  // namespace

@@ -213,6 +213,55 @@ TEST(Rows, WithoutADeviceTheTiltedRailSaysNothing) {
   EXPECT_EQ(failures(certify_tilted_rail(input(), setup)).size(), 4u);
 }
 
+/// What fails of the planes measured on real gyros, after one of them has been shown to pass.
+std::vector<std::string> real_rail_failures(RealRailsSetup setup) {
+  setup.devices = 100;
+  return failures(certify_real_rails(input(), setup));
+}
+
+TEST(Rows, ALevelRailIsNoneOfTheRealOnes) {
+  EXPECT_THAT(real_rail_failures({}), IsEmpty());
+  // what would be measured against the axis where the interval holds 0 is level too
+  EXPECT_THAT(real_rail_failures({.tilt_factor = 0.0}),
+              testing::ElementsAre("real_rail_slope (wand x, z)", "real_rail_slope (wand y, z)",
+                                   "real_rail_slope (pendulum z, x)", "real_rail_slope (pendulum z, y)"));
+  EXPECT_THAT(real_rail_failures({.tilt_factor = -1.0}), testing::Contains("real_rail_slope (wand y, x)"));
+}
+
+TEST(Rows, ATiltOfOneHundredthMoreIsNoneOfTheRealRails) {
+  EXPECT_THAT(real_rail_failures({.added_tilt = 0.01}),
+              testing::ElementsAre("real_rail_slope (wand x, y)", "real_rail_slope (wand x, z)",
+                                   "real_rail_slope (wand y, z)", "real_rail_slope (wand y, x)",
+                                   "real_rail_slope (pendulum z, x)", "real_rail_slope (pendulum z, y)"));
+}
+
+TEST(Rows, ARailAThousandthHigherIsNoneOfTheRealOnes) {
+  EXPECT_THAT(real_rail_failures({.rail_factor = 1.001}),
+              testing::ElementsAre("real_rail_distance (wand x)", "real_rail_distance (wand y)",
+                                   "real_rail_distance (pendulum z)"));
+}
+
+TEST(Rows, AnotherOffsetOfTheElementsIsNoneOfTheRealOnes) {
+  EXPECT_THAT(
+      real_rail_failures({.added_offset_rad_s = 0.01}),
+      testing::ElementsAre("real_rail_offset (wand x)", "real_rail_offset (wand y)", "real_rail_offset (pendulum z)"));
+}
+
+TEST(Rows, ElementsDrawnHalfAsWideDoNotReachTheRealRails) {
+  const std::vector<std::string> failed = real_rail_failures({.spread_factor = 0.5});
+  for (const char* device : {"mti30", "vn100", "phidget1044", "mpu6050"})
+    EXPECT_THAT(failed, testing::Contains("real_rail_slope_drawn (" + std::string(device) + " gyro)"));
+  for (const char* device : {"mti30", "vn100", "phidget1044"})
+    EXPECT_THAT(failed, testing::Contains("real_rail_offset_drawn (" + std::string(device) + " gyro)"));
+  // the sheet of the fourth states offsets more than twice as wide
+  EXPECT_THAT(real_rail_failures({.spread_factor = 0.3}), testing::Contains("real_rail_offset_drawn (mpu6050 gyro)"));
+}
+
+TEST(Rows, UprightElementsDoNotReachTheRealRails) {
+  const std::vector<std::string> failed = real_rail_failures({.spread_factor = 0.0});
+  EXPECT_EQ(failed.size(), 8u);
+}
+
 TEST(Rows, APendulumOfAnotherLengthFailsEnergyAndPeriods) {
   PendulumSetup setup;
   setup.stated_segment_m = 0.25001;  // of 0.25

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <initializer_list>
+#include <optional>
 #include <string>
 #include <utility>
 
@@ -136,6 +137,37 @@ TEST(TiltedRail, CannotBeSeenWhileNothingClips) {
   const SimulatedImu c = simulated(fast, upright), d = simulated(fast, tilted);
   EXPECT_NE(c.record.gyro_rad_s, d.record.gyro_rad_s);  // and can when something does
   EXPECT_EQ(c.truth.gyro_unclipped_rad_s, d.truth.gyro_unclipped_rad_s);
+}
+
+TEST(TiltedRail, GivenElementsAreThoseOfTheDeviceAndChangeNoOtherDraw) {
+  const SensorSpec sensor = device({{"gyro_element_misalignment", 0.05},
+                                    {"gyro_element_offset_rad_s", 0.1},
+                                    {"accel_rail_m_s2", 9.0},
+                                    {"accel_element_misalignment", 0.05},
+                                    {"gyro_noise_rad_s_sqrt_hz", 1e-3},
+                                    {"gyro_scale_error", 0.01},
+                                    {"accel_noise_m_s2_sqrt_hz", 1e-3}});
+  const Truth fast = wobbling(1.0, 1.0);
+  const SimulatedImu drawn = simulated(fast, sensor);
+  const auto given = [&](const GivenElements& elements) {
+    SimulatedImu out;
+    simulate_imu(fast, sensor, Eigen::Isometry3d::Identity(), kGravity_m_s2, 1, out.record, out.truth, elements);
+    return out;
+  };
+  const SimulatedImu same =
+      given({Elements(matrix(drawn.truth.gyro_elements), drawn.truth.gyro_element_offset_rad_s), std::nullopt});
+  EXPECT_EQ(same.record.gyro_rad_s, drawn.record.gyro_rad_s);
+  EXPECT_EQ(same.record.accel_m_s2, drawn.record.accel_m_s2);
+  Matrix3d axes = Matrix3d::Identity();
+  axes(2, 0) = 0.08;
+  const SimulatedImu other = given({Elements(axes, Vector3d(0.0, 0.0, 0.2)), Elements()});
+  EXPECT_EQ(matrix(other.truth.gyro_elements), axes);
+  EXPECT_EQ(other.truth.gyro_element_offset_rad_s.z(), 0.2);
+  EXPECT_TRUE(other.truth.accel_elements.empty());
+  EXPECT_EQ(other.truth.gyro_unclipped_rad_s, drawn.truth.gyro_unclipped_rad_s);
+  EXPECT_EQ(other.truth.accel_unclipped_m_s2, drawn.truth.accel_unclipped_m_s2);
+  EXPECT_NE(other.record.gyro_rad_s, drawn.record.gyro_rad_s);
+  EXPECT_NE(other.record.accel_m_s2, drawn.record.accel_m_s2);
 }
 
 TEST(TiltedRail, AccelerometerHasElementsOfItsOwn) {
