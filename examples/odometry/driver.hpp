@@ -12,10 +12,10 @@
 #include <tumble/tumble.hpp>
 #include <vector>
 
-/// Stands for the drivers of a robot: messages as lines of text, in order of time.
+/// Replaces the drivers of a robot: reads messages as lines of text, in order of time.
 ///
-///     imu TIME_NS WX WY WZ FX FY FZ        rad/s and m/s^2, of one IMU; of several a line each, the first's stamp
-///     sweep START_NS END_NS POINTS         then so many lines: X Y Z OFFSET_NS RING, metres in the lidar's axes
+///     imu TIME_NS WX WY WZ FX FY FZ        rad/s and m/s^2, one line per IMU; several IMUs share the first one's stamp
+///     sweep START_NS END_NS POINTS         then POINTS lines: X Y Z OFFSET_NS RING, metres in the lidar's axes
 namespace driver {
 
 struct Sweep {
@@ -27,13 +27,13 @@ struct Message {
   Sweep sweep;
 };
 
-/// Says that what follows is not read.
+/// Prints that the rest of the input is not read.
 inline std::optional<Message> stop(const std::string& kind) {
-  std::fprintf(stderr, "no whole message: '%s'; nothing after it is read\n", kind.c_str());
+  std::fprintf(stderr, "incomplete message '%s'; the rest is not read\n", kind.c_str());
   return std::nullopt;
 }
 
-/// The next message; nothing at the end, and nothing, aloud, at the first line that is none.
+/// Returns the next message, or nothing at the end. An invalid line is reported and ends the input.
 inline std::optional<Message> next(std::istream& in) {
   Message out;
   std::string kind;
@@ -56,7 +56,7 @@ inline std::optional<Message> next(std::istream& in) {
   return out;
 }
 
-/// Hands it over; what is wrong with it is printed, and it is left out.
+/// Passes a message to the odometry. A rejected message is reported and left out.
 inline void add(const Message& message, tumble::TumblingOdometry& odometry) {
   const Sweep& sweep = message.sweep;
   const tumble::Status status =
@@ -64,7 +64,7 @@ inline void add(const Message& message, tumble::TumblingOdometry& odometry) {
   if (!status.ok()) std::fprintf(stderr, "%s\n", status.message().c_str());
 }
 
-/// All bytes of a file; none where there is no such file.
+/// Returns all bytes of a file, or none if there is no such file.
 inline std::vector<std::byte> read_bytes(const std::string& file) {
   std::ifstream in(file, std::ios::binary);
   const std::string text{std::istreambuf_iterator<char>(in), {}};
@@ -72,7 +72,7 @@ inline std::vector<std::byte> read_bytes(const std::string& file) {
   return {bytes, bytes + text.size()};
 }
 
-/// All of it or nothing: beside the file, then in its place. False where that fails; the file is then as it was.
+/// Writes all bytes or nothing: to a temporary file, which then replaces `file`. Returns false on failure.
 inline bool write_bytes(const std::vector<std::byte>& bytes, const std::string& file) {
   const std::string beside = file + ".new";
   std::ofstream out(beside, std::ios::binary);
@@ -81,7 +81,7 @@ inline bool write_bytes(const std::vector<std::byte>& bytes, const std::string& 
   return out && std::rename(beside.c_str(), file.c_str()) == 0;
 }
 
-/// "TIME_NS x y z qx qy qz qw sigma_m", a line.
+/// Prints a pose as a line "TIME_NS x y z qx qy qz qw sigma_m".
 inline void print(const tumble::PoseState& pose) {
   const Eigen::Vector3d& p = pose.p_WA_m;
   const Eigen::Quaterniond& q = pose.q_WA;
@@ -89,12 +89,12 @@ inline void print(const tumble::PoseState& pose) {
               p.z(), q.x(), q.y(), q.z(), q.w(), std::sqrt(pose.covariance.topLeftCorner<3, 3>().trace()));
 }
 
-/// The pose at the end of a sweep, or why there is none: one that begins before the IMU has no place.
+/// Prints the pose at the end of a sweep, or why there is none (for example: the sweep starts before the IMU).
 inline void print(const tumble::TumblingOdometry::Sweep& sweep) {
   if (!sweep.report.trajectory.empty()) {
     print(sweep.report.pose);
   } else {
-    std::fprintf(stderr, "a sweep without a place: %s\n", sweep.status.message().c_str());
+    std::fprintf(stderr, "a sweep has no pose: %s\n", sweep.status.message().c_str());
   }
 }
 

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <tumble/tumble.hpp>
 
-/// The sensors and the mounting of tumbling.cpp, for the programs beside it.
+/// Sensors and mounting of tumbling.cpp, for the other programs.
 inline tumble::TumblingOdometry::Params rig() {
   tumble::TumblingOdometry::Params params;
   params.imu = tumble::sheets::mti30();
