@@ -89,7 +89,7 @@ inline void print(const tumble::PoseState& pose) {
               p.z(), q.x(), q.y(), q.z(), q.w(), std::sqrt(pose.covariance.topLeftCorner<3, 3>().trace()));
 }
 
-/// Prints the pose at the end of a sweep, or why there is none (for example: the sweep starts before the IMU).
+/// Prints the pose at the end of a sweep, or why it has no pose (for example: the sweep starts before the IMU).
 inline void print(const tumble::TumblingOdometry::Sweep& sweep) {
   if (!sweep.report.trajectory.empty()) {
     print(sweep.report.pose);
