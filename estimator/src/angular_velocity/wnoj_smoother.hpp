@@ -29,7 +29,7 @@ class WnojSmoother {
   struct Params {
     double jerk_psd_rad2_s5 = 1e6;  ///< larger follows the readings more closely
 
-    /// Every number of it, stated once.
+    /// Visits every parameter: its value, name, unit, bounds and meaning (common/parameters.hpp).
     template <class Self, class Visitor>
     static void fields(Self& p, Visitor& visit) {
       visit(p.jerk_psd_rad2_s5,

@@ -64,7 +64,7 @@ class ClippingFinder {
     /// False: by flags and upright rails alone, as methods were published that know no other rail.
     bool tilted = true;
 
-    /// Every number of it, stated once.
+    /// Visits every parameter: its value, name, unit, bounds and meaning (common/parameters.hpp).
     template <class Self, class Visitor>
     static void fields(Self& p, Visitor& visit) {
       visit.group("rails_", p.upright_rails);

@@ -70,7 +70,7 @@ struct RailDetectorParams {
   using Expert = RailDetectorExpertParams;
   Expert expert = {};  ///< what few need
 
-  /// Every number of it, stated once.
+  /// Visits every parameter: its value, name, unit, bounds and meaning (common/parameters.hpp).
   template <class Self, class Visitor>
   static void fields(Self& p, Visitor& visit) {
     visit(p.enter_share, {"enter_share", "1", 0.0, 0.1, "a reading within this share of the rail starts clipping"});

@@ -51,7 +51,7 @@ class RailPlaneFinder {
     /// long as no readings contradict them, before anything is met, and make one near them likely.
     RailPlanes known = {};
 
-    /// Every number of it, stated once.
+    /// Visits every parameter: its value, name, unit, bounds and meaning (common/parameters.hpp).
     template <class Self, class Visitor>
     static void fields(Self& p, Visitor& visit) {
       visit(p.slope_sigma, {"slope_sigma", "1", 1e-4, 0.2,

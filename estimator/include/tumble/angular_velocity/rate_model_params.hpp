@@ -47,7 +47,7 @@ struct RateModelParams {
   using Expert = RateModelExpertParams;
   Expert expert = {};  ///< what few need
 
-  /// Every number of it, stated once.
+  /// Visits every parameter: its value, name, unit, bounds and meaning (common/parameters.hpp).
   template <class Self, class Visitor>
   static void fields(Self& p, Visitor& visit) {
     visit(p.lever_arm_sigma_m,

@@ -31,7 +31,7 @@ class RestDetector {
     double reading_s = 0.01;          ///< length of what counts as a reading; 0: each sample
     double memory_s = 600.0;          ///< in which the mean of a run forgets: a bias that drifts is no motion
 
-    /// Every number of it, stated once.
+    /// Visits every parameter: its value, name, unit, bounds and meaning (common/parameters.hpp).
     template <class Self, class Visitor>
     static void fields(Self& p, Visitor& visit) {
       visit(p.rate_max_rad_s, {"rate_max_rad_s", "rad/s", 1e-6, 10.0, "a bias at most: faster is no rest"});

@@ -46,7 +46,7 @@ class Saave {
     /// Longest time between two samples before the run is refused [s].
     double gap_max_s = 1.0;
 
-    /// Every number of it, stated once.
+    /// Visits every parameter: its value, name, unit, bounds and meaning (common/parameters.hpp).
     template <class Self, class Visitor>
     static void fields(Self& p, Visitor& visit) {
       visit(p.lever_arm_m, {"lever_arm_m", "m", -10.0, 10.0,

@@ -52,7 +52,7 @@ struct SensorErrorSizes {
   /// Filters of both triads at some 400 Hz; windows and filters of their own. The blur goes with the delay's square.
   double delay_s = 1e-4, delay_unknown_s = 5e-3;
 
-  /// Every number of it, stated once.
+  /// Visits every parameter: its value, name, unit, bounds and meaning (common/parameters.hpp).
   template <class Self, class Visitor>
   static void fields(Self& p, Visitor& visit) {
     visit(p.gyro, {"gyro", "1", 0.0, 0.1, "scale, misalignment of the gyro, if the device is as its sheet says"});

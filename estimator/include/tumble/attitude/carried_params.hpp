@@ -114,7 +114,7 @@ struct CarriedParams {
   using Expert = CarriedExpertParams;
   Expert expert = {};  ///< what few need
 
-  /// Every number of it, stated once.
+  /// Visits every parameter: its value, name, unit, bounds and meaning (common/parameters.hpp).
   template <class Self, class Visitor>
   static void fields(Self& p, Visitor& visit) {
     visit(p.gravity_m_s2, {"gravity_m_s2", "m/s^2", 1e-300, 100.0, "strength of gravity"});

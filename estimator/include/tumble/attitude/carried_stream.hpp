@@ -35,7 +35,7 @@ class CarriedStream {
     double lag_s = 0.2;
     double window_s = 0.6;
 
-    /// Every number of it, stated once.
+    /// Visits every parameter: its value, name, unit, bounds and meaning (common/parameters.hpp).
     template <class Self, class Visitor>
     static void fields(Self& p, Visitor& visit) {
       visit.group("", p.body);

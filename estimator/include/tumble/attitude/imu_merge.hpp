@@ -35,7 +35,7 @@ struct ImuMergeParams {
   using Expert = ImuMergeExpertParams;
   Expert expert = {};  ///< what few need
 
-  /// Every number of it, stated once.
+  /// Visits every parameter: its value, name, unit, bounds and meaning (common/parameters.hpp).
   template <class Self, class Visitor>
   static void fields(Self& p, Visitor& visit) {
     visit(p.count, {"count", "1", 1, kImus, "IMUs in use"});

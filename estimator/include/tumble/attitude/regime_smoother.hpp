@@ -29,7 +29,7 @@ class RegimeSmoother {
     double carried_min = 0.02;  ///< a share of the carried body below this changes nothing worth a run
     double near_s = 0.1;  ///< clipped samples so close belong to one segment, and judge each other and what is so close
 
-    /// Every number of it, stated once.
+    /// Visits every parameter: its value, name, unit, bounds and meaning (common/parameters.hpp).
     template <class Self, class Visitor>
     static void fields(Self& p, Visitor& visit) {
       visit.group("", p.rate);

@@ -35,7 +35,7 @@ class RegimeStream {
     double carried_min = 0.02;      ///< a share of the carried body below this is not worth its work
     double near_s = 0.1;            ///< clipped samples so close belong to one segment, and judge each other
 
-    /// Every number of it, stated once.
+    /// Visits every parameter: its value, name, unit, bounds and meaning (common/parameters.hpp).
     template <class Self, class Visitor>
     static void fields(Self& p, Visitor& visit) {
       visit.group("", p.rate);

@@ -42,7 +42,7 @@ class RegimeEvidence {
     double contacts_hz = 5.0;      ///< changes between flight and contact
     double throws_hz = 0.02;       ///< changes between these and a hand
 
-    /// Every number of it, stated once.
+    /// Visits every parameter: its value, name, unit, bounds and meaning (common/parameters.hpp).
     template <class Self, class Visitor>
     static void fields(Self& p, Visitor& visit) {
       visit(p.gravity_m_s2, {"gravity_m_s2", "m/s^2", 1e-300, 100.0, "strength of gravity"});

@@ -17,7 +17,7 @@ class Strapdown {
   struct Params {
     double gap_max_s = 1.0;  ///< a longer time between samples is a `gap`
 
-    /// Every number of it, stated once.
+    /// Visits every parameter: its value, name, unit, bounds and meaning (common/parameters.hpp).
     template <class Self, class Visitor>
     static void fields(Self& p, Visitor& visit) {
       visit(p.gap_max_s, {"gap_max_s", "s", 1e-9, 1e4, "longest time between two samples before the run is refused"});

@@ -32,7 +32,7 @@ struct PlaneBounds {
   /// surface (a ring around a pillar or through a corner of a room is flat, and its normal is false).
   int off_line_min = 2;
 
-  /// Every number of it, stated once.
+  /// Visits every parameter: its value, name, unit, bounds and meaning (common/parameters.hpp).
   template <class Self, class Visitor>
   static void fields(Self& p, Visitor& visit) {
     visit(p.neighbours_min, {"neighbours_min", "1", 3, 32, "fewer map points give no plane"});

@@ -64,7 +64,7 @@ struct RegistrationParams {
   using Expert = RegistrationExpertParams;
   Expert expert = {};  ///< what few need
 
-  /// Every number of it, stated once.
+  /// Visits every parameter: its value, name, unit, bounds and meaning (common/parameters.hpp).
   template <class Self, class Visitor>
   static void fields(Self& p, Visitor& visit) {
     visit(p.neighbours, {"neighbours", "1", 3, 32, "map points per plane fit", Rank::first});

@@ -41,7 +41,7 @@ class VoxelMap {
     double voxel_m = 0.5;    ///< edge of a cell; a few times the spacing searches fastest
     double spacing_m = 0.1;  ///< at most one point is kept per cube of this edge; 0 keeps all
 
-    /// Every number of it, stated once.
+    /// Visits every parameter: its value, name, unit, bounds and meaning (common/parameters.hpp).
     template <class Self, class Visitor>
     static void fields(Self& p, Visitor& visit) {
       visit(p.voxel_m, {"voxel_m", "m", 0.01, 100.0, "edge of a cell; a few times the spacing searches fastest"});

@@ -43,7 +43,7 @@ class RollingSmoother {
     /// its sigma. With a prior on the radius it tells the radius.
     double known_distance_m = 0.0, known_distance_sigma_m = 5e-3;
 
-    /// Every number of it, stated once.
+    /// Visits every parameter: its value, name, unit, bounds and meaning (common/parameters.hpp).
     template <class Self, class Visitor>
     static void fields(Self& p, Visitor& visit) {
       visit.group("", p.filter);

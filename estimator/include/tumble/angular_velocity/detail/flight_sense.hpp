@@ -46,7 +46,7 @@ class FlightSense {
     double thrown_with = 2.0;   ///< of a body that nobody holds
     double gap_max_s = 0.1;     ///< after a longer one it begins anew
 
-    /// Every number of it, stated once.
+    /// Visits every parameter: its value, name, unit, bounds and meaning (common/parameters.hpp).
     template <class Self, class Visitor>
     static void fields(Self& p, Visitor& visit) {
       visit(p.lever_arm_m, {"lever_arm_m", "m", -1e3, 1e3, "from the centre of mass to the IMU, IMU axes"});

@@ -32,7 +32,7 @@ class FrozenAxes {
     double rail_still_s = 1.5;  ///< of rest by all other axes, while one reads its rail
     double rail_held_s = 5.0;   ///< of one reading at the rail while the body moves: flights last a third of it
 
-    /// Every number of it, stated once.
+    /// Visits every parameter: its value, name, unit, bounds and meaning (common/parameters.hpp).
     template <class Self, class Visitor>
     static void fields(Self& p, Visitor& visit) {
       visit(p.gyro_range_rad_s,

@@ -26,7 +26,7 @@ class RailWatch {
     ClippingFinder::Params clipping;
     int readings_max = 1024;
 
-    /// Every number of it, stated once.
+    /// Visits every parameter: its value, name, unit, bounds and meaning (common/parameters.hpp).
     template <class Self, class Visitor>
     static void fields(Self& p, Visitor& visit) {
       visit.group("", p.clipping);

@@ -35,7 +35,7 @@ struct RateStreamParams {
   /// Of 4096 samples, the most that a window holds.
   double lag_max_s() const { return std::min(10.0, 4096.0 * period_s); }
 
-  /// Every number of it, stated once.
+  /// Visits every parameter: its value, name, unit, bounds and meaning (common/parameters.hpp).
   template <class Self, class Visitor>
   static void fields(Self& p, Visitor& visit) {
     visit.group("", p.model);

@@ -21,7 +21,7 @@ class CarriedLive {
     CarriedStream::Params stream;
     RailWatch::Params rails;
 
-    /// Every number of it, stated once.
+    /// Visits every parameter: its value, name, unit, bounds and meaning (common/parameters.hpp).
     template <class Self, class Visitor>
     static void fields(Self& p, Visitor& visit) {
       visit.group("", p.stream);

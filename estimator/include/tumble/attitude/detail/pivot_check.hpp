@@ -33,7 +33,7 @@ struct PivotCheckParams {
   double scale_share_least = 0.5;
   double gap_max_s = 0.1;  ///< a longer one ends a segment
 
-  /// Every number of it, stated once.
+  /// Visits every parameter: its value, name, unit, bounds and meaning (common/parameters.hpp).
   template <class Self, class Visitor>
   static void fields(Self& p, Visitor& visit) {
     visit(p.gravity_m_s2, {"gravity_m_s2", "m/s^2", 1e-12, 100.0, "strength of gravity"});

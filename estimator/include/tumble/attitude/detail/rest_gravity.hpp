@@ -41,7 +41,7 @@ class RestGravity {
     double gap_max_s = 0.1;           ///< a longer gap parts the rests: an impact inside of it turns a rate by rad/s
     double accel_range_m_s2 = 0.0;    ///< as the device states it; 0: not stated
 
-    /// Every number of it, stated once.
+    /// Visits every parameter: its value, name, unit, bounds and meaning (common/parameters.hpp).
     template <class Self, class Visitor>
     static void fields(Self& p, Visitor& visit) {
       visit(p.gravity_m_s2, {"gravity_m_s2", "m/s^2", 1e-12, 100.0, "strength of gravity"});

@@ -29,7 +29,7 @@ class Localisation {
   /// `out_of_range` with what was seen and the bound that it broke.
   Status verdict() const;
 
-  /// Stated once, in the library's own sources: state_visitor.hpp.
+  /// Visits every member of the state. Defined in the library's sources: state_visitor.hpp.
   template <class Self, class Visitor>
   static void members(Self& s, Visitor& visit);
 

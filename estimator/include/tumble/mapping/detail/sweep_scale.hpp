@@ -58,7 +58,7 @@ class SweepScaleWatch {
 
   const SweepScale& scale() const { return scale_; }
 
-  /// Stated once, in the library's own sources: state_visitor.hpp.
+  /// Visits every member of the state. Defined in the library's sources: state_visitor.hpp.
   template <class Self, class Visitor>
   static void members(Self& s, Visitor& visit);
 

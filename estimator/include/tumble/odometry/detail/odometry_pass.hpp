@@ -64,7 +64,7 @@ class OdometryPass {
   const std::optional<RateState>& smoothed_rate() const { return smoothed_; }
   std::size_t refused_samples() const { return refused_samples_; }
 
-  /// Stated once, in the library's own sources: state_visitor.hpp.
+  /// Visits every member of the state. Defined in the library's sources: state_visitor.hpp.
   template <class Self, class Visitor>
   static void members(Self& s, Visitor& visit);
   /// What holds between the members of every state; the first that does not.

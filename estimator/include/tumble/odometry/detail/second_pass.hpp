@@ -39,7 +39,7 @@ class SecondPass {
     double inflation = 4.0;
     double rest_s = 1.0;  ///< of the rest at the start that is remembered
 
-    /// Every number of it, stated once.
+    /// Visits every parameter: its value, name, unit, bounds and meaning (common/parameters.hpp).
     template <class Self, class Visitor>
     static void fields(Self& p, Visitor& visit) {
       visit(p.after_s, {"after_s", "s", 0.0, 100.0,
@@ -75,7 +75,7 @@ class SecondPass {
   /// Whether the map became that of the second pass.
   bool taken() const { return taken_; }
 
-  /// Stated once, in the library's own sources: state_visitor.hpp.
+  /// Visits every member of the state. Defined in the library's sources: state_visitor.hpp.
   template <class Self, class Visitor>
   static void members(Self& s, Visitor& visit);
   /// What holds between the members of every state, beside that first pass; the first that does not.

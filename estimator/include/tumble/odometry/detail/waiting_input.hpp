@@ -38,7 +38,7 @@ class WaitingReadings {
   /// Those that were of no sweep: they reach from one into the next.
   std::size_t straddling() const { return straddling_; }
 
-  /// Stated once, in the library's own sources: state_visitor.hpp.
+  /// Visits every member of the state. Defined in the library's sources: state_visitor.hpp.
   template <class Self, class Visitor>
   static void members(Self& s, Visitor& visit);
 
