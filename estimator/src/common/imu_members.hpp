@@ -6,7 +6,7 @@
 #include "tumble/common/imu.hpp"
 #include "tumble/common/pose.hpp"
 
-/// Members of what states are made of everywhere: state_visitor.hpp.
+/// Members shared by many states, visited as state_visitor.hpp describes.
 namespace tumble {
 
 template <StateOf<ImuSample> Self, class Visitor>

@@ -41,8 +41,8 @@ void VoxelMap::load(StateReader& in) {
   if (in.going()) *this = std::move(map);
 }
 
-/// The next chunk. Chunks of a cell come in the order in which they were filled, all but the last to the brim, which
-/// is all that there is to know of their places.
+/// Loads the next chunk. The chunks of a cell are stored in the order in which they were filled, and all but the last
+/// are full, so slots need no further information.
 void VoxelMap::load_chunk(StateReader& in) {
   std::uint8_t count = 0;
   in("map.chunk.count", count, 1.0, kChunk);
