@@ -151,8 +151,7 @@ Belief posterior(const Prediction& prediction) {
 
 namespace {
 
-/// The share of the prior's errors that the registration keeps: of mapping.md (R41). A separate function to limit the
-/// stack.
+/// Computes the factor of the prior's errors in mapping.md (R41). A separate function to limit the stack.
 [[gnu::noinline]] void weigh_prior(const Prediction& prediction, const Registration::Result& aligned,
                                    Registration::Matrix& out) {
   // errors in variables are not information and correct nothing
