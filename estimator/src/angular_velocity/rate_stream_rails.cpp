@@ -16,10 +16,10 @@ namespace {
 
 using Eigen::Vector3d;
 
-// kOpen: standard deviations by which the slopes of a plane may be wrong. kPossibleMin: minimum number of readings within
-// kBesideRail of an axis's largest that may be at one tilted level. kKink: a rounded maximum of n readings is at most
-// (n/(n - 1))^2 <= 2.25 times as high as its readings show. A motion that is cut off exceeds kKink times this height and
-// kPossibleNoise standard deviations of the noise.
+// kOpen: standard deviations by which the slopes of a plane may be wrong. kPossibleMin: minimum number of readings
+// within kBesideRail of an axis's largest that may be at one tilted level. kKink: a rounded maximum of n readings is at
+// most (n/(n - 1))^2 <= 2.25 times as high as its readings show. A motion that is cut off exceeds kKink times this
+// height and kPossibleNoise standard deviations of the noise.
 constexpr double kOpen = 3.0, kKink = 4.0, kPossibleNoise = 5.0;
 constexpr std::ptrdiff_t kPossibleMin = 3;
 
