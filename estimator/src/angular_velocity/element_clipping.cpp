@@ -50,7 +50,7 @@ bool lopsided(const RailPlane& rail) {
          std::abs(rail.offset_rad_s) > kLopsidedShare * rail.distance_rad_s + 4.0 * std::sqrt(rail.covariance(3, 3));
 }
 
-// One finder with the stated range of the upright rails if it has none of its own, and one without any.
+// Two finders: one with the stated range, by default that of the upright rails, and one without.
 std::array<RailPlaneFinder, 2> stated_and_not(RailPlaneFinder::Params params, const std::optional<double>& stated) {
   RailPlaneFinder::Params unstated = params;
   unstated.stated_rad_s = std::nullopt;

@@ -38,8 +38,9 @@ bool are_upright(std::span<const Eigen::Vector3d> readings, const RailPlanes& pl
 RailPlanes without_plateaus(const RailPlanes& planes, const RailDetector::State& rails, Triad triad);
 
 /// Adds the planes of a triad to a classification by equal readings. An element with a plane clips according to its
-/// plane or the device's flag. A neighbour of a clipped sample that was saturated for a part of its window also counts:
-/// its distance from the plane is less than half of that of the next neighbour. `before` and `after` may be null.
+/// plane or the device's flag. A neighbour of a clipped sample also counts if it was saturated for a part of its
+/// window. The criterion is a distance from the plane of less than half of that of the next neighbour. `before` and
+/// `after` may be null.
 Clipping clip_by_planes(const RailPlanes& planes, Triad triad, const Clipping& by_upright_rails,
                         const ImuSample* before, const ImuSample& now, const ImuSample* after);
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The search for the facet of one sign of one element: the plane at which its readings stand.
+// Search for the facet of one sign of one element: the plane at which its readings are saturated.
 #pragma once
 
 #include <Eigen/Core>

@@ -34,8 +34,8 @@ constexpr double kStarts[] = {0.5, 0.02};
 constexpr double kSiblingShare = 0.04;
 // Log odds of a level: near that of another element, of a stated range, of the other sign; and impossible.
 constexpr double kNearSibling = 5.0, kNearStated = 3.0, kOtherSignAgrees = 5.0, kImpossible = -100.0;
-// Log odds of a level near that of an earlier run, its maximum distance as a fraction of the level, and the minimum for
-// a level elsewhere, since the device may be another one.
+// Log odds of a level near that of an earlier run; maximum distance of the two as a fraction of the level; minimum log
+// odds of other levels, since the device may be another one.
 constexpr double kNearKnown = 6.0, kKnownShare = 0.003, kFarFromKnown = -3.0;
 // Change of slopes between runs.
 constexpr double kKnownSlopeSigma = 2e-3;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Rails that are known: which readings are at them, and what an earlier run adds to those found.
+// Known saturation planes: classification of readings, and planes from an earlier run.
 #include <cmath>
 
 #include "tumble/angular_velocity/rail_planes.hpp"

@@ -17,8 +17,8 @@ namespace {
 constexpr double kOtherStarts[] = {16.0, 0.25};
 constexpr double kFlightShareExpected = 0.5;
 
-// Convergence: a step that changes no combination of unknowns by more than this many standard deviations is the last,
-// even if a nearly unknown rate still changes by much: rate_smoother.md (R45).
+// Convergence: the last step changes no combination of unknowns by more than this many standard deviations:
+// rate_smoother.md (R45). A nearly unknown rate may still change by much.
 constexpr double kStepDeviations = 0.1;
 
 // rate_smoother.md (R22) to (R25); the jump is the smaller one of (R23).

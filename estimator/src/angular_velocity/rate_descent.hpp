@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The descent of RateSmoother: Gauss-Newton over a recording whose readings are given.
+// Gauss-Newton descent of RateSmoother over a recording.
 #pragma once
 
 #include <span>
@@ -62,8 +62,8 @@ struct RateSolution {
 };
 
 /// Runs the descent. If most clipped samples are classified as contact, repeats it with larger and smaller contact
-/// thresholds: with a wrong lever arm, the first may end in a minimum without flight. Returns false if a system is not
-/// positive definite. Sets iterations, restarts, convergence and Mahalanobis distance in `health`.
+/// thresholds. Reason: with a wrong lever arm, the first may end in a minimum without flight. Returns false if a system
+/// is not positive definite. Sets iterations, restarts, convergence and Mahalanobis distance in `health`.
 bool solve(const RateSmoother::Params& params, const RateModel& model, std::span<const RateObservation> observations,
            RateSolution& solution, RateReport& health);
 

@@ -200,8 +200,8 @@ double RateModel::gyro_information(const RateObservation& observation, const Rat
   return 1.0 / (lost * lost + impact * impact);
 }
 
-// In contact, the force has a prior of its own magnitude, so that of two explanations of an unmeasured rate the one
-// with the smaller force is more probable: rate_smoother.md (R26).
+// In contact, the force has a prior with its current magnitude as standard deviation: rate_smoother.md (R26). Smaller
+// forces are thus more probable explanations of an unmeasured rate.
 RateModel::ForceFactor RateModel::force_factor(const RateObservation& observation, const RateEstimate& estimate,
                                                const RigConstants& rig) const {
   const double flight2 = accel_variance_together(observation);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What other IMUs on the body say: the part of RateModel that deals with auxiliary IMUs.
+// Part of RateModel for auxiliary IMUs.
 #include <Eigen/LU>
 #include <cmath>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What a clipped reading says of its rate: the part of RateModel that deals with bounds.
+// Part of RateModel for the bounds given by clipped readings.
 #include <Eigen/Cholesky>
 #include <Eigen/Geometry>
 #include <Eigen/LU>

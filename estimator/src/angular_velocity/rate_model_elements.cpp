@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Gyro and accelerometer while an element of them clips: the part of RateModel that reads them element by element.
+// Part of RateModel for samples with a clipped element of gyro or accelerometer, which are used element by element.
 #include <cmath>
 
 #include "tumble/angular_velocity/detail/rate_model.hpp"

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What cannot be told from a sample alone: the part of RateModel that keeps contact from the rig's constants, and
-// corrects for and gathers what the device makes of the motion; what is reported of it all.
+// Part of RateModel that protects the calibration from contact, corrects for sensor errors, collects evidence about
+// them, and computes the reported covariance.
 #include "tumble/angular_velocity/detail/rate_model.hpp"
 
 namespace tumble {

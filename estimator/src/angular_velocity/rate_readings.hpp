@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What the samples of a recording are worth to RateSmoother.
+// Classification of a recording's samples for RateSmoother.
 #pragma once
 
 #include <optional>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The descents of RateSmoother from round to round of what they tell of the device's errors.
+// Repeated descents of RateSmoother that estimate sensor errors.
 #pragma once
 
 #include <span>

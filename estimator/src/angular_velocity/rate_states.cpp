@@ -49,8 +49,8 @@ double change_rad_s2(const RateModelParams& params, std::span<const RateObservat
   return (estimates[k + 1].knot.rate_rad_s - estimates[k].knot.rate_rad_s).norm() / dt_s;
 }
 
-// Effect of a delay common to both triads on a rate: its largest change within the delay, since an impact in the next
-// sample's window may belong to this one.
+// Effect of a delay common to both triads on a rate: its largest change within the delay. Reason: an impact in the next
+// sample's window may belong to this sample.
 Eigen::Matrix3d of_shared_delay(double variance_s2, const RateModelParams& params,
                                 std::span<const RateObservation> observations, std::span<const RateEstimate> estimates,
                                 std::size_t k) {
@@ -66,8 +66,8 @@ Eigen::Matrix3d of_shared_delay(double variance_s2, const RateModelParams& param
   return variance_s2 * (alpha * alpha.transpose() + change * change * Eigen::Matrix3d::Identity());
 }
 
-// The rate some time after a sample, by a cubic between the surrounding knots, and its covariance, which is at most the
-// mean of those at the knots.
+// The rate some time after a sample, by a cubic between the surrounding knots, with its covariance. The covariance is
+// at most the mean of those at the knots.
 RateState state_later(std::span<const RateObservation> observations, std::span<const RateEstimate> estimates,
                       std::span<const Eigen::Matrix3d> covariances, std::size_t k, double late_s) {
   RateState out;

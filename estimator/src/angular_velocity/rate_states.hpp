@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What RateSmoother says of each sample once its descents have ended.
+// Results of RateSmoother for each sample.
 #pragma once
 
 #include <span>

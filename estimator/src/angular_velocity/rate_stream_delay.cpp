@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// How much later than the gyro the accelerometer speaks, as a RateStream finds it: from strokes, then from what the
-// readings tell of the device. Each force stands beside the rate of its instant.
+// Estimation of the accelerometer's delay in a RateStream: first from impacts, then from the evidence about sensor
+// errors. Each force is assigned to the rate at its own time.
 #include <algorithm>
 #include <array>
 #include <cmath>

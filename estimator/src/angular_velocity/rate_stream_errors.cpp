@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What a RateStream makes of errors of the device that it does not estimate: it gathers what readings tell of them, and
-// counts what is open of them in its covariances.
+// Sensor errors in a RateStream, as considered parameters: collects evidence about them and adds their uncertainty to
+// the covariances.
 #include <algorithm>
 #include <cmath>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// How the window of a RateStream is read by the rails, as they become known.
+// Classification of a RateStream's window by the detected saturation levels.
 #include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
@@ -122,8 +122,8 @@ void RateStream::judge_from(std::size_t changed, State& state) const {
   }
 }
 
-// Returns whether a reading may be saturated: within the uncertain slopes of a known level, or, without a known level,
-// at the largest reading so far if it is close to the other elements' levels. rate_stream.md (R94)
+// Returns whether a reading may be saturated: if a known level is within reach of its uncertain slopes. Without a known
+// level, the largest reading so far is used if it is close to the other elements' levels. rate_stream.md (R94)
 bool RateStream::may_clip(const ImuSample& sample, int axis, int sign, const State& state) const {
   const Vector3d& y = sample.angular_velocity_rad_s;
   const RailPlanes planes = state.rails.known.planes_in_use();

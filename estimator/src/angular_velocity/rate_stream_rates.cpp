@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What a RateStream gives out of a sample of its window.
+// Reported rate of a sample in a RateStream's window.
 #include <algorithm>
 #include <cmath>
 

@@ -17,10 +17,10 @@ namespace tumble {
 /// readings. The correlation must be at least 0.6, with 30 readings faster than 1 rad/s, 10 of them above 30 m/s^2 and
 /// a tenth below 5; otherwise the body may be hand-held. The accuracy is 0.15 of the slower triad's period.
 ///
-/// Otherwise from flight: the delay for which most accelerometer readings equal the force at a rigid body's lever arm,
-/// alpha x t + w x (w x t) + bias, with the neighbouring gyro readings. Lever arm (about `lever_arm_m`, 0.02 m) and
-/// bias are fitted for each delay, robustly (Geman-McClure). Empty with fewer than 20 unclipped readings faster than 2
-/// rad/s, or for a gain that may be due to chance. O(N) for each of some 60 delays.
+/// Otherwise from flight: the delay for which most accelerometer readings equal the force at a rigid body's lever arm.
+/// This force is alpha x t + w x (w x t) + bias, from the neighbouring gyro readings. Lever arm (about `lever_arm_m`,
+/// 0.02 m) and bias are fitted for each delay, robustly (Geman-McClure). Empty with fewer than 20 unclipped readings
+/// faster than 2 rad/s, or for a gain that may be due to chance. O(N) for each of some 60 delays.
 TriadDelay guess_triad_delay(std::span<const ImuSample> samples, std::span<const Clipping> clippings,
                              const Eigen::Vector3d& lever_arm_m);
 

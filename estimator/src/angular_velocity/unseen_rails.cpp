@@ -14,8 +14,9 @@ namespace {
 // samples at a level, as a fraction of the step to their neighbour.
 constexpr double kUnseenTilt = 0.06, kUnseenOfStep = 0.5;
 
-// Readings within this fraction of a segment's largest are at its top: the effect of a tilt of 0.06 (kUnseenTilt) and a
-// rate on the other axes of a sixth of the level. Elements differ by at most this many standard deviations.
+// kTopShare: readings within this fraction of a segment's largest are at its top. It is the effect of a tilt of 0.06
+// (kUnseenTilt) and a rate on the other axes of a sixth of the level. kElementsApart: maximum difference of elements in
+// standard deviations.
 constexpr double kTopShare = 0.01, kElementsApart = 3.0;
 
 // Lowest known level, or 0.
@@ -34,7 +35,7 @@ double hidden_rise(double count, double entered, double left) {
   return both > 0.0 ? count * std::max(0.0, entered) * std::max(0.0, left) / both : 0.0;
 }
 
-// The rate on the other axes, of which a fraction affects a tilted level.
+// The rate on the other axes. The tilt multiplies it in the reading at a level.
 double beside_of(const Eigen::Vector3d& rate_rad_s, Eigen::Index axis) {
   return std::hypot(rate_rad_s[(axis + 1) % 3], rate_rad_s[(axis + 2) % 3]);
 }

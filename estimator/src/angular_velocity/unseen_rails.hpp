@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Readings that may stand at a rail which too few of them show.
+// Readings that may be at a saturation level with too few samples for detection.
 #pragma once
 
 #include <span>

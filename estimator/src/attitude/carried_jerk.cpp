@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// How much jerk the readings of a carried body's gyro show.
+// Estimation of the angular jerk from a gyro's readings.
 #include <Eigen/Core>
 #include <algorithm>
 #include <cmath>

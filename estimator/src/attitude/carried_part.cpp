@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A part of the problem of the carried body, solved alone: what the rest says of its ends, and its cost.
+// Separate solution of a part of the hand-held motion's problem: information from the other nodes, and its cost.
 #include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>

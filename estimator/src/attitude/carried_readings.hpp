@@ -51,8 +51,8 @@ Collected collect(const CarriedSmoother::Params& params, std::span<const ImuSamp
 
 inline constexpr double kLongest = 1.5;  ///< longest window, in periods
 
-/// Estimates the root density of the angular jerk near each of `nodes` nodes from readings [rad/s^3 sqrt(s)]: from the
-/// curvature of free readings, and across hidden segments from the change of slope. 0 without information. carried.md
+/// Estimates the root density of the angular jerk near each of `nodes` nodes from readings [rad/s^3 sqrt(s)]. It uses
+/// the curvature of free readings, and the change of slope across hidden segments. 0 without information. carried.md
 /// (C37), (C39). O(N).
 std::vector<double> seen_jerk(const GyroReadings& rates, const Eigen::Matrix3d& rows, double noise_rad_s, double node_s,
                               std::size_t nodes);
@@ -69,8 +69,8 @@ inline constexpr int kFreeNodes = 5;
 /// Returns whether an element of the gyro is unmeasured for a part of the node's time.
 bool clips(const NodeReadings& readings);
 
-/// Standard deviation of the window centre of an accelerometer with unknown averaging, uniform between the window's end
-/// and its middle, as a fraction of the period: 1/(4 sqrt(3)).
+/// Standard deviation of the window centre of an accelerometer with unknown averaging, as a fraction of the period:
+/// 1/(4 sqrt(3)). The centre is uniform between the window's end and its middle.
 inline constexpr double kOpenShare = 0.144;
 
 /// Adds one reading of the gyro, `t` seconds from the node; `open_rad_s`: additional standard deviation per element.

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What a CarriedStream gives out of its window: rates and their covariances.
+// Reported rates of a CarriedStream and their covariances.
 #include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>

@@ -83,8 +83,8 @@ std::vector<Segment> doubtful_segments(const Problem& problem) {
   return out;
 }
 
-/// Returns the nodes of a part with `turns` additional revolutions about `axis` between nodes a and b: a smooth bump of
-/// the rate, the resulting attitudes, and the remaining error at b distributed evenly.
+/// Returns the nodes of a part with `turns` additional revolutions about `axis` between nodes a and b. Adds a smooth
+/// bump to the rate, integrates the attitudes, and distributes the remaining error at b evenly.
 std::vector<Node> with_more_revolutions(const Problem& part, const Vector3d& axis, double turns, std::size_t a,
                                         std::size_t b) {
   std::vector<Node> nodes(part.nodes().begin(), part.nodes().end());

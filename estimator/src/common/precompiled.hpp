@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What nearly every source of the library includes, and the types of Eigen's expressions that at least a dozen of them
-// instantiate: the classes behind an expression of three numbers take a compiler longer than its code
-// (docs/figures.md). Precompiled (CMakeLists.txt), included by no source: it saves time alone.
+// Headers used by nearly every source, and types of Eigen expressions used by at least a dozen sources. The compiler
+// needs longer for the classes of an expression than for its code (docs/figures.md). Precompiled (CMakeLists.txt) and
+// never included: it only reduces the compile time.
 #pragma once
 
 #include <Eigen/Cholesky>

@@ -22,8 +22,8 @@ Eigen::Matrix<double, 9, 9> inertial_noise(const LidarInertialOdometry::Params& 
 Eigen::Matrix3d railed_velocity_variance(const LidarInertialOdometry::Params& params, const SweepTrajectory& trajectory,
                                          std::span<const MotionSample> samples);
 
-/// Computes the state at rest at the start of the first sample's window: origin of W, levelled by the mean specific
-/// force of the samples within `rest_s`, yaw 0. Returns `degenerate` if this force is below 1 m/s^2.
+/// Computes the state at rest at the start of the first sample's window: origin of W, yaw 0. The mean specific force of
+/// the samples within `rest_s` levels the attitude. Returns `degenerate` if this force is below 1 m/s^2.
 Status start_at_rest(const LidarInertialOdometry::Params& params, std::span<const MotionSample> samples,
                      MotionState& state);
 

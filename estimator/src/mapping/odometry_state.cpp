@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The mapper as bytes.
+// Serialisation of the mapper.
 #include <utility>
 
 #include "../common/state_bytes.hpp"

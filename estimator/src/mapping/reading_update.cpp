@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What an odometer tells of a sweep, against what is predicted of it: mapping.md, section 3.
+// Update of a sweep's prediction by an odometer reading: mapping.md, section 3.
 #include <Eigen/Cholesky>
 #include <algorithm>
 #include <memory>

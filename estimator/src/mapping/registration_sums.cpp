@@ -210,9 +210,8 @@ void Registration::accumulate(std::span<const SweepPoint> points, const SweepTra
   sum.H = lower.selfadjointView<Eigen::Lower>();
 }
 
-/// mapping.md (R25), (R26), for all free unknowns. For the motion alone, it would constrain combinations of motion and
-/// calibration that are unobservable, for example attitude and mounting rotation, and (R41) would grow there without
-/// bound.
+/// mapping.md (R25), (R26), for all free unknowns. For the motion alone, it would constrain unobservable combinations
+/// of motion and calibration, for example attitude and mounting rotation. (R41) would grow there without bound.
 struct Registration::NoiseOfNormals {
   const Unknowns& unknowns;
   using Products = mapping::OuterProducts<kUnknowns, 2 * static_cast<int>(kBlock)>;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What SweepTrajectory::at says of each point of a sweep, several at a time: the same operations in the same order,
-// which Eigen's quaternions have on a processor with packets of two doubles.
+// SweepTrajectory::at for several points of a sweep at a time. The operations and their order equal those of Eigen's
+// quaternions on a processor with packets of two doubles.
 #include <algorithm>
 #include <limits>
 

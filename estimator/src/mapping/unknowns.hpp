@@ -3,7 +3,7 @@
 
 #include "tumble/mapping/registration.hpp"
 
-/// Names for the blocks of a vector or a matrix over the unknowns of a sweep, or over the first of them, as listed in
+/// Names for the blocks of a vector or a matrix over all or the first unknowns of a sweep, as listed in
 /// docs/maths/mapping.md. Use `rows(F, velocity)` instead of an index, `segment(step, velocity)` for a vector.
 namespace tumble::mapping::unknowns {
 
@@ -28,7 +28,7 @@ inline constexpr Block<Registration::kCalibration + 7, 3> gravity;
 /// Variance of an unknown whose prior is exact, so that the prior can be inverted.
 inline constexpr double kLeastVariance = 1e-12;
 /// Bound of the squared Mahalanobis distance at which a sweep's motion agrees with its prior: the 95 % quantile of
-/// chi-square for the nine unknowns of a motion. mapping.md (R59), (R99).
+/// chi-square with nine degrees of freedom. mapping.md (R59), (R99).
 inline constexpr double kAgrees = 16.9;
 static_assert(SweepUnknowns::kMotion == 9);
 

@@ -5,8 +5,8 @@
 
 namespace tumble::mapping {
 
-/// Errors of the map relative to the world, which the IMU's first pose defines: mounting, tilt of the start, errors at
-/// insertion, and drift in unconstrained directions.
+/// Errors of the map relative to the world: mounting, tilt of the start, errors at insertion, and drift in
+/// unconstrained directions. The IMU's first pose defines the world.
 class WorldCovariance {
  public:
   using Pose = Eigen::Matrix<double, 6, 6>;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// RollingOdometry as bytes.
+// Serialisation of RollingOdometry.
 #include "../angular_velocity/frozen_members.hpp"
 #include "../attitude/imu_merge_members.hpp"
 #include "../common/sample_clock_members.hpp"

@@ -187,8 +187,8 @@ void TumblingOdometry::register_sweep(TimeNs start_ns, TimeNs end_ns, std::vecto
   again_.advance(pass_);
 }
 
-/// Returns whether the sweep would be more than lag_s old at the sample after the newest one, while the covering sample
-/// has the whole lag ahead of it except one period. After a gap this is not the case.
+/// Returns whether the sweep would be more than lag_s old at the sample after the newest one. In addition, the covering
+/// sample must have the whole lag ahead of it except one period, which is not the case after a gap.
 bool TumblingOdometry::is_due(TimeNs end_ns) const {
   const std::optional<TimeNs> covering_ns = pass_.covering_ns(end_ns);
   if (!covering_ns) return false;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// TumblingOdometry as bytes.
+// Serialisation of TumblingOdometry.
 #include <memory>
 
 #include "odometry_members.hpp"

@@ -6,8 +6,8 @@
 #include "rolling_node.hpp"
 
 /// Prevents false information about the heading, which contact does not determine. A whole run rotated about the
-/// vertical gives the same readings. A linearised filter with a large heading error still gains information from one
-/// update to the next, because the linearisation points differ: rolling.md (R37) to (R39).
+/// vertical gives the same readings. A linearised filter with a large heading error still gains false information,
+/// because the linearisation points of successive updates differ: rolling.md (R37) to (R39).
 namespace tumble::rolling {
 
 /// Standard deviation of the heading above which this correction is applied; the false information is quadratic in it.
@@ -17,8 +17,8 @@ inline bool lost_heading(const Covariance& P) {
   return P(kAttitude + 2, kAttitude + 2) > squared(kLostHeading_rad);
 }
 
-/// Removes the effect of a rotation of the whole run from the derivative of the contact velocity, which is zero while
-/// the contact point does not move. (R38)
+/// Removes the effect of a rotation of the whole run from the derivative of the contact velocity. The true effect is
+/// zero while the contact point does not move. (R38)
 inline void blind_to_heading(Contact& c) {
   c.H.col(kAttitude + 2) -= Eigen::Vector3d::UnitZ().cross(c.u_W_m_s);
 }

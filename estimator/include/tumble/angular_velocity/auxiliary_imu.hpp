@@ -13,8 +13,8 @@
 
 namespace tumble {
 
-/// Readings of another accelerometer on the same rigid body, in the axes and at the time stamps of the primary IMU. The
-/// difference of the two readings depends only on the body's rotation, in flight and in contact.
+/// Readings of another accelerometer on the same rigid body, in the primary IMU's axes and at its time stamps. Their
+/// difference from the primary IMU depends only on the body's rotation, in flight and in contact.
 struct AuxiliaryAccelerometer {
   Eigen::Vector3d p_I_m = Eigen::Vector3d::Zero();   ///< position relative to the primary IMU, in the primary IMU's
                                                      ///< axes

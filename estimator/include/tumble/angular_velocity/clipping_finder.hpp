@@ -44,8 +44,8 @@ ElementReading element_reading(const ImuSample& sample, const Clipping& clipping
 std::uint8_t clip_flags(const Clipping& clipping);
 
 /// Saturation levels that are certain enough for tests across units, used for units that may freeze. Equal readings
-/// alone are not sufficient: flat maxima of slow motion far below the stated range are excluded, and so are repeated
-/// readings without a stated range. Saturation planes are included because neither effect creates them.
+/// alone are not sufficient. Excluded are flat maxima of slow motion far below the stated range, and repeated readings
+/// without a stated range. Neither effect creates saturation planes, which are therefore included.
 struct HeardRails {
   RailPlanes gyro, accel;                                 ///< in use
   double gyro_range_rad_s = 0.0, accel_range_m_s2 = 0.0;  ///< stated range; 0: not stated

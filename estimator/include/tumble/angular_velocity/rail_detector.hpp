@@ -85,12 +85,11 @@ struct RailDetectorParams {
 /// Finds the saturation level of each axis of an IMU from its readings. The level differs from unit to unit and from
 /// the data sheet. One gyro with a stated range of 450 deg/s saturated at 600 deg/s.
 ///
-/// A plateau is a run of readings of one sign that are closer together than noise allows, at the largest magnitude so
-/// far on the axis. Low plateaus must be longer and start or end with a jump of many digits of the device. This
-/// excludes the rounded maximum of a slow, coarsely quantised motion and an axis at rest. A stated range is used until
-/// a plateau is found or a reading exceeds it. Flags of the device are always used. Clipping has hysteresis, so that
-/// the irregular edge of a plateau belongs to it. Not modelled: levels that drift or differ between the two signs of an
-/// axis.
+/// A plateau is a run of readings of one sign, closer together than noise allows, at the largest magnitude so far on
+/// the axis. Low plateaus must be longer and start or end with a jump of many digits of the device. This excludes the
+/// rounded maximum of a slow, coarsely quantised motion and an axis at rest. A stated range is used until a plateau is
+/// found or a reading exceeds it. Flags of the device are always used. Clipping has hysteresis, so that the irregular
+/// edge of a plateau belongs to it. Not modelled: levels that drift or differ between the two signs of an axis.
 class RailDetector {
  public:
   using Params = RailDetectorParams;
@@ -123,8 +122,8 @@ class RailDetector {
   /// Classifies a whole recording after processing all of it, including the edges on both sides of each plateau. O(N).
   void classify_all(std::span<const ImuSample> samples, State& state, std::span<Clipping> out) const;
 
-  /// Adds the rising edge of a plateau: axes of `sample` before a clipped `next` that are as close to the level as
-  /// readings after a plateau.
+  /// Adds the rising edge of a plateau: axes of `sample`, before a clipped `next`, within the same distance of the
+  /// level as after a plateau.
   void add_edge(const ImuSample& sample, const ImuSample& next, const Clipping& of_next, const State& state,
                 Clipping& clipping) const;
 

@@ -107,10 +107,10 @@ struct RateReport {
 /// Contact: the force at the centre of mass is the part of the reading that flight does not explain. A force through
 /// one point of the cage has no torque about its own direction. This row of Euler's equation therefore remains in use;
 /// the uncertainty of the two other rows follows from the size of the cage (RateContactParams::lever_rad_m). The
-/// position of the contact point gives no further information. For clipped samples in contact
-/// (tests/bench/rate_contact; docs/maths/rate_smoother.md), the median torque along the force is 1.4 %. The contact
-/// point of the previous sample leaves 66 % unexplained, and the best single point of a whole impact 48 %. In one
-/// sample of ten it explains nothing: a cage strikes with several bars and rolls on within 10 ms.
+/// position of the contact point gives no further information. Measured for clipped samples in contact
+/// (tests/bench/rate_contact; docs/maths/rate_smoother.md): The median torque along the force is 1.4 %. The contact
+/// point of the previous sample leaves 66 % of the torque unexplained. The best single point of a whole impact leaves
+/// 48 %, and in one sample of ten everything. Reason: a cage strikes with several bars and rolls on within 10 ms.
 ///
 /// Sensor errors (SensorErrors: scale, misalignment, g-sensitivity, delay and window of the accelerometer relative to
 /// the gyro) are partly correlated with other constants. They are estimated as far as the run determines them, with a

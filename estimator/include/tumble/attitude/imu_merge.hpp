@@ -91,7 +91,7 @@ class ImuMerge {
 
   explicit ImuMerge(const Params& params);
 
-  /// Returns the differences of the forces between units, relative to those expected from rotation and positions: 1 if
+  /// Returns the ratio of the force differences between units to those expected from rotation and positions. It is 1 if
   /// correct, -1 if the accelerometers' sign is inverted. Empty while the body has not rotated enough.
   static std::optional<double> arm_share(const State& state);
 

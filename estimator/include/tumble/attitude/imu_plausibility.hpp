@@ -63,9 +63,9 @@ struct ImuPlausibilityParams {
 /// changed is frozen if gravity rotates, or if forces differ from gravity for long enough. An accelerometer that always
 /// reads 0 is frozen if the gyro measures motion.
 ///
-/// Not detected: an accelerometer with all three axes flipped (with several IMUs, ImuMerge::arm_share() detects it),
-/// errors of some per cent, errors of axes about which the body does not rotate, and a body that is pushed all the
-/// time.
+/// Not detected: errors of some per cent, errors of axes about which the body does not rotate, and a body that is
+/// pushed all the time. An accelerometer with all three axes flipped is not detected either; with several IMUs,
+/// ImuMerge::arm_share() detects it.
 class ImuPlausibility {
  public:
   using Params = ImuPlausibilityParams;
@@ -109,8 +109,8 @@ class ImuPlausibility {
   double unexplained_share(const State& state) const;
   /// Returns the slope of the force's rotation over the gyro's (I17); 1 while unknown.
   double rotation_slope(const State& state) const;
-  /// Returns the correlation of the two rotations, -1 to 1: 1 for a gyro of any scale, -1 for an inverted gyro, about 0
-  /// for swapped axes, and values between if pushes are mistaken for gravity. 1 while the rotation is too small.
+  /// Returns the correlation of the two rotations, -1 to 1. It is 1 for a gyro of any scale, -1 for an inverted gyro,
+  /// and about 0 for swapped axes. Pushes mistaken for gravity cause values between. 1 while the rotation is too small.
   double rotation_agreement(const State& state) const;
   /// Returns the force's rotation as a fraction of the gyro's, including windows in which the force did not rotate; 1
   /// while unknown.

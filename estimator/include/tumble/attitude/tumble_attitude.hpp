@@ -61,13 +61,13 @@ struct TumbleAttitudeParams {
 /// displacement therefore separate tilt and gyro bias from any acceleration that is later compensated. A Kalman filter
 /// of nine states (tilt, bias, velocity, displacement) does this every `node_s`. It acts like VQF's low-pass in an
 /// inertial frame, with a corner frequency that adapts to the sensor's errors. At rest, velocity and rate are zero up
-/// to noise: the bias is measured and the attitude is constant, so noise moves neither tilt nor heading.
+/// to noise. The bias is then measured and the attitude kept constant, so noise moves neither tilt nor heading.
 ///
 /// The extent of the motion is not known in advance: a few centimetres, or down a hill. If a velocity or displacement
 /// exceeds its assumed standard deviation and the tilt's variance does not explain it, it is real motion. The assumed
 /// standard deviation then increases for `motion_tau_s`.
 ///
-/// For a rolling sphere (radius_m > 0), the centre's velocity is r w x n, and that of the IMU differs from it by w x (R
+/// For a rolling sphere (radius_m > 0), the centre's velocity is r w x n. That of the IMU differs from it by w x (R
 /// rho). Rolling then explains the specific force except for tilt and bias, without the derivative of the rate. A
 /// velocity that does not fit indicates slip. Corrections pause until it fits again, for at most slip_timeout_s.
 ///

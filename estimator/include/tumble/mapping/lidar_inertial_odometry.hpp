@@ -23,14 +23,14 @@ class StateWriter;
 class StateReader;
 class StateLayout;
 
-/// Estimates pose and map of a tumbling body from an IMU and a lidar. The mapper integrates the IMU between sweeps,
-/// deskews each point at its own time, and registers the sweep to a voxel map by k-nearest-neighbour point-to-plane
-/// distances. It then extends the map. The registration refines position, attitude and velocity at the start of a sweep
-/// together, which also refines the deskewing.
+/// Estimates pose and map of a tumbling body from an IMU and a lidar. The mapper integrates the IMU between sweeps and
+/// deskews each point at its own time. It registers the sweep to a voxel map by k-nearest-neighbour point-to-plane
+/// distances, and then extends the map. The registration refines position, attitude and velocity at the start of a
+/// sweep together, which also refines the deskewing.
 ///
-/// World: z up, origin and yaw at the IMU at the first sample, levelled by the specific force at rest.
-/// Pass IMU samples in time order, then each sweep once IMU samples reach its end. The class uses no threads of its own
-/// and no files and prints nothing.
+/// World: z up, origin and yaw at the IMU at the first sample, levelled by the specific force at rest. Pass IMU samples
+/// in time order, then each sweep once IMU samples reach its end. The class starts no threads, uses no files and prints
+/// nothing.
 ///
 /// The lidar's mounting, its time offset and gravity are estimated if their standard deviations are not 0. All unknowns
 /// form one state with one covariance. The estimator is an iterated error-state filter over sweeps. A fixed-lag
@@ -77,11 +77,10 @@ class LidarInertialOdometry {
 
   /// Registers a sweep of points fired in [start_ns, end_ns]. Sweeps do not overlap. NaN returns are misses.
   ///
-  /// Errors that leave the state unchanged: `time_order` (end before start, or start before the last sweep's end),
-  /// `too_few` (IMU samples do not cover the sweep), `out_of_range` (an offset beyond the sweep).
-  /// Errors after which the pose is the inertial prediction and the verdict is `rejected`: `empty` (no points),
-  /// `non_finite` (no finite point), `too_few` (no point in range), `degenerate` (all points have one time stamp
-  /// although the sweep has a duration).
+  /// These errors leave the state unchanged: `time_order` (end before start, or start before the last sweep's end),
+  /// `too_few` (IMU samples do not cover the sweep), `out_of_range` (an offset beyond the sweep). After other errors,
+  /// the pose is the inertial prediction and the verdict is `rejected`: `empty` (no points), `non_finite` (no finite
+  /// point), `too_few` (no point in range), `degenerate` (all points have one time stamp).
   Status add_sweep(TimeNs start_ns, TimeNs end_ns, std::span<const LidarPoint> points, SweepReport& report);
 
   /// Predicts pose and velocity with covariance at the last of further samples, by inertial integration from the last

@@ -29,8 +29,8 @@ struct PlaneBounds {
   /// be wrong.
   double collinear_share = 0.03;
   double rough_share = 0.1;  ///< if l0 is above this fraction of l1, there is no plane
-  /// Minimum number of neighbours that are not on the most frequent scan line. With fewer, the fit would be the plane
-  /// of the ring instead of the surface: a ring around a pillar or through a room's corner is flat.
+  /// Minimum number of neighbours that are not on the most frequent scan line. With fewer, the fit could be the plane
+  /// of the ring instead of the surface. Examples are a ring around a pillar or through a room's corner.
   int off_line_min = 2;
 
   /// Visits every parameter: its value, name, unit, bounds and meaning (common/parameters.hpp).

@@ -30,8 +30,9 @@ struct RegistrationResult {
   /// correlation_discount times their contribution to the normal matrix.
   SweepUnknowns::Matrix score_covariance = SweepUnknowns::Matrix::Zero();
   /// Share of the normal matrix that is caused by noise, for all free unknowns. Normals are fitted to few points, and
-  /// their errors add information in every direction of a plane (errors in variables, W. Fuller, Measurement Error
-  /// Models, 1987, section 2.2). This share stabilises the iterations but contains no information about the motion.
+  /// their errors add information in every direction of a plane. Source: errors in variables, W. Fuller, Measurement
+  /// Error Models, 1987, section 2.2. This share stabilises the iterations but contains no information about the
+  /// motion.
   SweepUnknowns::Matrix errors_in_variables_information = SweepUnknowns::Matrix::Zero();
   std::size_t points = 0, matches = 0, inliers = 0;
   double correction_m = 0.0;  ///< correction of the position at the start; if it exceeded its bound, the exceeding

@@ -47,13 +47,13 @@ struct MotionState {
 /// Computes the motion of the IMU over a segment from a known start by strapdown integration. Evaluates it at any time.
 ///
 /// Attitude: R(t) = R_k Exp(w_k (t - t_k)), exact for a rate that is constant in body axes over each sample. Position:
-/// p(t) = p_0 + v_0 t + g t^2 / 2 + S(t), with S the double integral of the specific force in W. The mean force over
-/// each sample is R_k J_l(w_k dt) f_k, exact for a force constant in body axes, such as the centripetal force of a
+/// p(t) = p_0 + v_0 t + g t^2 / 2 + S(t), with the double integral S of the specific force. The mean force over each
+/// sample is R_k J_l(w_k dt) f_k. It is exact for a force constant in body axes, such as the centripetal force of a
 /// spin.
 ///
 /// The saturation deficit e corrects the clipped axes. It is linear in time between kKnots knots at equal steps from
 /// the start to the end of the segment. The rate is w_j + s_j e_j(t) where axis j was clipped. The factor s_j has the
-/// sign of w_j and the magnitude sigma_j / (largest sigma_j of the segment's clipped samples), so that well known rates
+/// sign of w_j and the magnitude sigma_j / (largest sigma_j of the segment's clipped samples). Well known rates thus
 /// change little. The magnitude is 1 if all sigma_j are 0. Over a sample, e has the value of the sample's middle. Not
 /// modelled: sculling within a sample, the earth's rotation.
 class SweepTrajectory {

@@ -36,8 +36,8 @@ namespace tumble {
 /// Cost: an IMU sample costs one step of the stream, and sometimes the registration of a sweep. A sample that ends no
 /// sweep allocates nothing after start-up. While the second pass runs, a sweep costs up to four registrations, and once
 /// five more when the second pass finishes. Memory is bounded by the lag, the map radius, `sweeps_max` and the buffer
-/// of the second pass, plus 12 bytes per sweep while the body stays within ten metres. A call needs at most 64 KiB of
-/// stack.
+/// of the second pass. It grows by 12 bytes per sweep while the body stays within ten metres. A call needs at most 64
+/// KiB of stack.
 ///
 /// The class uses no threads and no files and prints nothing. Copies contain the complete state, so a run may be split.
 /// Not modelled: see RegimeStream and LidarInertialOdometry.
@@ -114,8 +114,8 @@ class TumblingOdometry {
   std::size_t gaps() const { return gaps_; }
   /// Returns whether map and pose are those of the second pass (SecondPass).
   bool passed_again() const { return again_.taken(); }
-  /// Returns the number of rejected inputs: samples that the mapper rejected with their rates, sweeps not fetched in
-  /// time, and odometer readings that span two sweeps. It is 0 in normal operation.
+  /// Returns the number of rejected inputs: samples that the mapper rejected, sweeps not fetched in time, and odometer
+  /// readings that span two sweeps. It is 0 in normal operation.
   std::size_t refused_samples() const { return pass_.refused_samples(); }
   std::size_t dropped_sweeps() const { return dropped_sweeps_; }
   std::size_t unused_readings() const { return readings_.straddling(); }

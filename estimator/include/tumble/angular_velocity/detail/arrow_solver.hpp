@@ -42,8 +42,8 @@ Marginal marginal(const Conditional& conditional, const BorderMatrix& border_cov
 /// border.
 void eliminate_errors(const Block& block, ErrorMatrix& errors, ErrorMatrix* next, BorderErrors& border);
 
-/// Returns the derivative of an eliminated block by each error, from the result of eliminate_errors() and the
-/// derivatives of the next block (null for the last) and of the border.
+/// Returns the derivative of an eliminated block by each error, after eliminate_errors(). Needs the same derivatives of
+/// the next block (null for the last) and of the border.
 ErrorMatrix back_substitute_errors(const Block& block, const ErrorMatrix& errors, const ErrorMatrix* next_moved,
                                    const BorderErrors& border_moved);
 

@@ -34,8 +34,8 @@ class DeviceDoubt {
   /// returns the prior. `unlike`: the device is known not to match its data sheet.
   void ask(const SensorErrorEvidence& evidence, Work& work, Open& open, bool unlike = false) const;
 
-  /// Returns the likelihood ratio of triads that are as synchronous as the data sheet states, from a measured delay
-  /// with its standard deviation, minus the known delay. rate_stream.md (R109).
+  /// Returns the likelihood ratio of synchronous triads, as the data sheet states, against asynchronous ones. `delay_s`
+  /// is a measured delay minus the known one, with its standard deviation. rate_stream.md (R109).
   double odds_of_sheet(double delay_s, double sigma_s) const;
 
   /// Returns the additional delay, beyond the one already corrected, that `evidence` implies for a device with any

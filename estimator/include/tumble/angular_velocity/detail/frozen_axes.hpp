@@ -18,12 +18,12 @@ namespace tumble {
 /// sample, by far more than the quantisation of this axis. Not detected: an axis that never changed or repeated its
 /// reading as long before (coarse quantisation at rest, simulation without noise).
 ///
-/// A saturated reading may repeat. A reading counts as saturated at 0.9 of the stated range, if flagged by the device,
-/// or if it is the extreme of the axis and above 0.5 of the range. Such an axis is frozen if all other axes of both
-/// triads indicate rest for `rail_still_s`, because a body with such a rate or force is not at rest. On a body that is
-/// never at rest, the axis is frozen if it repeats the level for `rail_held_s` while another axis of its triad changes.
-/// Either it is frozen or the range is too small for the spin; in both cases its rate is unknown. Not distinguished: a
-/// body that spins so evenly about this axis that no other axis changes.
+/// A saturated reading may repeat. A reading counts as saturated from 0.9 of the stated range on, or if the device
+/// flags it. The extreme reading of an axis counts from 0.5 of the range on. Such an axis is frozen if all other axes
+/// of both triads indicate rest for `rail_still_s`. Reason: a body with such a rate or force is not at rest. On a body
+/// that is never at rest, the axis is frozen after `rail_held_s` if another axis of its triad changes. Either it is
+/// frozen or the range is too small for the spin; in both cases its rate is unknown. Not distinguished: a body that
+/// spins so evenly about this axis that no other axis changes.
 class FrozenAxes {
  public:
   struct Params {

@@ -9,8 +9,8 @@
 
 namespace tumble {
 
-/// State of one triad's sample at arrival. If the sensor is slower than the log, the sample repeats an earlier reading
-/// or contains one that arrived since the last sample (sample and hold).
+/// State of one triad's sample at arrival. If the sensor is slower than the log (sample and hold), the sample repeats
+/// an earlier reading, or contains one that arrived since the last sample.
 struct HeldReading {
   bool repeats = false;                              ///< repeats the reading of the previous sample
   double age_samples = 0.0;                          ///< mean age of the reading

@@ -29,13 +29,13 @@ RateFactor gyro_factor(const RateKnot& knot, const RigConstants& rig, const Eige
 /// compensation.
 RateFactor element_factor(const RateKnot& knot, const RigConstants& rig, const Eigen::Vector3d& reading_rad_s);
 
-/// Residual of the accelerometer in free flight, where the specific force at the centre of mass is zero [m/s^2]: alpha
-/// x t + w x (w x t) + bias - reading.
+/// Residual of the accelerometer in free flight [m/s^2]: alpha x t + w x (w x t) + bias - reading. The specific force
+/// at the centre of mass is zero.
 RateFactor flight_factor(const RateKnot& knot, const RigConstants& rig, const Eigen::Vector3d& reading_m_s2);
 
 /// Same for an accelerometer that is `delay_s` late. Euler's equation without torque propagates the knot back to the
-/// earlier time: w - d alpha + d^2/2 j and alpha - d j, with the angular jerk j. It also depends on the inertia.
-/// `by_delay` (may be null) receives the derivative by the delay.
+/// earlier time. The result is w - d alpha + d^2/2 j and alpha - d j, with the angular jerk j. It also depends on the
+/// inertia. `by_delay` (may be null) receives the derivative by the delay.
 RateFactor late_flight_factor(const RateKnot& knot, const RigConstants& rig, const Eigen::Vector3d& reading_m_s2,
                               double delay_s, Eigen::Vector3d* by_delay);
 

@@ -33,9 +33,9 @@ class RateModel {
   /// freedom.
   double jump(const RateKnot& from, const RateKnot& to, double dt_s) const;
 
-  /// Moves the unmeasured rates of a sample in contact to where its force is smallest, if that force is far smaller
-  /// than at the current estimate. Reason: between two impacts a body may fly for a single sample, which local steps do
-  /// not find.
+  /// Moves the unmeasured rates of a sample in contact to the minimum of its force, if this minimum is far below the
+  /// force at the current estimate. Reason: between two impacts a body may fly for a single sample, which local steps
+  /// do not find.
   void seek_flight(const RateObservation& observation, const RigConstants& rig, RateEstimate& estimate) const;
 
   /// Initialises the bounds of a sample near the current estimate or the reading, whichever is beyond.

@@ -17,19 +17,19 @@ struct SubsampleSaturation {
 
 /// Estimates the deficit of a flagged reading from its free neighbour. The rate passes the level c with constant slope
 /// (D per window) within this window and the neighbouring one. With the clipped fraction p of the window, the reading
-/// is m = c - (1-p)^2 D/2, the deficit p^2 D/2 and the neighbour m + p^2 D/2 - D. p follows from (c - m) / (m -
-/// neighbour) in closed form. The deficit is zero in three cases: the reading is at the level, it is within noise of
-/// the neighbour, or more than kShareMax of the window is hidden.
-/// `neighbour_rad_s`: the smaller of the neighbours' readings, with a sign for which the level is positive. Not
-/// modelled: a slope that changes within the two windows; sigma covers it (measured on impacts of tumbling bodies).
+/// is m = c - (1-p)^2 D/2, the deficit p^2 D/2 and the neighbour m + p^2 D/2 - D. The fraction p follows from (c - m) /
+/// (m - neighbour) in closed form. The deficit is zero if the reading is at the level or within noise of the neighbour.
+/// It is also zero if more than kShareMax of the window is hidden. `neighbour_rad_s`: the smaller of the neighbours'
+/// readings, with a sign for which the level is positive. Not modelled: a slope that changes within the two windows;
+/// sigma covers it (measured on impacts of tumbling bodies).
 SubsampleSaturation subsample_saturation(double reading_rad_s, double neighbour_rad_s, double rail_rad_s,
                                          double noise_rad_s);
 
 /// Returns the smaller neighbouring reading, as evaluated by `read` (neighbours may be null), or the level if there is
-/// none. A neighbour that is flagged on the axis counts only if the step to it is twice the distance of `reading_rad_s`
-/// from the level, so that most of its window was free. Reason: a rate of constant slope that passes the level in this
-/// window was free in the one before. Readings that decrease one by one along a tilted plane, all of them flagged, are
-/// not rates. rails.md (R70).
+/// none. A neighbour that is flagged on the axis counts only if most of its window was free. The criterion is a step to
+/// it of twice the distance of `reading_rad_s` from the level. Reason: a rate of constant slope that passes the level
+/// in this window was free in the one before. Readings that decrease one by one along a tilted plane, all of them
+/// flagged, are not rates. rails.md (R70).
 template <class Read>
 double free_neighbour(double reading_rad_s, double rail_rad_s, int axis, const ImuSample* before,
                       const ImuSample* after, const Read& read) {

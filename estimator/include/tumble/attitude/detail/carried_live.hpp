@@ -12,9 +12,9 @@
 
 namespace tumble {
 
-/// Estimates the angular velocity of a body that is known to be hand-held, from one IMU. It passes the saturation
-/// levels detected so far to CarriedStream, which does not detect them. After each detection the window is processed
-/// again. Not modelled: flight and contact, which RegimeStream distinguishes.
+/// Estimates the angular velocity of a body that is known to be hand-held, from a single IMU. The class detects
+/// saturation levels for CarriedStream, which does not. After each detection the window is processed again. Not
+/// modelled: flight and contact, which RegimeStream distinguishes.
 class CarriedLive {
  public:
   struct Params {

@@ -15,7 +15,7 @@ namespace tumble {
 ///
 /// An extended Kalman filter estimates rate, angular acceleration, specific force at the units' mean position, and each
 /// unit's lever arm error: f_k = c + a x r_k + w x (w x r_k). The force rotates in the body as gravity does. The filter
-/// runs while a gyro is clipped or reads more than kFast of its range, so that the lever arms are calibrated before the
+/// runs while a gyro is clipped or reads more than kFast of its range. The lever arms are thus calibrated before the
 /// gyro saturates. A reading is clipped if flagged or beyond the range. ClippingFinder sets flags for devices that clip
 /// below their range without reporting it. Clipped readings of gyro and accelerometer are bounds, not measurements.
 ///

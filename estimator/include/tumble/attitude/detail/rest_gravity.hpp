@@ -13,18 +13,18 @@
 namespace tumble {
 
 /// Checks the plausibility of rates by gravity at rests. The force at rest must have the magnitude g. The rates between
-/// two rests must rotate its direction at the first to that at the second, u_1 = R^T u_0, whatever happened between
-/// (flight, impacts, clipping). A gyro with wrong sign, scale or axis labels gives an arbitrary angle. After a tumble
-/// of several revolutions, this angle is below `miss_least_rad` in one of fifty cases. The magnitude reveals an
-/// accelerometer with another unit. The rates come from an estimate, whose covariance widens the bound.
+/// two rests must rotate its direction at the first to that at the second, u_1 = R^T u_0, also through flight, impacts
+/// and clipping. A gyro with wrong sign, scale or axis labels gives an arbitrary angle. After a tumble of several
+/// revolutions, this angle is below `miss_least_rad` in one of fifty cases. The magnitude reveals an accelerometer with
+/// another unit. The rates come from an estimate, whose covariance widens the bound.
 ///
 /// In addition, the velocity at a rest is zero. The forces of the span, rotated back by the rates, therefore integrate
 /// to gravity alone. Wrong rates that give the correct final direction by chance rarely satisfy this.
 ///
-/// The equations are imu_merge.md (I19), (I20), (I22), (I23). Not detected: a body that comes to rest in its initial
-/// attitude (a pendulum), rotation about the vertical, an accelerometer with all three axes flipped, a run with less
-/// than two rests. A fall of a second without rotation and without any rest is mistaken for a force without gravity. A
-/// rest on the ground and another in a steadily moving vehicle are mistaken for wrong rates.
+/// The equations are imu_merge.md (I19), (I20), (I22), (I23). Not detected: a body that returns to its initial attitude
+/// (a pendulum), rotation about the vertical, an accelerometer with all axes flipped, less than two rests. A fall of a
+/// second without rotation and without any rest is mistaken for a force without gravity. A rest on the ground and
+/// another in a steadily moving vehicle are mistaken for wrong rates.
 class RestGravity {
  public:
   struct Params {

@@ -9,8 +9,8 @@
 
 namespace tumble {
 
-/// Unknowns of a sweep, in the order of vectors and matrices: position, attitude (left perturbation in W) and velocity
-/// at the start of the trajectory, saturation deficit of clipped axes, calibration.
+/// Unknowns of a sweep, in the order of vectors and matrices. First position, attitude (left perturbation in W) and
+/// velocity at the start of the trajectory; then saturation deficit of clipped axes; then calibration.
 struct SweepUnknowns {
   static constexpr int kMotion = 9;         ///< position, attitude, velocity
   static constexpr int kDeficit = kMotion;  ///< first unknown of the saturation deficit, knot after knot
