@@ -16,8 +16,8 @@ namespace {
 using Eigen::Vector2d;
 using Eigen::Vector3d;
 
-// Prior fraction of segments with a constant rate (spins, turntables). It limits the evidence of a segment, however
-// long.
+// Prior fraction of segments with a constant rate (spins, turntables). This fraction limits the evidence of a segment,
+// however long.
 constexpr double kConstantShare = 0.05;
 // Minimum expected curvature of a rounded maximum within a segment, in standard deviations, for flatness to be
 // evidence.

@@ -41,8 +41,8 @@ class RateIteration {
   Moved moved_by_errors(const RateModel& model, std::span<const RateEstimate> estimates, const RigConstants& rig) const;
 
   const RigConstants::Matrix& rig_covariance() const { return rig_covariance_; }
-  /// For the last factorisation, returns twice the predicted decrease of the cost. It is also the square of the largest
-  /// change of any combination of unknowns in standard deviations.
+  /// For the last factorisation, returns twice the predicted decrease of the cost. This number is also the square of
+  /// the largest change of any combination of unknowns in standard deviations.
   double decrement() const;
 
  private:

@@ -14,9 +14,9 @@ namespace {
 // samples at a level, as a fraction of the step to their neighbour.
 constexpr double kUnseenTilt = 0.06, kUnseenOfStep = 0.5;
 
-// kTopShare: readings within this fraction of a segment's largest are at its top. It is the effect of a tilt of 0.06
-// (kUnseenTilt) and a rate on the other axes of a sixth of the level. kElementsApart: maximum difference of elements in
-// standard deviations.
+// kTopShare: readings within this fraction of a segment's largest are at its top. The fraction is the effect of a tilt
+// of 0.06 (kUnseenTilt) and a rate on the other axes of a sixth of the level. kElementsApart: maximum difference of
+// elements in standard deviations.
 constexpr double kTopShare = 0.01, kElementsApart = 3.0;
 
 // Lowest known level, or 0.

@@ -22,7 +22,7 @@ namespace tumble {
 ///
 /// Not modelled: coupling of the three axes. The commutators of SO(3) would add about dt^2 |w x alpha| / 4. The
 /// published code feeds +gyro although its convention requires -gyro. This sign only acts through the commutators,
-/// since negating angle, rate and acceleration together does not change this linear problem. It therefore has no
+/// since negating angle, rate and acceleration together does not change this linear problem. The sign therefore has no
 /// parameter here.
 class WnojSmoother {
  public:

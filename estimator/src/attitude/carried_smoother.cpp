@@ -54,8 +54,8 @@ RateSource source(const RateState& rate, double recovered_sigma) {
   return variance < recovered_sigma * recovered_sigma ? RateSource::recovered_contact : RateSource::bounded_only;
 }
 
-/// Adds the effect of the gyro's scale error for a body that is not hand-held and rotates on in one direction. It uses
-/// the rotation since the last rest or until the next one, whichever is smaller. carried.md (C42).
+/// Adds the effect of the gyro's scale error for a body that is not hand-held and rotates on in one direction. The
+/// error grows with the rotation since the last rest or until the next one, whichever is smaller. carried.md (C42).
 void widen_by_rotation(const CarriedSmoother::Params& params, const carried::Collected& collected,
                        const std::vector<RateState>& rates, std::vector<AttitudeState>& attitudes) {
   const double share = params.expert.readings.recovered_scale_share;

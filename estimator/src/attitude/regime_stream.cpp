@@ -162,8 +162,8 @@ void RegimeStream::judge(const RateState& rate, State& state) const {
   state.sum.carried += state.shares.carried;
 }
 
-// Returns the weight of CarriedStream for the reported sample, s of carried.md (C41). It is the smallest nearby
-// probability in its segment of clipped samples, within the window; 0 away from all segments.
+// Returns the weight of CarriedStream for the reported sample, s of carried.md (C41). The weight is the smallest nearby
+// probability in the segment of clipped samples, within the window; 0 away from all segments.
 double RegimeStream::share_of(const RateState& rate, State& state) const {
   const auto near_ns = static_cast<TimeNs>(std::llround(1e9 * params_.near_s));
   const std::vector<RateStream::Knot>& window = state.rate.window;

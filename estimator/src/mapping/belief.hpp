@@ -10,8 +10,8 @@ namespace tumble::mapping {
 /// Estimate of the unknowns at one time. The two covariances are C and E of mapping.md (section 6).
 struct Belief {
   Registration::Estimate mean;  ///< the covariance of its state is the motion block of `weight`
-  /// Covariance for weighting the mean against the next sweep. It counts points less than their information, for
-  /// robustness to outliers.
+  /// Covariance for weighting the mean against the next sweep. Points count less than their information, for robustness
+  /// to outliers.
   Registration::Matrix weight = Registration::Matrix::Zero();
   /// Covariance of the mean's actual errors, propagated through the gains that the weights produced.
   Registration::Matrix error = Registration::Matrix::Zero();

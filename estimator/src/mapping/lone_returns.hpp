@@ -21,8 +21,8 @@ struct RangeNoise {
 /// beam to be a surface (I. Bogoslavskyi, C. Stachniss, IROS 2016). Or it is on the line between one before and one
 /// after it, as on ground at a grazing angle: mapping.md (R56), (R57), (R58). Neighbours are within the sweep's angular
 /// step, so a return among misses is alone. All returns are kept if successive returns are too far apart for this test.
-/// They are also kept if there are no more lone returns than in clear air. Larger moving objects (people, cars) are not
-/// lone returns.
+/// All returns are also kept if there are no more lone returns than in clear air. Larger moving objects (people, cars)
+/// are not lone returns.
 class LoneReturns {
  public:
   /// Removes the lone returns from `points` and returns their number. The remaining order is kept: firing order per

@@ -206,8 +206,8 @@ void LidarInertialOdometry::Impl::forget_until(TimeNs end_ns) {
   if (map.prune(params, border.belief.mean.state.p_WI_m)) window.forget_inserted();
 }
 
-/// Propagates the alternative pose by inertial prediction. It is the pose without an unconfirmed relocalisation, or a
-/// contradicted pose after tracking failed again.
+/// Propagates the alternative pose by inertial prediction. This pose is the one without an unconfirmed relocalisation,
+/// or a contradicted one after tracking failed again.
 void LidarInertialOdometry::Impl::carry_on_other(const MotionWindow& motion, bool doubted_before) {
   const bool doubted = mapping::is_to_be_borne_out(tracking);
   if (doubted && !doubted_before) {

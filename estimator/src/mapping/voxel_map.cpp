@@ -80,7 +80,7 @@ inline Eigen::Vector3i VoxelMap::Group::of(const Eigen::Vector3i& cell) {
   return {cell.x() >> kBits, cell.y() >> kBits, cell.z() >> kBits};
 }
 
-/// The cells of a search, row by row. Their groups are looked up once, at first use.
+/// The cells of a search, row by row. Groups of cells are looked up once, at first use.
 class VoxelMap::Rows {
  public:
   Rows(const VoxelMap& map, const Eigen::Vector3i& cell, int reach) : map_(map), first_x_(cell.x() - reach) {

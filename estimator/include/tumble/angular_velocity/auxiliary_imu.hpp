@@ -13,16 +13,16 @@
 
 namespace tumble {
 
-/// Readings of another accelerometer on the same rigid body, in the primary IMU's axes and at its time stamps. Their
-/// difference from the primary IMU depends only on the body's rotation, in flight and in contact.
+/// Readings of another accelerometer on the same rigid body, in the primary IMU's axes and at its time stamps. The
+/// readings differ from the primary IMU's only by the effect of the body's rotation, in flight and in contact.
 struct AuxiliaryAccelerometer {
   Eigen::Vector3d p_I_m = Eigen::Vector3d::Zero();   ///< position relative to the primary IMU, in the primary IMU's
                                                      ///< axes
   std::vector<Eigen::Vector3d> specific_force_m_s2;  ///< one per sample of the primary IMU; NaN: no information
 };
 
-/// Mounting and accuracy of another IMU C on the same rigid body. Its biases and mounting errors are not estimated; the
-/// standard deviations include them.
+/// Mounting and accuracy of another IMU C on the same rigid body. Biases and mounting errors of C are not estimated;
+/// the standard deviations include them.
 struct AuxiliaryImu {
   Eigen::Isometry3d T_IC = Eigen::Isometry3d::Identity();  ///< rotates and translates from C to the primary IMU
   double gyro_noise_density = 5.236e-4;                    ///< [rad/s/sqrt(Hz)]; [1e-9, 1]

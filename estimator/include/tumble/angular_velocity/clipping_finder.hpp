@@ -45,7 +45,7 @@ std::uint8_t clip_flags(const Clipping& clipping);
 
 /// Saturation levels that are certain enough for tests across units, used for units that may freeze. Equal readings
 /// alone are not sufficient. Excluded are flat maxima of slow motion far below the stated range, and repeated readings
-/// without a stated range. Neither effect creates saturation planes, which are therefore included.
+/// without a stated range. Saturation planes are included because neither of these effects creates a plane.
 struct HeardRails {
   RailPlanes gyro, accel;                                 ///< in use
   double gyro_range_rad_s = 0.0, accel_range_m_s2 = 0.0;  ///< stated range; 0: not stated
@@ -53,9 +53,9 @@ struct HeardRails {
   std::uint8_t flags(const ImuSample& sample, const Clipping& judged) const;
 };
 
-/// Finds the clipped readings of a recording, for all readers of recordings. It combines the flags of the device,
-/// levels of equal readings (RailDetector) and tilted planes (RailPlaneFinder), for gyro and accelerometer. RateStream
-/// applies the same rules to its window (RailWatch).
+/// Finds the clipped readings of a recording, for all readers of recordings. The class combines the flags of the
+/// device, levels of equal readings (RailDetector) and tilted planes (RailPlaneFinder), for gyro and accelerometer.
+/// RateStream applies the same rules to its window (RailWatch).
 class ClippingFinder {
  public:
   struct Params {
@@ -84,7 +84,7 @@ class ClippingFinder {
   /// Throws InvalidParams if a parameter is out of bounds.
   explicit ClippingFinder(const Params& params);
 
-  /// Classifies all samples. They must be finite and in time order. O(N) apart from the search of RailPlaneFinder.
+  /// Classifies all samples. Samples must be finite and in time order. O(N) apart from the search of RailPlaneFinder.
   Found find(std::span<const ImuSample> samples) const;
 
   const RailDetector& upright_rails() const { return upright_rails_; }

@@ -86,10 +86,11 @@ struct RailDetectorParams {
 /// the data sheet. One gyro with a stated range of 450 deg/s saturated at 600 deg/s.
 ///
 /// A plateau is a run of readings of one sign, closer together than noise allows, at the largest magnitude so far on
-/// the axis. Low plateaus must be longer and start or end with a jump of many digits of the device. This excludes the
-/// rounded maximum of a slow, coarsely quantised motion and an axis at rest. A stated range is used until a plateau is
-/// found or a reading exceeds it. Flags of the device are always used. Clipping has hysteresis, so that the irregular
-/// edge of a plateau belongs to it. Not modelled: levels that drift or differ between the two signs of an axis.
+/// the axis. Low plateaus must be longer and start or end with a jump of many digits of the device. The rule excludes
+/// the rounded maximum of a slow, coarsely quantised motion and an axis at rest. A stated range is used until a plateau
+/// is found or a reading exceeds it. Flags of the device are always used. Clipping has hysteresis, so that the
+/// irregular edge of a plateau belongs to it. Not modelled: levels that drift or differ between the two signs of an
+/// axis.
 class RailDetector {
  public:
   using Params = RailDetectorParams;
@@ -128,8 +129,8 @@ class RailDetector {
                 Clipping& clipping) const;
 
   /// Returns the saturation level of channel c (0-5). The first available value counts: the plateau of the channel; the
-  /// largest plateau on another axis of the same sensor; the stated range. The last two only apply while no reading
-  /// exceeds them.
+  /// largest plateau on another axis of the same sensor; the stated range. The plateau of another axis and the stated
+  /// range only apply while no reading exceeds them.
   std::optional<double> rail(const State& state, int c) const;
   /// Returns whether a plateau or a larger reading contradicts the stated range.
   bool disagrees(const State& state, int c) const;

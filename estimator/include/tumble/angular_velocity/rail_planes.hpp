@@ -48,8 +48,8 @@ class RailPlaneFinder {
     double log_odds_before = -6.0;  ///< prior log odds for each element and sign
     double log_odds_min = 1.0;      ///< minimum log odds of an accepted plane
     double log_odds_keep = -3.0;    ///< minimum log odds of a plane that was accepted before
-    /// Saturation planes from an earlier run of the device, which are stable to a fraction of a percent. They are used
-    /// from the start until readings contradict them, and make planes near them more likely.
+    /// Saturation planes from an earlier run of the device, which are stable to a fraction of a percent. Such planes
+    /// are used from the start until readings contradict them, and make planes near them more likely.
     RailPlanes known = {};
 
     /// Visits every parameter: its value, name, unit, bounds and meaning (common/parameters.hpp).

@@ -31,7 +31,7 @@ struct RateModelParams {
   /// Calibration from an earlier run. Replaces `nominal` and the five standard deviations above.
   std::optional<RigCalibration> calibration = std::nullopt;
 
-  /// Other IMUs on the body, at most kAuxiliaryImusMax. Their readings are passed with each sample.
+  /// Other IMUs on the body, at most kAuxiliaryImusMax. The readings of these IMUs are passed with each sample.
   std::vector<AuxiliaryImu> auxiliary_imus = {};
 
   /// Noise density of the gyro [rad/s/sqrt(Hz)]. Default: industrial MEMS gyro, 0.03 deg/s/sqrt(Hz).
@@ -40,8 +40,8 @@ struct RateModelParams {
   double accel_noise_density = 5.9e-4;
   /// Known sensor errors, for which the readings are corrected.
   SensorErrors errors = {};
-  /// Largest possible rate and angular acceleration of the body. They bound the estimate if nothing else does. Bounds:
-  /// [1, 1e4] rad/s and [1, 1e7] rad/s^2.
+  /// Largest possible rate and angular acceleration of the body. These limits bound the estimate if nothing else does.
+  /// Bounds: [1, 1e4] rad/s and [1, 1e7] rad/s^2.
   double rate_max_rad_s = 50.0;
   double acceleration_max_rad_s2 = 5000.0;
 

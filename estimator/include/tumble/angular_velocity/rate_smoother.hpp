@@ -96,9 +96,9 @@ struct RateReport {
 /// - The gyro's readings where not clipped.
 /// - The bound given by a clipped reading, for any number of axes.
 /// - In flight, the complete rigid-body equation of the specific force at the lever arm, and Euler's equation without
-///   torque. Both have reduced weight where they do not hold (contact).
-/// - White noise on jerk between samples. Its density grows with the contact force, so that an impact interrupts the
-///   chain.
+///   torque. During contact, both equations have reduced weight.
+/// - White noise on jerk between samples. The density of the jerk grows with the contact force, so that an impact
+///   interrupts the chain.
 /// - At rest (RestDetector), zero rate, which determines the gyro's bias.
 ///
 /// The normal equations are an arrow matrix: O(N) per iteration, including the covariance. The initial values come from
@@ -113,12 +113,12 @@ struct RateReport {
 /// 48 %, and in one sample of ten everything. Reason: a cage strikes with several bars and rolls on within 10 ms.
 ///
 /// Sensor errors (SensorErrors: scale, misalignment, g-sensitivity, delay and window of the accelerometer relative to
-/// the gyro) are partly correlated with other constants. They are estimated as far as the run determines them, with a
-/// magnitude that fits the readings (fit_sensor_errors), by descents with corrected readings. The remaining uncertainty
-/// is included in both covariances as considered parameters (S. F. Schmidt, 1966). Otherwise the fit would treat these
-/// errors as noise and average them; see the test ScaleAndMisalignmentAreInTheCovariance. guess_triad_delay computes an
-/// initial delay. If the two triads are not synchronous, the later one is assumed to be delayed and the other to be on
-/// time.
+/// the gyro) are partly correlated with other constants. Sensor errors are estimated as far as the run determines them,
+/// by repeated descents with corrected readings. Their prior magnitude is chosen to fit the readings
+/// (fit_sensor_errors). The remaining uncertainty is included in both covariances as considered parameters (S. F.
+/// Schmidt, 1966). Otherwise the fit would treat these errors as noise and average them; see the test
+/// ScaleAndMisalignmentAreInTheCovariance. guess_triad_delay computes an initial delay. If the two triads are not
+/// synchronous, the later one is assumed to be delayed and the other to be on time.
 ///
 /// The elements of a gyro clip along their own, not quite orthogonal axes. The device's compensation then mixes the
 /// clipped values (RailPlaneFinder). While an element clips, the gyro is therefore used element by element

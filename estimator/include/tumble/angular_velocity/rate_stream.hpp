@@ -22,8 +22,8 @@
 
 namespace tumble {
 
-/// Estimates angular velocity through gyro saturation, sample by sample, with a fixed lag. It uses the factors of
-/// RateSmoother over a window of fixed length. One Gauss-Newton step is made per sample, or every 5 ms for faster
+/// Estimates angular velocity through gyro saturation, sample by sample, with a fixed lag. RateStream uses the factors
+/// of RateSmoother over a window of fixed length. One Gauss-Newton step is made per sample, or every 5 ms for faster
 /// samples. Samples that leave the window are marginalised into a Gaussian prior on the next sample and on
 /// RigConstants.
 ///

@@ -12,11 +12,11 @@
 namespace tumble {
 
 /// Detects when an IMU is stationary, for rates, attitude, rolling and mapping. At rest the rate is within a plausible
-/// bias, and the force is large enough to be gravity. Both are constant up to noise for a while. The gyro then measures
-/// its bias. All parameters refer to times and to one bandwidth: readings faster than `reading_s` are averaged first.
-/// White noise of density n [unit/sqrt(Hz)] then has the standard deviation n / sqrt(reading_s), whatever the sample
-/// rate. A spread should be at least five such deviations. Not distinguished from rest: a steady rotation about the
-/// vertical, slower than `rate_max_rad_s`.
+/// bias, and the force is large enough to be gravity. Rate and force are constant up to noise for a while. The gyro
+/// then measures its bias. All parameters refer to times and to one bandwidth: readings faster than `reading_s` are
+/// averaged first. White noise of density n [unit/sqrt(Hz)] then has the standard deviation n / sqrt(reading_s),
+/// whatever the sample rate. A spread should be at least five such deviations. Not distinguished from rest: a steady
+/// rotation about the vertical, slower than `rate_max_rad_s`.
 ///
 /// Parameters differ between uses and are set there: docs/design.md.
 class RestDetector {
@@ -47,7 +47,7 @@ class RestDetector {
     }
   };
   struct State {
-    // State of the run: readings that stay close to their mean. They are rest if they last long enough.
+    // State of the run: readings that stay close to their mean. A run that lasts long enough is rest.
     Eigen::Vector3d rate_sum_rad_s = Eigen::Vector3d::Zero();
     Eigen::Vector3d force_sum_m_s2 = Eigen::Vector3d::Zero();
     double weight = 0.0;      ///< weight of the sums: number of readings, decreasing with age

@@ -81,10 +81,10 @@ struct SensorErrorEvidence {
   SensorErrors::Vector gradient = SensorErrors::Vector::Zero();
 };
 
-/// Reduces the evidence to `share` in the directions that a freely moving body does not determine. These are a scale
-/// common to all axes of a triad, and a common rotation of both triads. In these directions the evidence comes from
-/// residuals of the motion model, which smaller motions reduce, and grows with the number of samples. rate_smoother.md
-/// (R37a).
+/// Reduces the evidence to `share` in the directions that a freely moving body does not determine. Such directions are
+/// a scale common to all axes of a triad, and a common rotation of both triads. In these directions the evidence comes
+/// from residuals of the motion model, which smaller motions reduce, and grows with the number of samples.
+/// rate_smoother.md (R37a).
 void discount_untold(double share, SensorErrorEvidence& evidence);
 
 /// Sensor errors estimated from the readings and the prior.

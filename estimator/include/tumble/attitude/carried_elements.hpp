@@ -13,8 +13,8 @@
 
 namespace tumble {
 
-/// Clipped elements of each sample of a recording, as input of CarriedSmoother. They come from flags of the device, and
-/// from plateaus and tilted planes in the readings.
+/// Clipped elements of each sample of a recording, as input of CarriedSmoother. Sources are flags of the device, and
+/// plateaus and tilted planes in the readings.
 struct CarriedElements {
   Eigen::Matrix3d rows = Eigen::Matrix3d::Identity();  ///< sensing directions of the gyro's elements; the axes if no
                                                        ///< plane was found

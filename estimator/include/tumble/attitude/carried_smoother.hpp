@@ -37,7 +37,7 @@ struct ClippedElements {
 };
 
 /// Estimates attitude and angular velocity of a hand-held body (held, swung, twirled) from one IMU, also while its gyro
-/// is saturated. This is a smoother over a whole recording.
+/// is saturated. CarriedSmoother is a smoother over a whole recording.
 ///
 /// Hand-held motion is bounded: its acceleration is short, and velocity and position return to zero. The specific force
 /// is therefore gravity at the attitude, the contribution of the lever arm, and a bounded remainder. The rotation of

@@ -57,8 +57,8 @@ struct ImuMergeParams {
 /// the mean position, without the angular acceleration. If three or more units agree and one does not, this unit is
 /// excluded from the sample. The contribution of its position is replaced, using the other units' rate. A small Kalman
 /// filter estimates each unit's bias, scale, misalignment and time offset relative to the mean while the body rotates.
-/// A significant time offset is corrected; the other errors average out. This does not hold for accelerometers in fast
-/// rotation, where large forces cancel in the mean: their errors are estimated and corrected (ForceErrors).
+/// A significant time offset is corrected; the other errors average out. Accelerometer errors do not average out in
+/// fast rotation, where large forces cancel in the mean. ForceErrors estimates and corrects them.
 ///
 /// A unit with a saturated accelerometer is excluded from the force. The same applies to a unit that may have been
 /// saturated within a sample and disagrees with the others. If most units are suspect, the merged force is flagged as
@@ -69,12 +69,13 @@ struct ImuMergeParams {
 /// flagged beforehand (ClippingFinder).
 ///
 /// All decisions and estimates use means over window_s, whatever the IMUs' rate. Bandwidth and tolerances are therefore
-/// fixed. A reading of that length is used unchanged. If an axis was saturated within the window, its mean is a bound.
+/// fixed. Readings as long as window_s are used unchanged. If an axis was saturated within the window, its mean is a
+/// bound.
 ///
 /// A unit whose reading is not finite is absent. A unit is frozen if its gyro or accelerometer repeats its reading
-/// while the others change, or its accelerometer does while gravity rotates. It is excluded until its readings have
-/// changed for a while. A unit that disagrees for long (scale, axes, unit of measurement) is excluded permanently, as
-/// long as two others remain. Equal readings at rest indicate neither.
+/// while the others change, or its accelerometer does while gravity rotates. A frozen unit is excluded until its
+/// readings have changed for a while. A unit that disagrees for long (scale, axes, unit of measurement) is excluded
+/// permanently, as long as two others remain. Equal readings at rest indicate neither.
 ///
 /// Not modelled: clocks of different rates, an error common to all units.
 class ImuMerge {
@@ -91,12 +92,12 @@ class ImuMerge {
 
   explicit ImuMerge(const Params& params);
 
-  /// Returns the ratio of the force differences between units to those expected from rotation and positions. It is 1 if
-  /// correct, -1 if the accelerometers' sign is inverted. Empty while the body has not rotated enough.
+  /// Returns the ratio of the force differences between units to those expected from rotation and positions. The ratio
+  /// is 1 if correct, -1 if the accelerometers' sign is inverted. Empty while the body has not rotated enough.
   static std::optional<double> arm_share(const State& state);
 
-  /// Returns `out_of_range` with the duration [s] if all recently received units are frozen. Their readings are then
-  /// merged unchanged. Otherwise returns `ok`.
+  /// Returns `out_of_range` with the duration [s] if all recently received units are frozen. The readings of frozen
+  /// units are then merged unchanged. Otherwise returns `ok`.
   Status verdict(const State& state) const;
 
   /// Returns the position of the merged IMU in C.

@@ -46,10 +46,10 @@ struct ImuPlausibilityParams {
 
 /// Checks whether an IMU's readings are plausible: units, axes, signs, and frozen sensors.
 ///
-/// If the magnitude of the force is constant over a fifth of a second, the force is nearly gravity. Its magnitude must
-/// then be g, and its direction must rotate as the gyro measures: u(t + T) = R^T u(t). A constant force of another
-/// magnitude is not gravity. It may be the centripetal force of a spin in flight, which is constant in the sensor's
-/// axes. Its direction is not compared, nor any window with a saturated gyro.
+/// If the magnitude of the force is constant over a fifth of a second, the force is nearly gravity. The magnitude of
+/// the force must then be g, and the force's direction must rotate as the gyro measures: u(t + T) = R^T u(t). A
+/// constant force of another magnitude is not gravity, but for example the centripetal force of a spin in flight. The
+/// direction of such a force is not compared. Windows with a saturated gyro are not compared either.
 ///
 /// The rotation of the force is regressed on that of the gyro. The slope is 1 for a sound IMU, 2 for a half-scale gyro,
 /// -1 for an inverted gyro, and about 0 for swapped axes. Pushes, and a force along a rod, scatter about this slope and
@@ -58,10 +58,10 @@ struct ImuPlausibilityParams {
 /// force that does not rotate although the body does is detected separately.
 ///
 /// A gyro or an accelerometer is frozen if it repeats one reading bit for bit, for a second and for ten times its
-/// longest earlier repetition. Its readings must have changed before. A sensor that repeated its readings as long
-/// before is not distinguished from this (coarse quantisation at rest, a simulation without noise). A gyro that never
-/// changed is frozen if gravity rotates, or if forces differ from gravity for long enough. An accelerometer that always
-/// reads 0 is frozen if the gyro measures motion.
+/// longest earlier repetition. The sensor's readings must have changed before. A sensor that repeated its readings as
+/// long before is not distinguished from this (coarse quantisation at rest, a simulation without noise). A gyro that
+/// never changed is frozen if gravity rotates, or if forces differ from gravity for long enough. An accelerometer that
+/// always reads 0 is frozen if the gyro measures motion.
 ///
 /// Not detected: errors of some per cent, errors of axes about which the body does not rotate, and a body that is
 /// pushed all the time. An accelerometer with all three axes flipped is not detected either; with several IMUs,
@@ -109,8 +109,9 @@ class ImuPlausibility {
   double unexplained_share(const State& state) const;
   /// Returns the slope of the force's rotation over the gyro's (I17); 1 while unknown.
   double rotation_slope(const State& state) const;
-  /// Returns the correlation of the two rotations, -1 to 1. It is 1 for a gyro of any scale, -1 for an inverted gyro,
-  /// and about 0 for swapped axes. Pushes mistaken for gravity cause values between. 1 while the rotation is too small.
+  /// Returns the correlation of the two rotations, -1 to 1. The correlation is 1 for a gyro of any scale, -1 for an
+  /// inverted gyro, and about 0 for swapped axes. Pushes mistaken for gravity cause values between. 1 while the
+  /// rotation is too small.
   double rotation_agreement(const State& state) const;
   /// Returns the force's rotation as a fraction of the gyro's, including windows in which the force did not rotate; 1
   /// while unknown.

@@ -59,9 +59,9 @@ struct TumbleAttitudeParams {
 /// The gyro is integrated exactly. The force, rotated to W, is integrated to a horizontal velocity and displacement
 /// (leaky). A tilt error would let both grow without bound. Weak pseudo-measurements of zero velocity and zero
 /// displacement therefore separate tilt and gyro bias from any acceleration that is later compensated. A Kalman filter
-/// of nine states (tilt, bias, velocity, displacement) does this every `node_s`. It acts like VQF's low-pass in an
-/// inertial frame, with a corner frequency that adapts to the sensor's errors. At rest, velocity and rate are zero up
-/// to noise. The bias is then measured and the attitude kept constant, so noise moves neither tilt nor heading.
+/// of nine states (tilt, bias, velocity, displacement) does this every `node_s`. The filter acts like VQF's low-pass in
+/// an inertial frame, with a corner frequency that adapts to the sensor's errors. At rest, velocity and rate are zero
+/// up to noise. The bias is then measured and the attitude kept constant, so noise moves neither tilt nor heading.
 ///
 /// The extent of the motion is not known in advance: a few centimetres, or down a hill. If a velocity or displacement
 /// exceeds its assumed standard deviation and the tilt's variance does not explain it, it is real motion. The assumed

@@ -18,10 +18,10 @@ namespace tumble {
 /// of 0.15 rad/s.
 ///
 /// The class fits a line to the stamps as a function of the sample number, with exponentially decreasing weights for
-/// older samples. This is the fading-memory polynomial filter of first degree (N. Morrison, Introduction to Sequential
-/// Smoothing and Prediction, 1969, ch. 13). The error of its time is 1.1 sqrt(T / memory_s) times the jitter, with the
-/// sample period T. A constant delay of the host is a clock offset and is not observable. Dropped samples are counted
-/// in the numbering.
+/// older samples. The method is the fading-memory polynomial filter of first degree (N. Morrison, Introduction to
+/// Sequential Smoothing and Prediction, 1969, ch. 13). The error of its time is 1.1 sqrt(T / memory_s) times the
+/// jitter, with the sample period T. A constant delay of the host is a clock offset and is not observable. Dropped
+/// samples are counted in the numbering.
 ///
 /// A stamp is kept, bit for bit, in each of these cases:
 /// - It is among the first 32.
@@ -32,8 +32,8 @@ namespace tumble {
 ///
 /// The estimated time is never further than half a period from the stamp.
 ///
-/// Not modelled: a sensor that samples on request of a host that jitters but stamps exactly. Its stamps look the same
-/// but are correct. Set `jitter_max` to 0 to keep every stamp.
+/// Not modelled: a sensor that samples on request of a host that jitters but stamps exactly. The stamps of such a
+/// sensor look the same but are correct. Set `jitter_max` to 0 to keep every stamp.
 class SampleClock {
  public:
   struct Params {

@@ -23,8 +23,8 @@ enum class Trouble : std::uint8_t {
 /// Returns the name of an error kind as used in tables and messages ("time_order").
 const char* to_string(Trouble trouble);
 
-/// Result of a step: the invalid field, its value and the violated bound.
-/// The library reports expected errors by value. It prints nothing, and only constructors throw.
+/// Result of a step: the invalid field, its value and the violated bound. The library reports expected errors by value
+/// and prints nothing. Only constructors throw.
 struct Status {
   Trouble trouble = Trouble::none;
   const char* field = "";  ///< static string: name of the input field

@@ -8,7 +8,7 @@
 
 namespace tumble {
 
-/// Calibration between lidar, IMU and world. It starts with the accuracy of an external calibration and is refined
+/// Calibration between lidar, IMU and world. The initial values come from an external calibration and are refined
 /// during the motion. Errors are ordered (rotation of T_IL, left perturbation in IMU axes: R_true = Exp(phi) R;
 /// translation of T_IL; time offset; gravity).
 struct SweepCalibration {

@@ -61,8 +61,8 @@ void compute_levers(const SweepTrajectory& trajectory, std::span<const SweepPoin
 void deskew(const SweepTrajectory& trajectory, std::span<const SweepPoint> points, double target_s,
             std::vector<Eigen::Vector3f>& positions_I_m);
 
-/// Keeps one point per cube of edge `voxel_m` in the world, the first in each cube. This gives an even density and few
-/// points to register.
+/// Keeps one point per cube of edge `voxel_m` in the world, the first in each cube. The result has an even density and
+/// few points to register.
 class SweepSampler {
  public:
   /// Writes the indices of the kept points of `positions_W_m` to `chosen`, in order.

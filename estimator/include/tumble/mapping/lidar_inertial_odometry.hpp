@@ -24,9 +24,9 @@ class StateReader;
 class StateLayout;
 
 /// Estimates pose and map of a tumbling body from an IMU and a lidar. The mapper integrates the IMU between sweeps and
-/// deskews each point at its own time. It registers the sweep to a voxel map by k-nearest-neighbour point-to-plane
-/// distances, and then extends the map. The registration refines position, attitude and velocity at the start of a
-/// sweep together, which also refines the deskewing.
+/// deskews each point at its own time. The mapper registers the sweep to a voxel map by k-nearest-neighbour
+/// point-to-plane distances, and then extends the map. The registration refines position, attitude and velocity at the
+/// start of a sweep together, which also refines the deskewing.
 ///
 /// World: z up, origin and yaw at the IMU at the first sample, levelled by the specific force at rest. Pass IMU samples
 /// in time order, then each sweep once IMU samples reach its end. The class starts no threads, uses no files and prints
@@ -63,13 +63,13 @@ class LidarInertialOdometry {
   Status add_imu(const ImuSample& sample, const RateState& rate);
 
   /// Sets an odometer's velocity at the start of the next sweep, which is the end of the last one. The velocity is in
-  /// IMU axes, with its standard deviation per axis. It replaces the velocity at the end of the last sweep, for the
-  /// next sweep only. On error nothing changes: `non_finite`, or `out_of_range` if the standard deviation is not above
-  /// 0.
+  /// IMU axes, with its standard deviation per axis. This velocity replaces the one at the end of the last sweep, for
+  /// the next sweep only. On error nothing changes: `non_finite`, or `out_of_range` if the standard deviation is not
+  /// above 0.
   Status add_velocity(const Eigen::Vector3d& v_WI_I_m_s, double sigma_m_s);
-  /// Sets an odometer's reading for the next sweep. Its times are between the end of the last sweep and that of the
-  /// next, with a margin of 20 ms. The reading is fused with the IMU's prediction by covariance (check_reading). It
-  /// replaces an earlier reading or add_velocity. A reading of another time has no effect.
+  /// Sets an odometer's reading for the next sweep. The times of the reading are between the end of the last sweep and
+  /// that of the next, with a margin of 20 ms. The reading is fused with the IMU's prediction by covariance
+  /// (check_reading). A new reading replaces an earlier one and add_velocity. A reading of another time has no effect.
   Status add_reading(const OdometerReading& reading);
   /// Marks the accelerometer as unusable within the next sweep. The velocity is predicted as over a gap; the gyro is
   /// used. This call replaces earlier odometer readings of the sweep.
@@ -93,17 +93,17 @@ class LidarInertialOdometry {
   /// values and covariance 0.
   SweepCalibration calibration() const;
   SweepCalibration::Covariance calibration_covariance() const;
-  /// Returns the covariance by which the calibration is weighted against the next sweep. It is larger than the
-  /// covariance of the errors because points are correlated and count less. A second run over the same data starts from
-  /// this covariance.
+  /// Returns the covariance by which the calibration is weighted against the next sweep. This covariance is larger than
+  /// that of the errors because points are correlated and count less. A second run over the same data starts from this
+  /// covariance.
   SweepCalibration::Covariance calibration_weight() const;
 
   /// Returns the pose at any time within the window of sweeps, from all data so far. Returns `out_of_range` outside of
   /// the window.
   Status pose_at(TimeNs time_ns, PoseState& pose) const;
 
-  /// Returns the current poses of the sweeps in the window, oldest first. Their final poses are still pending. Together
-  /// with SweepReport::smoothed they form the whole trajectory.
+  /// Returns the current poses of the sweeps in the window, oldest first. The final poses of these sweeps are still
+  /// pending. Together with SweepReport::smoothed they form the whole trajectory.
   std::vector<std::vector<PoseState>> open_trajectories() const;
 
   /// Returns the memory of the map [bytes].
@@ -115,9 +115,9 @@ class LidarInertialOdometry {
   std::vector<MapPoint> map() const;
 
   /// Saves or loads the complete state, except `parallel_for`. The loading object must have the same parameters; the
-  /// caller is responsible for that. It then continues with bit-identical results. Parameters that an earlier run may
-  /// have estimated are part of the state (mounting, time offset and their deviations). On error, which the reader
-  /// reports, this object is unchanged.
+  /// caller is responsible for that. The loading object then continues with bit-identical results. Parameters that an
+  /// earlier run may have estimated are part of the state (mounting, time offset and their deviations). On error, which
+  /// the reader reports, this object is unchanged.
   void save(StateWriter& out) const;
   void load(StateReader& in);
   void describe(StateLayout& out) const;

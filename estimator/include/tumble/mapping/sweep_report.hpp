@@ -32,13 +32,13 @@ struct SweepReport {
   /// Standard deviation in the least constrained direction, from this sweep's surfaces alone; 0: not aligned.
   double weakest_sigma_m = 0.0;
   /// Normalised innovation: length of the correction of pose and velocity in standard deviations of the inertial prior,
-  /// divided by the root of its nine unknowns. Its mean is at most 1 if prior and surfaces have the stated accuracy; 0:
-  /// not aligned.
+  /// divided by the root of its nine unknowns. The mean innovation is at most 1 if prior and surfaces have the stated
+  /// accuracy; 0: not aligned.
   double innovation = 0.0;
   int iterations = 0;
   int lost_sweeps = 0;  ///< consecutive rejected sweeps up to this one, inclusive
   /// A relocalisation after tracking failure that inertial prediction did not expect and that two further sweeps have
-  /// not yet confirmed. A further sweep that contradicts it reverts it.
+  /// not yet confirmed. A further sweep that contradicts the relocalisation reverts it.
   bool unconfirmed = false;
   /// Direction in which the surfaces constrain the pose least: (position, attitude scaled by the rms lever) in W, unit
   /// length.

@@ -48,14 +48,14 @@ struct MotionState {
 ///
 /// Attitude: R(t) = R_k Exp(w_k (t - t_k)), exact for a rate that is constant in body axes over each sample. Position:
 /// p(t) = p_0 + v_0 t + g t^2 / 2 + S(t), with the double integral S of the specific force. The mean force over each
-/// sample is R_k J_l(w_k dt) f_k. It is exact for a force constant in body axes, such as the centripetal force of a
-/// spin.
+/// sample is R_k J_l(w_k dt) f_k. This mean is exact for a force constant in body axes, such as the centripetal force
+/// of a spin.
 ///
-/// The saturation deficit e corrects the clipped axes. It is linear in time between kKnots knots at equal steps from
-/// the start to the end of the segment. The rate is w_j + s_j e_j(t) where axis j was clipped. The factor s_j has the
-/// sign of w_j and the magnitude sigma_j / (largest sigma_j of the segment's clipped samples). Well known rates thus
-/// change little. The magnitude is 1 if all sigma_j are 0. Over a sample, e has the value of the sample's middle. Not
-/// modelled: sculling within a sample, the earth's rotation.
+/// The saturation deficit e corrects the clipped axes. The deficit is linear in time between kKnots knots at equal
+/// steps from the start to the end of the segment. The rate is w_j + s_j e_j(t) where axis j was clipped. The factor
+/// s_j has the sign of w_j and the magnitude sigma_j / (largest sigma_j of the segment's clipped samples). Well known
+/// rates thus change little. The magnitude is 1 if all sigma_j are 0. Over a sample, e has the value of the sample's
+/// middle. Not modelled: sculling within a sample, the earth's rotation.
 class SweepTrajectory {
  public:
   static constexpr int kKnots = 3;
@@ -90,7 +90,8 @@ class SweepTrajectory {
 
   /// Evaluates the motion at `t_s` seconds after the start. Outside of the segment, the motion of the first or last
   /// sample is extrapolated by up to kBeyond_s, which covers errors of the time offset. t_s is clamped there. `hint` is
-  /// the interval of the previous call and speeds up calls in time order. It may have any value in [0, intervals()).
+  /// the interval of the previous call and speeds up calls in time order. The hint may have any value in [0,
+  /// intervals()).
   static constexpr double kBeyond_s = 0.02;
   Instant at(double t_s, std::size_t& hint) const;
   /// Computes S(t) + R(t) x of each point. The result equals that of at(), bit for bit, and is faster for several

@@ -19,9 +19,10 @@
 
 namespace tumble {
 
-/// Estimates the pose of a rolling sphere from one to four IMUs, through grip, slip, bumps and slopes. It reports live
-/// poses, and poses smoothed with the data of the following `lag_s`. UnitRails flags readings that a device clips
-/// without reporting it, ImuMerge fuses the IMUs, and RollingSmoother (with its RollingFilter) estimates the motion.
+/// Estimates the pose of a rolling sphere from one to four IMUs, through grip, slip, bumps and slopes. RollingOdometry
+/// reports live poses, and poses smoothed with the data of the following `lag_s`. UnitRails flags readings that a
+/// device clips without reporting it, ImuMerge fuses the IMUs, and RollingSmoother (with its RollingFilter) estimates
+/// the motion.
 ///
 /// World: z up, origin at the sphere's centre at the first sample, yaw 0 there. Start with one second at rest.
 ///

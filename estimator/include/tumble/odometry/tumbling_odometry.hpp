@@ -36,8 +36,8 @@ namespace tumble {
 /// Cost: an IMU sample costs one step of the stream, and sometimes the registration of a sweep. A sample that ends no
 /// sweep allocates nothing after start-up. While the second pass runs, a sweep costs up to four registrations, and once
 /// five more when the second pass finishes. Memory is bounded by the lag, the map radius, `sweeps_max` and the buffer
-/// of the second pass. It grows by 12 bytes per sweep while the body stays within ten metres. A call needs at most 64
-/// KiB of stack.
+/// of the second pass. Memory grows by 12 bytes per sweep while the body stays within ten metres. A call needs at most
+/// 64 KiB of stack.
 ///
 /// The class uses no threads and no files and prints nothing. Copies contain the complete state, so a run may be split.
 /// Not modelled: see RegimeStream and LidarInertialOdometry.
@@ -68,9 +68,9 @@ class TumblingOdometry {
   /// - `out_of_range`: a point's offset is beyond the sweep, the end is more than a second after the newest sample, or
   ///   too many sweeps wait.
   Status add_sweep(TimeNs start_ns, TimeNs end_ns, std::span<const LidarPoint> points);
-  /// Processes a velocity reading of the robot's odometer, if it has one (detail/odometer_reading.hpp). It must arrive
-  /// before its sweep is registered, which is lag_s after the sweep's end. Of several readings within a sweep, the last
-  /// one counts. On error the state is unchanged:
+  /// Processes a velocity reading of the robot's odometer, if it has one (detail/odometer_reading.hpp). The reading
+  /// must arrive before its sweep is registered, which is lag_s after the sweep's end. Of several readings within a
+  /// sweep, the last one counts. On error the state is unchanged:
   /// - `empty`: no IMU sample yet.
   /// - `non_finite`: a component is not finite.
   /// - `time_order`: its sweep is already registered.
@@ -101,8 +101,8 @@ class TumblingOdometry {
   const SweepScale& sweep_scale() const { return pass_.sweep_scale(); }
   /// Returns the time of the newest accepted sample.
   std::optional<TimeNs> newest_ns() const { return newest_ns_; }
-  /// Returns the rate of the newest sample, if any. It is provisional while the gyro is saturated because later samples
-  /// determine most of it.
+  /// Returns the rate of the newest sample, if any. The rate is provisional while the gyro is saturated because later
+  /// samples determine most of it.
   std::optional<RateState> newest_rate() const { return pass_.rates().rate().newest(pass_.rate_state().rate); }
   /// Returns the latest smoothed rate, which is lag_s old, or one sample less if a sweep waited for it. Empty while the
   /// lag fills.
@@ -115,7 +115,7 @@ class TumblingOdometry {
   /// Returns whether map and pose are those of the second pass (SecondPass).
   bool passed_again() const { return again_.taken(); }
   /// Returns the number of rejected inputs: samples that the mapper rejected, sweeps not fetched in time, and odometer
-  /// readings that span two sweeps. It is 0 in normal operation.
+  /// readings that span two sweeps. The number is 0 in normal operation.
   std::size_t refused_samples() const { return pass_.refused_samples(); }
   std::size_t dropped_sweeps() const { return dropped_sweeps_; }
   std::size_t unused_readings() const { return readings_.straddling(); }

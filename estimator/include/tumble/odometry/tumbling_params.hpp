@@ -50,8 +50,8 @@ struct TumblingExpertParams {
 /// Parameters of TumblingOdometry.
 struct TumblingParams {
   ImuSheet imu;
-  /// Lever arm from the body's centre of mass to the IMU, in IMU axes, and its standard deviation per axis. It relates
-  /// rates to forces and is estimated. There is no default: zero would mean an IMU at the centre of mass.
+  /// Lever arm from the body's centre of mass to the IMU, in IMU axes, and its standard deviation per axis. The lever
+  /// arm relates rates to forces and is estimated. There is no default: zero would mean an IMU at the centre of mass.
   Eigen::Vector3d lever_arm_I_m = Eigen::Vector3d::Constant(std::numeric_limits<double>::quiet_NaN());
   double lever_arm_sigma_m = 0.01;
   Eigen::Isometry3d T_IL = Eigen::Isometry3d::Identity();  ///< lidar in IMU axes

@@ -16,14 +16,15 @@ namespace tumble {
 /// Estimates the pose of a rolling sphere from one IMU, live, through slip, slide and bumps, on a floor that is level
 /// or sloped.
 ///
-/// While the sphere grips, the rolling constraint is a velocity measurement. It calibrates tilt, biases, scale,
-/// misalignment, delay and lever arm of the IMU, so that the seconds without grip can be integrated. The mode of
+/// While the sphere grips, the rolling constraint is a velocity measurement. This measurement calibrates tilt, biases,
+/// scale, misalignment, delay and lever arm of the IMU, so that the seconds without grip can be integrated. The mode of
 /// contact is estimated: each hypothesis about the past modes has its own error-state Kalman filter until later data
 /// decide between them. Each filter contains the position. Grip after an event therefore also corrects the displacement
 /// during the event. Earlier estimates are not revised (RollingSmoother does this).
 ///
 /// While the sphere is at rest, the reported position is constant. Corrections of the earlier path from measurements at
-/// rest are applied when motion resumes. They are applied immediately if another hypothesis becomes the most probable.
+/// rest are applied when motion resumes. Corrections are applied immediately if another hypothesis becomes the most
+/// probable.
 ///
 /// Readings of a fast IMU are averaged to RollingExpertParams::reading_s before they are processed. Between two
 /// averages the estimate is extrapolated. Over a gap of up to gap_max_s the rate is interpolated and the force is

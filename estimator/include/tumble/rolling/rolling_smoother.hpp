@@ -19,8 +19,8 @@ namespace tumble {
 ///
 /// The modes are those of the live filter's most probable hypothesis at the time of smoothing. With these modes fixed,
 /// one Kalman filter runs forward over the stored samples. The modified Bryson-Fraser smoother (Bierman 1977) then runs
-/// backward. It needs no inverse and only the filter's gains. A sample between two nodes receives the interpolated
-/// errors of both.
+/// backward. This smoother needs no inverse and only the filter's gains. A sample between two nodes receives the
+/// interpolated errors of both.
 ///
 /// With a fixed lag, the position is constant while the sphere is at rest. Corrections of the earlier path are applied
 /// when motion resumes because the estimates of this path are already reported. Over the whole run, the path itself is
@@ -101,14 +101,14 @@ class RollingSmoother {
 
   explicit RollingSmoother(const Params& params);
 
-  /// Returns the filter that updates State::live. It can be used alone if only live poses are needed.
+  /// Returns the filter that updates State::live. The filter can be used alone if only live poses are needed.
   const RollingFilter& filter() const { return filter_; }
 
   /// Processes a sample and appends estimates that are older than the lag to `out`. On error the state is unchanged.
   /// The first sample allocates the memory of the lag. Later, only `out` and the processing of a block allocate. In
   /// addition the run's memory grows (64 bytes per sample, 152 per node) beyond rate_max_hz, beyond a million samples,
-  /// or with kWholeRun. The sample that ends a block does the block's computations. It needs 14 KiB per node of lag and
-  /// block, or 4 MiB plus 0.3 KiB per node if there are many nodes.
+  /// or with kWholeRun. The sample that ends a block does the block's computations. Such a sample needs 14 KiB per node
+  /// of lag and block, or 4 MiB plus 0.3 KiB per node if there are many nodes.
   Status step(const ImuSample& sample, State& state, std::vector<RollingEstimate>& out) const;
 
   /// Ends the run and passes the remaining estimates to `take`, in time order, smoothed with all data. For a whole run

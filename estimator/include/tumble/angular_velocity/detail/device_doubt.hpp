@@ -8,8 +8,8 @@
 namespace tumble {
 
 /// Computes the uncertainty of a device's sensor errors from growing evidence. The prior is a mixture of two devices:
-/// one that matches its data sheet, and one that is uncalibrated (SensorErrorSizes, all sizes together). This is the
-/// form of fit_sensor_errors() that a stream can afford. rate_stream.md (R103), (R104).
+/// one that matches its data sheet, and one that is uncalibrated (SensorErrorSizes, all sizes together). A stream uses
+/// this class instead of fit_sensor_errors(), which costs more. rate_stream.md (R103), (R104).
 class DeviceDoubt {
  public:
   /// Weight of the samples' evidence about the errors. Sample errors are correlated, because errors of the flight model
@@ -22,7 +22,7 @@ class DeviceDoubt {
     double unlike = 0.0;  ///< probability that the device does not match its data sheet
   };
 
-  /// Buffers of ask(). They are too large for the small stack of a robot's thread.
+  /// Buffers of ask(). The buffers are too large for the small stack of a robot's thread.
   struct Work {
     SensorErrors::Matrix system, about_corrected;
   };

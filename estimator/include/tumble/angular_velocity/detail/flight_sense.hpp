@@ -19,7 +19,7 @@ namespace tumble {
 /// compared with this force for the true sensor and for each alternative in `kSenses`. Agreement within `share` for
 /// `run_s` counts as flight measured by that sensor. No such agreement lasts on the ground. If one axis of the gyro is
 /// saturated, the force along the lever arm, -|w x t|^2 for any angular acceleration, determines its rate. The other
-/// two components verify flight.
+/// two components of the force verify flight.
 ///
 /// A person who swings a body can produce the forces of a flight with a different lever arm. For a body that may be
 /// hand-held, the class therefore reports only inverted accelerometers and a half-scale gyro, from unsaturated rates.

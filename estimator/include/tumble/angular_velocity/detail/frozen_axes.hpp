@@ -19,10 +19,10 @@ namespace tumble {
 /// reading as long before (coarse quantisation at rest, simulation without noise).
 ///
 /// A saturated reading may repeat. A reading counts as saturated from 0.9 of the stated range on, or if the device
-/// flags it. The extreme reading of an axis counts from 0.5 of the range on. Such an axis is frozen if all other axes
-/// of both triads indicate rest for `rail_still_s`. Reason: a body with such a rate or force is not at rest. On a body
-/// that is never at rest, the axis is frozen after `rail_held_s` if another axis of its triad changes. Either it is
-/// frozen or the range is too small for the spin; in both cases its rate is unknown. Not distinguished: a body that
+/// flags it. The extreme reading of an axis counts from 0.5 of the range on. A saturated axis is frozen if all other
+/// axes of both triads indicate rest for `rail_still_s`. Reason: a body with such a rate or force is not at rest. On a
+/// body that is never at rest, the axis is frozen after `rail_held_s` if another axis of its triad changes. Either it
+/// is frozen or the range is too small for the spin; in both cases its rate is unknown. Not distinguished: a body that
 /// spins so evenly about this axis that no other axis changes.
 class FrozenAxes {
  public:

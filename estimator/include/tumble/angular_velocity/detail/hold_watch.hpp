@@ -26,9 +26,9 @@ struct HeldReading {
   bool operator==(const HeldReading&) const = default;
 };
 
-/// Detects a log that is faster than its sensor, causally. This is the causal form of find_held. It does not estimate
-/// the phase of the sensor's clock, so a new reading has an age of 0.5 +- 0.29 samples. docs/maths/rate_stream.md
-/// (R97).
+/// Detects a log that is faster than its sensor, causally. HoldWatch is the causal form of find_held. HoldWatch does
+/// not estimate the phase of the sensor's clock, so a new reading has an age of 0.5 +- 0.29 samples.
+/// docs/maths/rate_stream.md (R97).
 class HoldWatch {
  public:
   /// State of one triad.

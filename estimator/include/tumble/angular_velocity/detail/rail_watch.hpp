@@ -16,10 +16,10 @@ namespace tumble {
 /// so far.
 ///
 /// For each triad it stores up to `readings_max` distinct readings, preferring the latest and those near the extremes.
-/// It searches them as ClippingFinder does: after each segment near an extreme, and within a segment after each further
-/// eighth of readings near the extremes. A run of n such readings is therefore searched O(log n) times, not n times. A
-/// plane remains valid after its readings were dropped, until readings contradict it. Saturation is detected some
-/// samples after it first occurs, so users must re-evaluate those samples. Not modelled: see RailPlaneFinder.
+/// The search is that of ClippingFinder. A search follows each segment near an extreme, and within a segment each
+/// further eighth of readings near the extremes. A run of n such readings is therefore searched O(log n) times, not n
+/// times. A plane remains valid after its readings were dropped, until readings contradict it. Saturation is detected
+/// some samples after it first occurs, so users must re-evaluate those samples. Not modelled: see RailPlaneFinder.
 class RailWatch {
  public:
   struct Params {
@@ -59,7 +59,7 @@ class RailWatch {
   bool observe(const ImuSample& sample, State& state) const;
 
   /// Classifies a finite sample by the levels found so far and the flags of the device. `before` and `after` are its
-  /// neighbours, null if there are none. They reveal saturation during a part of the window. O(1).
+  /// neighbours, null if there are none. The neighbours reveal saturation during a part of the window. O(1).
   Clipping judge(const ImuSample* before, const ImuSample& sample, const State& state,
                  const ImuSample* after = nullptr) const;
 

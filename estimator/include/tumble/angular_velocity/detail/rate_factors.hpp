@@ -34,8 +34,8 @@ RateFactor element_factor(const RateKnot& knot, const RigConstants& rig, const E
 RateFactor flight_factor(const RateKnot& knot, const RigConstants& rig, const Eigen::Vector3d& reading_m_s2);
 
 /// Same for an accelerometer that is `delay_s` late. Euler's equation without torque propagates the knot back to the
-/// earlier time. The result is w - d alpha + d^2/2 j and alpha - d j, with the angular jerk j. It also depends on the
-/// inertia. `by_delay` (may be null) receives the derivative by the delay.
+/// earlier time. The result is w - d alpha + d^2/2 j and alpha - d j, with the angular jerk j. The residual also
+/// depends on the inertia. `by_delay` (may be null) receives the derivative by the delay.
 RateFactor late_flight_factor(const RateKnot& knot, const RigConstants& rig, const Eigen::Vector3d& reading_m_s2,
                               double delay_s, Eigen::Vector3d* by_delay);
 

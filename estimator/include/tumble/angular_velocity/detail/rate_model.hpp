@@ -18,8 +18,8 @@ namespace tumble {
 /// coefficients.
 class RateModel {
  public:
-  /// `period_s`: nominal time between samples. It determines the noise per sample and the scale of the acceleration.
-  /// Throws InvalidParams if a parameter is out of bounds.
+  /// `period_s`: nominal time between samples. This time determines the noise per sample and the scale of the
+  /// acceleration. Throws InvalidParams if a parameter is out of bounds.
   RateModel(const RateModelParams& params, double period_s);
 
   /// Computes the weight of a sample between flight and contact at the current estimate. `rig_covariance` prevents
@@ -47,8 +47,8 @@ class RateModel {
                      const RigConstants::Matrix& rig_covariance, double damping, RateEstimate& estimate) const;
 
   /// Adds gyro, bound, flight and Euler factors of one sample. `doubted` is null or the covariance of the calibration.
-  /// If set, the sample does not update the calibration and has a correspondingly reduced weight. This is used for
-  /// flights that are too short to be distinguished from contact with another calibration.
+  /// If set, the sample does not update the calibration and has a correspondingly reduced weight. Used for flights that
+  /// are too short to be distinguished from contact with another calibration.
   void add_sample(const RateObservation& observation, const RateEstimate& estimate, const RigConstants& rig,
                   arrow::Block& block, arrow::Corner& corner, const RigConstants::Matrix* doubted = nullptr) const;
 
@@ -66,8 +66,8 @@ class RateModel {
   /// Adds the prior of the calibration.
   void add_rig_prior(const RigConstants& rig, arrow::Corner& corner) const;
 
-  /// Returns the distance of `rig` from its prior. It is the largest, over lever arm, both biases and inertia, of the
-  /// Mahalanobis distance divided by the root of the number of components. About 1 is expected.
+  /// Returns the distance of `rig` from its prior. The distance is the Mahalanobis distance divided by the root of the
+  /// number of components, and the largest over lever arm, both biases and inertia. About 1 is expected.
   double calibration_mahalanobis(const RigConstants& rig) const;
 
   RigConstants prior_constants() const { return prior_constants_; }

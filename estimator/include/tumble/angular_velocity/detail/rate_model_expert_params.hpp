@@ -85,8 +85,8 @@ struct RateModelExpertParams {
   /// Duration of model errors of a force, a torque or a rate. Faster samples share one such error; only their noise
   /// averages out.
   double model_error_s = 0.01;
-  /// Standard deviation of the rate from zero at rest, independent for each sample. It covers vibration at rest and
-  /// false detections of rest.
+  /// Standard deviation of the rate from zero at rest, independent for each sample. The value covers vibration at rest
+  /// and false detections of rest.
   double rest_sigma_rad_s = 0.01;
   SensorErrorSizes error_sizes = {};  ///< uncertainty of RateModelParams::errors
   RateReadingParams readings = {};

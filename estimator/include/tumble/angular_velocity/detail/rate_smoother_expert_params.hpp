@@ -14,8 +14,8 @@ struct RateDescentParams {
   double tolerance_rad_s = 2e-3;  ///< converged if no rate changes by more
   double step_max_rad_s = 10.0;   ///< longest step of a rate in one iteration
   double widen_first = 8.0;       ///< multiplier of the contact threshold in the first iteration, halved in each
-  /// Iterations after convergence with truncated distributions instead of hard bounds for samples in contact. They make
-  /// the covariance of these samples consistent.
+  /// Iterations after convergence with truncated distributions instead of hard bounds for samples in contact. These
+  /// iterations make the covariance of such samples consistent.
   int bound_iterations = 3;
   double bound_damping = 0.5;  ///< weight of a new bound in each of them
 

@@ -15,8 +15,8 @@ struct RigInflationParams {
   /// the prior.
   double covariance = 60.0;
   double samples = 30.0;
-  /// Rates beyond saturation that are recovered during contact depend on the calibration. Their standard deviation is
-  /// at least this fraction of the deficit, divided by 1 + n / samples.
+  /// Rates beyond saturation that are recovered during contact depend on the calibration. The standard deviation of
+  /// such rates is at least this fraction of the deficit, divided by 1 + n / samples.
   double contact = 0.5;
   /// Rule for a run of clipped samples in contact. A parabola with the slopes at the run's ends has a certain deficit.
   /// The standard deviation is at least this fraction of it, minus the estimated deficit.

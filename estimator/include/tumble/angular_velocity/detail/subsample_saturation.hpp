@@ -7,8 +7,8 @@
 
 namespace tumble {
 
-/// Deficit of a window that is saturated for a part of its length. Its mean is below the saturation level, so it is
-/// still a measurement, slightly too small.
+/// Deficit of a window that is saturated for a part of its length. The mean of such a window is below the saturation
+/// level, so the reading is still a measurement, slightly too small.
 struct SubsampleSaturation {
   bool saturated = false;
   double lost_rad_s = 0.0;   ///< expected |truth| - |reading|
@@ -19,9 +19,9 @@ struct SubsampleSaturation {
 /// (D per window) within this window and the neighbouring one. With the clipped fraction p of the window, the reading
 /// is m = c - (1-p)^2 D/2, the deficit p^2 D/2 and the neighbour m + p^2 D/2 - D. The fraction p follows from (c - m) /
 /// (m - neighbour) in closed form. The deficit is zero if the reading is at the level or within noise of the neighbour.
-/// It is also zero if more than kShareMax of the window is hidden. `neighbour_rad_s`: the smaller of the neighbours'
-/// readings, with a sign for which the level is positive. Not modelled: a slope that changes within the two windows;
-/// sigma covers it (measured on impacts of tumbling bodies).
+/// The deficit is also zero if more than kShareMax of the window is hidden. `neighbour_rad_s`: the smaller of the
+/// neighbours' readings, with a sign for which the level is positive. Not modelled: a slope that changes within the two
+/// windows; sigma covers it (measured on impacts of tumbling bodies).
 SubsampleSaturation subsample_saturation(double reading_rad_s, double neighbour_rad_s, double rail_rad_s,
                                          double noise_rad_s);
 

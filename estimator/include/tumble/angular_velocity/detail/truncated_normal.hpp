@@ -8,8 +8,8 @@ struct NormalMoments {
   double mean = 0.0, variance = 1.0;
 };
 
-/// Returns the moments of a normal distribution truncated below `bound`. The bound has the variance `softness2`. This
-/// is the step of expectation propagation (Minka 2001).
+/// Returns the moments of a normal distribution truncated below `bound`. The bound has the variance `softness2`.
+/// Expectation propagation uses these moments (Minka 2001).
 NormalMoments truncated_below(const NormalMoments& from, double bound, double softness2);
 
 /// A Gaussian factor, as precision and precision * mean.

@@ -10,11 +10,11 @@
 
 namespace tumble {
 
-/// Finds the vertical after it was lost, for a body that continues to move. This is the coarse alignment of inertial
-/// navigation. In axes propagated by the gyro, the integral of the specific force is the sum of gravity's and the
-/// change of velocity. The first grows with time, the second does not. attitude.md (A10c), (A10d).
-/// Not linear: works from any initial attitude, including upside down. Not modelled: the gyro's error (the caller adds
-/// it).
+/// Finds the vertical after it was lost, for a body that continues to move. The method is the coarse alignment of
+/// inertial navigation. In axes propagated by the gyro, the integral of the specific force is the sum of gravity's
+/// integral and the change of velocity. Gravity's integral grows with time, the change of velocity does not.
+/// attitude.md (A10c), (A10d). Not linear: works from any initial attitude, including upside down. Not modelled: the
+/// gyro's error (the caller adds it).
 struct CoarseAlignment {
   bool running = false;
   double time_s = 0.0;
@@ -40,8 +40,8 @@ struct CoarseAlignment {
   /// Returns the variance of the tilt without the alignment, one axis.
   double tilt_rad2() const { return lost_rad2 + grown_rad2; }
 
-  /// Returns the variance of the tilt from `levelling()`. It depends on the velocities at both ends, of which the
-  /// magnitude of the mean force reveals a part, and on the gyro meanwhile.
+  /// Returns the variance of the tilt from `levelling()`. The variance depends on the velocities at both ends and on
+  /// the gyro meanwhile. The magnitude of the mean force reveals a part of the velocities.
   double variance_rad2(double velocity_variance_m2_s2, double gravity_m_s2) const {
     const double gravity_m_s = gravity_m_s2 * std::max(time_s, 1e-9);
     const double seen = squared(force_W_m_s.norm() - gravity_m_s);

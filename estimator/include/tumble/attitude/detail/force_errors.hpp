@@ -10,11 +10,11 @@ namespace tumble {
 
 /// Estimates the errors of several accelerometers on one rigid body from their differences.
 ///
-/// In fast rotation, units at different positions measure large forces that cancel in their mean. Their scale and
-/// misalignment errors do not cancel. For each unit, a Kalman filter estimates bias, scale and misalignment, and
-/// position error: f_k = c + A p_k + b_k + M_k f_k + A dp_k, A = [a]x + [w]x[w]x. The measurement is each unit's
-/// difference from the mean of all, averaged over kSpan_s. The model is linear, so averaging only loses rotation within
-/// the span. Errors common to all units do not show in the differences and remain about zero.
+/// In fast rotation, units at different positions measure large forces that cancel in their mean. The effects of scale
+/// and misalignment do not cancel. For each unit, a Kalman filter estimates bias, scale and misalignment, and position
+/// error: f_k = c + A p_k + b_k + M_k f_k + A dp_k, A = [a]x + [w]x[w]x. The measurement is each unit's difference from
+/// the mean of all, averaged over kSpan_s. The model is linear, so averaging only loses rotation within the span.
+/// Errors common to all units do not show in the differences and remain about zero.
 ///
 /// Not modelled: errors that change, a body that bends.
 class ForceErrors {

@@ -41,7 +41,8 @@ struct LowPass {
   bool operator==(const LowPass&) const = default;
 };
 
-/// Returns tan(pi f_c dt) for LowPass. It is bounded if dt is so long compared to tau that nothing is left to smooth.
+/// Returns tan(pi f_c dt) for LowPass. The value is bounded if dt is so long compared to tau that nothing is left to
+/// smooth.
 inline double low_pass_warp(double tau_s, double dt_s) {
   return std::tan(std::min(dt_s / (std::numbers::sqrt2 * tau_s), 1.5));
 }

@@ -67,10 +67,10 @@ class RateRecovery {
 
   /// Processes the units' readings, each in its own axes, `dt_s` after the previous ones. Units that are not finite are
   /// ignored. `merged` (C) contains the mean of the used units, and receives rate and force of the filter where
-  /// saturation corrupted them. Its gyro flags are set if the rate could not be recovered. Its accelerometer flags are
-  /// set if most units were saturated, or one unit and a gyro. Otherwise the flags are cleared, because a recovered
-  /// rate is not clipped. O(count), no allocation; almost no computation while the body rotates slowly and no gyro is
-  /// clipped.
+  /// saturation corrupted them. The gyro flags of `merged` are set if the rate could not be recovered. The
+  /// accelerometer flags are set if most units were saturated, or one unit and a gyro. Otherwise the flags are cleared,
+  /// because a recovered rate is not clipped. O(count), no allocation; almost no computation while the body rotates
+  /// slowly and no gyro is clipped.
   void step(std::span<const ImuSample> units, double dt_s, State& state, ImuSample& merged) const;
 
  private:

@@ -9,7 +9,7 @@
 
 namespace tumble {
 
-/// Returns the smallest rotation c with c * up_W = z, for a unit vector. Its axis is horizontal, so the heading is
+/// Returns the smallest rotation c with c * up_W = z, for a unit vector. The axis of c is horizontal, so the heading is
 /// unchanged. For the opposite of z it is a half turn about x.
 inline Eigen::Quaterniond levelling(const Eigen::Vector3d& up_W) {
   const double w = std::sqrt(std::max(0.0, 0.5 * (1.0 + up_W.z())));

@@ -77,8 +77,9 @@ struct TumbleAttitudeExpertParams {
   /// Readings are averaged to this duration, for which all thresholds here are set; zero: no averaging.
   double reading_s = 4e-3;
   double gap_max_s = 1.0;
-  /// 2 deg/s about the mean, and the same for the mean about the bias. This is wide enough for cheap sensors and only
-  /// affects the bias estimate. The mean has a time constant of half a second, so rest is detected after twice that.
+  /// 2 deg/s about the mean, and the same for the mean about the bias. These bounds are wide enough for cheap sensors
+  /// and only affect the bias estimate. The mean has a time constant of half a second, so rest is detected after twice
+  /// that.
   RestDetector::Params rest = {.rate_max_rad_s = 3.4907e-2,
                                .rate_spread_rad_s = 3.4907e-2,
                                .force_spread_m_s2 = 0.5,

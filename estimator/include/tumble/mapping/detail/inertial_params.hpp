@@ -50,8 +50,8 @@ struct InertialNoiseParams {
 ///
 /// With estimate_deficit, the registration estimates the saturation deficit of the rate on clipped axes, at
 /// SweepTrajectory::kKnots knots per sweep. The deficit acts on clipped samples only, in proportion to the reported
-/// uncertainty of the rate. Its prior is this uncertainty, at least deficit_sigma_min_rad_s, correlated over
-/// deficit_time_s. If saturation lasts across the boundary of two sweeps, the deficit continues there.
+/// uncertainty of the rate. The prior of the deficit is the reported uncertainty, at least deficit_sigma_min_rad_s,
+/// correlated over deficit_time_s. If saturation lasts across the boundary of two sweeps, the deficit continues there.
 struct RailedImuParams {
   double accel_m_s2 = 1e5;
   double force_sigma_m_s2 = 50.0;

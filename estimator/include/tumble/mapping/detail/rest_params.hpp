@@ -27,8 +27,8 @@ struct RestBoundsParams {
 
 /// The start: an IMU levelled at rest, and the corrections that the first sweeps may apply.
 struct OdometryStartParams {
-  /// A weight, not an error: five times the tilt that WorldCovarianceParams reports. It allows for a start that was not
-  /// at rest.
+  /// A weight, not an error: five times the tilt that WorldCovarianceParams reports. The larger value allows for a
+  /// start that was not at rest.
   double level_sigma_rad = 0.01;
   double speed_sigma_m_s = 0.05;  ///< residual speed of an apparent rest
   double bias_rest_s = 0.1;       ///< minimum rest for an estimate of the gyro's bias
@@ -45,8 +45,8 @@ struct OdometryStartParams {
 struct StandstillParams {
   double start_sigma_m_s = 0.01;  ///< of the velocity, during the initial rest
   double sigma_m_s = 0.05;        ///< of the velocity, while the IMU measures only gravity
-  /// Such an IMU is treated as stationary below this estimated speed if no surface constrains it. This prevents slow
-  /// drift in a world without features.
+  /// While the IMU measures only gravity and no surface constrains it, it is stationary below this estimated speed. The
+  /// rule prevents slow drift in a world without features.
   double creep_max_m_s = 0.5;
   int sweeps_min = 3;         ///< minimum number of consecutive sweeps for this rule
   double noise_share = 0.02;  ///< fraction of the inertial prior's standard deviations in motion

@@ -29,17 +29,17 @@ struct SweepScale {
 };
 
 /// Estimates the lidar's range scale over the sweeps of a run. The function compares the mean velocities of two
-/// consecutive spans of 0.4 s. Their difference equals the integrated acceleration, from gravity in flight and impacts,
-/// whatever the velocity. A robust regression (Huber, 1964) of the lidar's differences on the IMU's has slope 1. Ranges
-/// 10 % too long give 1.1, reduced by the mapper's confidence in the IMU. Attitudes are those of the run. Intervals
-/// with a saturated accelerometer or with unconstrained sweeps are skipped. The standard deviation is
-/// heteroscedasticity-consistent (White, 1980). `gravity_m_s2`: magnitude of gravity. Not observable: without
+/// consecutive spans of 0.4 s. The difference of the two velocities equals the integrated acceleration, from gravity in
+/// flight and impacts, whatever the velocity. A robust regression (Huber, 1964) of the lidar's differences on the IMU's
+/// has slope 1. Ranges 10 % too long give 1.1, reduced by the mapper's confidence in the IMU. Attitudes are those of
+/// the run. Intervals with a saturated accelerometer or with unconstrained sweeps are skipped. The standard deviation
+/// is heteroscedasticity-consistent (White, 1980). `gravity_m_s2`: magnitude of gravity. Not observable: without
 /// acceleration. An accelerometer's scale error is detected by gravity at rest instead. O(N).
 SweepScale find_sweep_scale(std::span<const ImuSample> samples, std::span<const SweepReport> sweeps,
                             double gravity_m_s2);
 
-/// Estimates the same scale while samples and sweeps arrive, from the newest 1000 changes of velocity. It uses the
-/// first pose of each sweep and is therefore less accurate than an estimate from the final poses of a whole run.
+/// Estimates the same scale while samples and sweeps arrive, from the newest 1000 changes of velocity. The estimate
+/// uses the first pose of each sweep and is therefore less accurate than one from the final poses of a whole run.
 class SweepScaleWatch {
  public:
   /// Change of velocity from one span to the next.

@@ -18,10 +18,10 @@ namespace tumble {
 ///
 /// The first pass maps the start of a tumble with a lever arm, a mounting and a time offset that are still uncertain.
 /// This class therefore buffers samples and sweeps from the end of the initial rest. After `after_s` of motion it
-/// processes the buffer with the current calibration and with rates that are smoothed with a lag of `lag_s`. It
-/// processes `sweeps` buffered sweeps per new sweep. When it has caught up, its map and pose replace those of the first
-/// pass, and the buffer is freed. The result is discarded if the second pass has lost tracking or has rejected clearly
-/// more sweeps.
+/// processes the buffer with the current calibration and with rates that are smoothed with a lag of `lag_s`. The second
+/// pass processes `sweeps` buffered sweeps per new sweep. When it has caught up, its map and pose replace those of the
+/// first pass, and the buffer is freed. The result is discarded if the second pass has lost tracking or has rejected
+/// clearly more sweeps.
 ///
 /// If the first pass has failed for `lost_s`, the whole buffer is processed immediately, once. The regular second pass
 /// still follows after `after_s`. Earlier poses are not changed: the pose jumps by the error of the first pass.

@@ -26,9 +26,9 @@ class WaitingReadings {
   /// Tolerance by which a reading may extend beyond its sweep, because clocks differ.
   static constexpr auto kBeyond_ns = static_cast<TimeNs>(1e9 * SweepTrajectory::kBeyond_s);
 
-  /// Stores a reading; the order is arbitrary. Its time must be after `done_ns`, the end of the last registered sweep,
-  /// and at most `latest_ns`. Errors: those of check_reading, `time_order` (its sweep is already registered),
-  /// `out_of_range` (too late, or too many waiting readings).
+  /// Stores a reading; the order is arbitrary. The reading's time must be after `done_ns`, the end of the last
+  /// registered sweep, and at most `latest_ns`. Errors: those of check_reading, `time_order` (its sweep is already
+  /// registered), `out_of_range` (too late, or too many waiting readings).
   Status add(const OdometerReading& reading, TimeNs done_ns, TimeNs latest_ns);
 
   /// Returns the reading of the sweep from `from_ns` to `end_ns`. If there are several, returns only the last one,
