@@ -11,10 +11,11 @@ namespace tumble {
 
 namespace {
 
-// A slope is known if its standard deviation is below the first value, and zero if it is below the second.
+// kTold: a slope with a smaller standard deviation is known. kNil: a slope of smaller magnitude, up to its uncertainty,
+// is zero.
 constexpr double kTold = 2e-3, kNil = 3e-3;
-// Levels of the two signs that differ by more than this fraction are not clipped after digitisation, where both are
-// equal.
+// Maximum relative difference between the levels of the two signs if the device clips its digital output, where both
+// are equal.
 constexpr double kLopsidedShare = 1e-4;
 // Remaining tilt if the device clips its output; minimum standard deviation of a slope (residual misalignment).
 constexpr double kUprightSigma = 1e-5, kSlopeSigmaMin = 3e-4;

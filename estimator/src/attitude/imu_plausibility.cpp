@@ -149,9 +149,9 @@ double ImuPlausibility::unexplained_share(const State& state) const {
   return turned(state) ? state.unexplained_rad2.front() / std::max(state.by_force_rad2, state.by_gyro_rad2) : 0.0;
 }
 
-/// A device that never changed counts as frozen only while the body moves. For a gyro, this is shown by an unexplained
-/// rotation of the force, or forces that exclude rest. For an accelerometer, it is shown by the gyro while the readings
-/// differ even from free fall for too long.
+/// A device that never changed counts as frozen only while the body moves. For a gyro, evidence of motion is an
+/// unexplained rotation of the force, or forces that exclude rest. For an accelerometer, evidence of motion comes from
+/// the gyro, while the readings are zero for longer than a free fall lasts.
 double ImuPlausibility::frozen_s(const State& state) const {
   const auto never_moved = [&](const Hold& hold) {
     return hold.moved_s == 0.0 && hold.held_s >= params_.expert.frozen.repeats_s;

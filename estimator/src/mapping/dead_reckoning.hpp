@@ -9,8 +9,8 @@
 
 namespace tumble::mapping {
 
-/// Alternative pose by inertial prediction. After an unconfirmed relocalisation, it is the pose without the
-/// relocalisation. After a contradicted relocalisation, it is the contradicted pose.
+/// Alternative pose by inertial prediction. During an unconfirmed relocalisation, the alternative is the pose without
+/// the relocalisation. After a contradicted relocalisation, the alternative is the contradicted pose.
 struct DeadReckoning {
   Border border;
   LagWindow window;

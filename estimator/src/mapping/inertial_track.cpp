@@ -163,7 +163,7 @@ void InertialTrack::listen_for_rest(const Params& params, const ImuSample& sampl
   undecided_rad_s_.clear();
 }
 
-/// A body that moves by the whole reading has moved since the run's first sample.
+/// If a complete reading shows motion, all samples since its start count as motion, too.
 void InertialTrack::take_back_rest(std::optional<TimeNs> rests_since_ns) {
   const std::size_t count = std::min(undecided_rad_s_.size(), samples_.size());
   for (std::size_t back = 1; back <= count; ++back) {

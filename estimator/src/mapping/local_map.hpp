@@ -51,7 +51,8 @@ class LocalMap {
   /// Removes the points of this and later sweeps. Indices change. O(number of points).
   void withdraw(std::uint32_t first_sweep);
 
-  /// Removes distant points once the sensor has moved far enough. Returns whether it did; indices then change.
+  /// Removes distant points once the sensor has moved far enough. Returns whether points were removed; indices then
+  /// change.
   bool prune(const Params& params, const Eigen::Vector3d& p_WI_m);
 
   std::size_t bytes() const { return map_.bytes() + seen_from_W_m_.capacity() * sizeof(Eigen::Vector3f); }

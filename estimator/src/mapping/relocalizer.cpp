@@ -60,7 +60,7 @@ void track(const Params& params, const Registration::Prior& prior, const Scene& 
 }
 
 /// Searches for the pose from the prior and from starts around it, until the surfaces fit; otherwise returns the pose
-/// with most matches. The search continues with the next sweep, to limit the cost per sweep.
+/// with most inliers. The search continues with the next sweep, to limit the cost per sweep.
 void search(const Params& params, const Whereabouts& from, const Scene& scene, Aligner& aligner,
             SweepTrajectory& trajectory, Registration::Result& found) {
   const RelocalizationParams& starts = params.expert.search;

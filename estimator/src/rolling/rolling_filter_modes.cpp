@@ -22,7 +22,8 @@ constexpr double kDropped = -120.0;   // log weight relative to the best below w
 constexpr double kRestFloor = -60.0;  // lower limit of the log likelihood of a node at rest, so that a single bad node
                                       // cannot decide
 constexpr double kLongAgo_s = 1.0;    // time in one mode after which its start no longer matters
-// horizontal change of u per node; a narrow plateau component, because a wider one would match grip
+// horizontal change of u per node; the plateau component is as narrow as grip, otherwise each plateau would be
+// classified as grip
 constexpr double kPlateau_m_s = 0.004, kSteady_m_s = 0.01, kJump_m_s = 0.08, kPlateauShare = 0.4, kSteadyShare = 0.35;
 constexpr double kRise_m_s = 0.03, kHit_m_s = 0.3, kRiseShare = 0.7;  // vertical change of u per node, on a bump
 constexpr std::int64_t kAgesApart = 4;

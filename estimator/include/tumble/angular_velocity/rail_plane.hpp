@@ -48,8 +48,8 @@ struct RailPlanes {
   bool operator==(const RailPlanes&) const = default;
 };
 
-/// Sensing directions of a triad's elements, as determined from saturation planes. Free elements measure the component
-/// along their rows, clipped elements bound it.
+/// Sensing directions of a triad's elements, as determined from saturation planes. Free (unsaturated) elements measure
+/// the component along their rows; clipped elements bound this component.
 struct ElementRows {
   Eigen::Matrix3d rows = Eigen::Matrix3d::Identity();
   Eigen::Vector3d slope_sigma = Eigen::Vector3d::Zero();  ///< standard deviation of each of the two slopes of a row

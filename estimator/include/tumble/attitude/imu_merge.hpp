@@ -75,7 +75,7 @@ struct ImuMergeParams {
 /// A unit whose reading is not finite is absent. A unit is frozen if its gyro or accelerometer repeats its reading
 /// while the others change, or its accelerometer does while gravity rotates. A frozen unit is excluded until its
 /// readings have changed for a while. A unit that disagrees for long (scale, axes, unit of measurement) is excluded
-/// permanently, as long as two others remain. Equal readings at rest indicate neither.
+/// permanently, as long as two others remain. Equal readings at rest do not count as freezing or disagreement.
 ///
 /// Not modelled: clocks of different rates, an error common to all units.
 class ImuMerge {

@@ -44,8 +44,8 @@ struct PointCounts {
 PointCounts select_points(std::span<const LidarPoint> points, const PointBounds& bounds, const Eigen::Isometry3d& T_IL,
                           double sweep_start_s, std::vector<SweepPoint>& selected);
 
-/// Recomputes the points for another calibration and a time offset that is `later_s` larger, in the IMU's clock.
-/// `moved` must not be `points`. O(n).
+/// Recomputes the points for another calibration, with times that are `later_s` later in the IMU's clock. `moved` must
+/// not be `points`. O(n).
 void apply_calibration(const SweepCalibration& calibration, double later_s, std::span<const SweepPoint> points,
                        std::vector<SweepPoint>& moved);
 /// Same, in place.

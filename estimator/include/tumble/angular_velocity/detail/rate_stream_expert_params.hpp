@@ -18,8 +18,8 @@ struct RigInflationParams {
   /// Rates beyond saturation that are recovered during contact depend on the calibration. The standard deviation of
   /// such rates is at least this fraction of the deficit, divided by 1 + n / samples.
   double contact = 0.5;
-  /// Rule for a run of clipped samples in contact. A parabola with the slopes at the run's ends has a certain deficit.
-  /// The standard deviation is at least this fraction of it, minus the estimated deficit.
+  /// Rule for a run of clipped samples in contact. A parabola with the slopes at the run's ends predicts a deficit. The
+  /// standard deviation is at least this fraction of the predicted deficit, minus the estimated deficit.
   double slopes = 1.0;
 
   template <class Self, class Visitor>
