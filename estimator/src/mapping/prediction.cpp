@@ -51,7 +51,7 @@ double deficit_sigma(const Params& params, const MotionWindow& window, const Swe
 }
 
 /// Knots are samples of a first-order Gauss-Markov process with the reported standard deviation, mapping.md (R36),
-/// (R37), (R39). (R39) applies if the first knot continues from the last sweep.
+/// (R37), (R39). The last one applies if the first knot continues from the last sweep.
 void add_deficit_noise(const Params& params, const MotionWindow& window, const SweepTrajectory& trajectory,
                        Prediction& next) {
   if (!params.expert.rails.estimate_deficit) return;

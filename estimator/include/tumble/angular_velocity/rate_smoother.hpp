@@ -60,23 +60,20 @@ struct RateReport {
   int restarts = 0;              ///< restarts from other initial values, if the first found almost no flight
   double last_step_rad_s = 0.0;  ///< largest change of a rate in the last iteration
   RigCalibration calibration;    ///< estimated calibration, which can be passed to the next run
-  /// Distance of the constants from their prior (RateModel::calibration_mahalanobis). A value far above 1 means a wrong
-  /// prior, or a run without flight that was mistaken for one with flight.
+  /// Distance of the constants from their prior (RateModel::calibration_mahalanobis). Far above 1: a wrong prior, or a
+  /// run without flight that was mistaken for one with flight.
   double calibration_mahalanobis = 0.0;
   bool calibration_at_prior = false;          ///< the distance was too large; the constants remain at their prior
   std::array<std::optional<double>, 6> rail;  ///< levels in use: gyro [rad/s], accelerometer [m/s^2]; empty: none
-  std::array<bool, 6> rail_seen{};            ///< observed on this axis, not inferred from another axis or the data
-                                              ///< sheet
+  std::array<bool, 6> rail_seen{};            ///< observed on this axis, not inferred
   RailPlanes planes;                          ///< of the gyro's elements, where observed
   RailPlanes accel_planes;                    ///< of the accelerometer's elements, m/s^2
   /// Estimated sensor errors.
   KnownSensorErrors sensor_errors;
   double calibrated = 1.0, together = 1.0;  ///< see SensorErrorFit
-  /// Standard deviation of a delay common to both triads, included in the covariance if the device deviates from its
-  /// data sheet.
+  /// Standard deviation of a delay common to both triads; above 0 if the device deviates from its data sheet.
   double shared_delay_sigma_s = 0.0;
-  double gyro_update_s = 0.0, accel_update_s = 0.0;  ///< update interval of repeated readings (find_held); 0: no
-                                                     ///< repetition
+  double gyro_update_s = 0.0, accel_update_s = 0.0;  ///< update interval of repeated readings; 0: none
   int error_rounds = 0;                              ///< number of descents with corrected readings
   bool rails_upright = false;                        ///< the device clips its output, so other axes are unaffected
   std::array<bool, 6> rail_disagrees{};              ///< readings contradict the stated range
@@ -93,32 +90,28 @@ struct RateReport {
 /// recording.
 ///
 /// Unknowns: rate and angular acceleration per sample, and RigConstants for the run. Gauss-Newton uses these factors:
-/// - The gyro's readings where not clipped.
-/// - The bound given by a clipped reading, for any number of axes.
+/// - The gyro's readings where not clipped, and the bounds given by clipped readings, for any number of axes.
 /// - In flight, the complete rigid-body equation of the specific force at the lever arm, and Euler's equation without
 ///   torque. During contact, both equations have reduced weight.
-/// - White noise on jerk between samples. The density of the jerk grows with the contact force, so that an impact
-///   interrupts the chain.
+/// - White noise on jerk between samples. The density grows with the contact force: impacts interrupt the chain.
 /// - At rest (RestDetector), zero rate, which determines the gyro's bias.
 ///
 /// The normal equations are an arrow matrix: O(N) per iteration, including the covariance. The initial values come from
 /// the published method (Saave), extended by bounds.
 ///
 /// Contact: the force at the centre of mass is the part of the reading that flight does not explain. A force through
-/// one point of the cage has no torque about its own direction. This row of Euler's equation therefore remains in use;
-/// the uncertainty of the two other rows follows from the size of the cage (RateContactParams::lever_rad_m). The
-/// position of the contact point gives no further information. Measured for clipped samples in contact
-/// (tests/bench/rate_contact; docs/maths/rate_smoother.md): The median torque along the force is 1.4 %. The contact
-/// point of the previous sample leaves 66 % of the torque unexplained. The best single point of a whole impact leaves
-/// 48 %, and in one sample of ten everything. Reason: a cage strikes with several bars and rolls on within 10 ms.
+/// one point of the cage has no torque about its own direction. This row of Euler's equation therefore remains in use.
+/// The uncertainty of the two other rows follows from the size of the cage (RateContactParams::lever_rad_m). The
+/// position of the contact point gives no further information, because a cage strikes with several bars and rolls on
+/// within 10 ms. For clipped samples, the median torque along the force is 1.4 %, but the contact point of the previous
+/// sample leaves 66 % of the torque unexplained (tests/bench/rate_contact; docs/maths/rate_smoother.md).
 ///
 /// Sensor errors (SensorErrors: scale, misalignment, g-sensitivity, delay and window of the accelerometer relative to
 /// the gyro) are partly correlated with other constants. Sensor errors are estimated as far as the run determines them,
 /// by repeated descents with corrected readings. Their prior magnitude is chosen to fit the readings
 /// (fit_sensor_errors). The remaining uncertainty is included in both covariances as considered parameters (S. F.
-/// Schmidt, 1966). Otherwise the fit would treat these errors as noise and average them; see the test
-/// ScaleAndMisalignmentAreInTheCovariance. guess_triad_delay computes an initial delay. If the two triads are not
-/// synchronous, the later one is assumed to be delayed and the other to be on time.
+/// Schmidt, 1966). Otherwise the fit would treat these errors as noise and average them. guess_triad_delay computes an
+/// initial delay. If the two triads are not synchronous, the later one is assumed to be delayed.
 ///
 /// The elements of a gyro clip along their own, not quite orthogonal axes. The device's compensation then mixes the
 /// clipped values (RailPlaneFinder). While an element clips, the gyro is therefore used element by element
@@ -135,14 +128,14 @@ class RateSmoother {
   /// Throws InvalidParams if a parameter is out of bounds.
   explicit RateSmoother(const Params& params);
 
-  /// Computes one RateState per sample, and the diagnostics of the run. On error nothing is written, and the status
+  /// Computes one RateState per sample, and the diagnostics of the run. On error nothing is written; the status
   /// contains field, value and bound: `empty`, `too_few` (less than two samples), `non_finite`, `time_order`, `gap`,
   /// `diverged`.
   Status estimate(std::span<const ImuSample> samples, std::vector<RateState>& out, RateReport& report) const {
     return estimate(samples, {}, out, report);
   }
-  /// Same with other IMUs on the body. `auxiliary_imus` has one list per RateModelParams::auxiliary_imus, with one
-  /// reading per sample (see align()). Returns `too_few` if the sizes differ.
+  /// Same with other IMUs on the body: one list per RateModelParams::auxiliary_imus, one reading per sample (see
+  /// align()). Returns `too_few` if the sizes differ.
   Status estimate(std::span<const ImuSample> samples, std::span<const std::vector<AuxiliaryReading>> auxiliary_imus,
                   std::vector<RateState>& out, RateReport& report) const;
 

@@ -27,13 +27,12 @@ struct MotionSample {
   std::uint8_t clipped_axes = 0;                               ///< bit j: axis j of the gyro was saturated
   std::uint8_t railed_axes = 0;                                ///< bit j: axis j of the accelerometer was saturated
   bool at_rest = false;                                        ///< belongs to the rest at the start
-  std::optional<TimeNs> rests_since_ns;  ///< first sample of the rest, detected from the IMU alone, that it belongs to
+  std::optional<TimeNs> rests_since_ns;  ///< first sample of its rest, detected from the IMU alone
   bool in_flight = false;                ///< f_I_m_s2 is that of free flight, not the accelerometer's
   bool bridges_gap = false;              ///< longer than a sample: the force inside is unknown; velocity continues
 };
 
-/// Motion of the IMU at one time. Errors are ordered (position, attitude, velocity), all in W. The attitude error is
-/// that of AttitudeState: q_true = Exp(phi) q.
+/// Motion of the IMU at one time. Errors are (position, attitude, velocity), all in W; attitude as in AttitudeState.
 struct MotionState {
   TimeNs time_ns = 0;
   Eigen::Vector3d p_WI_m = Eigen::Vector3d::Zero();
@@ -48,8 +47,7 @@ struct MotionState {
 ///
 /// Attitude: R(t) = R_k Exp(w_k (t - t_k)), exact for a rate that is constant in body axes over each sample. Position:
 /// p(t) = p_0 + v_0 t + g t^2 / 2 + S(t), with the double integral S of the specific force. The mean force over each
-/// sample is R_k J_l(w_k dt) f_k. This mean is exact for a force constant in body axes, such as the centripetal force
-/// of a spin.
+/// sample is R_k J_l(w_k dt) f_k, exact for a force constant in body axes, as the centripetal force of a spin is.
 ///
 /// The saturation deficit e corrects the clipped axes. The deficit is linear in time between kKnots knots at equal
 /// steps from the start to the end of the segment. The rate is w_j + s_j e_j(t) where axis j was clipped. The factor
@@ -74,9 +72,9 @@ class SweepTrajectory {
     ByDeficit preintegrated_position_m_s;
   };
 
-  /// Integrates from `start` to `end_ns`. Samples must be in time order and contiguous; the first window must reach
-  /// back to the start. Errors: `too_few` (no sample, or they end before end_ns), `time_order` (end before start),
-  /// `gap` (the first window begins after the start; value in seconds). Reuses its memory.
+  /// Integrates from `start` to `end_ns`. Samples must be contiguous and in time order, from the start on. Errors:
+  /// `too_few` (no sample, or they end before end_ns), `time_order` (end before start), `gap` (the first window begins
+  /// after the start; value in seconds). Reuses its memory.
   Status build(const MotionState& start, std::span<const MotionSample> samples, TimeNs end_ns,
                const Eigen::Vector3d& gravity_W_m_s2, const Deficit& deficit_rad_s = Deficit::Zero());
   /// Same, with gravity of this magnitude along -z.
@@ -89,13 +87,11 @@ class SweepTrajectory {
   double duration_s() const { return duration_s_; }
 
   /// Evaluates the motion at `t_s` seconds after the start. Outside of the segment, the motion of the first or last
-  /// sample is extrapolated by up to kBeyond_s, which covers errors of the time offset. t_s is clamped there. `hint` is
-  /// the interval of the previous call and speeds up calls in time order. The hint may have any value in [0,
-  /// intervals()).
+  /// sample is extrapolated by up to kBeyond_s, which covers errors of the time offset. `hint` is the interval of the
+  /// previous call and speeds up calls in time order. Any value in [0, intervals()) is valid.
   static constexpr double kBeyond_s = 0.02;
   Instant at(double t_s, std::size_t& hint) const;
-  /// Computes S(t) + R(t) x of each point. The result equals that of at(), bit for bit, and is faster for several
-  /// points.
+  /// Computes S(t) + R(t) x of each point: the result of at(), bit for bit, faster for several points.
   void levers(std::span<const SweepPoint> points, std::span<Eigen::Vector3f> levers_W_m) const;
   DeficitDerivative deficit_derivative(double t_s, std::size_t& hint) const;
   std::size_t intervals() const { return intervals_.size(); }
@@ -110,12 +106,11 @@ class SweepTrajectory {
   /// Same as at(), and also computes the velocity in W of a point that is fixed at x_I in the IMU's axes.
   Instant at(double t_s, const Eigen::Vector3d& x_I_m, std::size_t& hint, Eigen::Vector3d& velocity_m_s) const;
 
-  /// Returns the full state at t_s within the segment. The covariance is propagated from the start without process
-  /// noise.
+  /// Returns the full state at t_s within the segment, with the covariance propagated without process noise.
   MotionState state(double t_s) const;
 
-  /// First-order derivatives of the state (position, attitude, velocity) at t_s by the state at the start, the deficit
-  /// rate, and gravity.
+  /// First-order derivatives of the state (position, attitude, velocity) at t_s by start state, deficit rate and
+  /// gravity.
   struct Transition {
     Eigen::Matrix<double, 9, 9> by_start;
     Eigen::Matrix<double, 9, kDeficit> by_deficit_s;

@@ -19,26 +19,22 @@
 
 namespace tumble {
 
-/// Estimates the pose of a rolling sphere from one to four IMUs, through grip, slip, bumps and slopes. RollingOdometry
-/// reports live poses, and poses smoothed with the data of the following `lag_s`. UnitRails flags readings that a
-/// device clips without reporting it, ImuMerge fuses the IMUs, and RollingSmoother (with its RollingFilter) estimates
-/// the motion.
+/// Estimates the pose of a rolling sphere from one to four IMUs, through grip, slip, bumps and slopes: live, and
+/// smoothed with the data of the following `lag_s`. UnitRails flags readings that a device clips without reporting it,
+/// ImuMerge fuses the IMUs, and RollingSmoother (with its RollingFilter) estimates the motion.
 ///
 /// World: z up, origin at the sphere's centre at the first sample, yaw 0 there. Start with one second at rest.
 ///
 /// Cost: the state takes half a megabyte, plus 0.1 MB per IMU and 11 KiB per 0.02 s of lag. A sample that ends no block
 /// (RollingSmoother::Params::block_s) allocates nothing after start-up, except for poses not yet fetched by take(). A
-/// call needs at most 64 KiB of stack.
-///
-/// The class uses no threads and no files and prints nothing. Copies contain the complete state. Not modelled: see the
-/// classes named above.
+/// call needs at most 64 KiB of stack. No threads, no files, no printing. Copies contain the complete state. Not
+/// modelled: see the classes named above.
 class RollingOdometry {
  public:
   /// One IMU of the sphere.
   struct Unit {
     ImuSheet sheet;
-    /// Pose of the IMU in the sphere's frame, whose origin is the sphere's centre: x_B = T_BI x_I. The IMU is inside
-    /// the sphere.
+    /// Pose of the IMU, which is inside the sphere, in axes from the sphere's centre: x_B = T_BI x_I.
     Eigen::Isometry3d T_BI = Eigen::Isometry3d::Identity();
   };
   struct Params {
@@ -85,12 +81,9 @@ class RollingOdometry {
   ~RollingOdometry() = default;
 
   /// Processes simultaneous readings of all units. The stamp of the first counts, corrected by SampleClock if a host's
-  /// stamps jitter. A unit without a reading is passed as NaN. On error the state is unchanged:
-  /// - `too_few`: wrong number of units, or no unit has a reading.
-  /// - `time_order`: the stamp is not later than the previous one.
-  /// - `degenerate`: the first sample contains no gravity.
-  /// - `gap`: more than a second without samples. The path is lost and the run ends until reset().
-  /// - `out_of_range`: after finish(), or if the only unit with readings has a frozen axis.
+  /// stamps jitter. A unit without a reading is passed as NaN. On error the state is unchanged: `too_few` (wrong number
+  /// of units, or no reading), `time_order`, `degenerate` (no gravity in the first sample), `gap` (more than a second:
+  /// the run ends until reset()), `out_of_range` (after finish(), or the only unit with readings has a frozen axis).
   Status add_imus(std::span<const ImuSample> samples);
   /// Same for a sphere with one IMU.
   Status add_imu(const ImuSample& sample) { return add_imus({&sample, 1}); }
@@ -118,8 +111,8 @@ class RollingOdometry {
   /// Returns the jitter of the stamps [s]; see TumblingOdometry::mended_jitter_s.
   std::optional<double> mended_jitter_s() const;
 
-  /// Saves the state, loads it, or reads its parameters; see TumblingOdometry::save and load. The size is up to a
-  /// megabyte, less at rest, plus the data within the lag.
+  /// Save, load, saved parameters: see TumblingOdometry. The size is up to a megabyte, less at rest, plus the lag's
+  /// data.
   std::vector<std::byte> save() const;
   Status load(std::span<const std::byte> bytes);
   static Status saved_params(std::span<const std::byte> bytes, Params& params);

@@ -17,17 +17,14 @@
 namespace tumble {
 
 /// Estimates pose, velocity and map of a tumbling body from one IMU, whose gyro may saturate, and a lidar with skewed
-/// sweeps. The estimation is causal, sample by sample. SampleClock corrects stamps that a host assigned. RegimeStream
-/// estimates the angular velocity of each sample with a delay of `lag_s`, saturated or not. LidarInertialOdometry
-/// processes samples and sweeps as soon as their rates are available.
+/// sweeps. The estimation is causal. SampleClock corrects stamps that a host assigned. RegimeStream estimates each
+/// sample's angular velocity with a delay of `lag_s`. LidarInertialOdometry then processes samples and sweeps.
 ///
-/// Three poses of increasing accuracy are reported:
-/// - newest() predicts the IMU's pose at the newest sample by inertial integration from the last registered sweep.
-/// - take() returns a sweep at most lag_s after its end, registered to the map (`report.pose`).
-/// - The next sweep brings its final pose (`report.smoothed`): at most 0.3 s after its end, at ten sweeps per second.
-///
-/// Stamps of poses are in the IMU's clock. The world is that of LidarInertialOdometry: z up, origin and yaw at the IMU
-/// at the first sample. Start with at least half a second at rest, which levels the attitude.
+/// Three poses of increasing accuracy are reported. newest() predicts the IMU's pose at the newest sample by inertial
+/// integration from the last registered sweep. take() returns a sweep registered to the map (`report.pose`), at most
+/// lag_s after its end. The next sweep brings its final pose (`report.smoothed`): at most 0.3 s after its end, at ten
+/// sweeps per second. Stamps of poses are in the IMU's clock. World: z up, origin and yaw at the IMU at the first
+/// sample. Start with at least half a second at rest, which levels the attitude.
 ///
 /// Some seconds after motion starts, SecondPass processes those seconds again with the calibration estimated so far.
 /// Map and pose then switch once to its result; earlier poses are not changed. If the lidar is silent for a second,
@@ -35,9 +32,8 @@ namespace tumble {
 ///
 /// Cost: an IMU sample costs one step of the stream, and sometimes the registration of a sweep. A sample that ends no
 /// sweep allocates nothing after start-up. While the second pass runs, a sweep costs up to four registrations, and once
-/// five more when the second pass finishes. Memory is bounded by the lag, the map radius, `sweeps_max` and the buffer
-/// of the second pass. Memory grows by 12 bytes per sweep while the body stays within ten metres. A call needs at most
-/// 64 KiB of stack.
+/// five more at its end. Memory is bounded by the lag, the map radius, `sweeps_max` and the buffer of the second pass,
+/// plus 12 bytes per sweep within ten metres. A call needs at most 64 KiB of stack.
 ///
 /// The class uses no threads and no files and prints nothing. Copies contain the complete state, so a run may be split.
 /// Not modelled: see RegimeStream and LidarInertialOdometry.
@@ -51,38 +47,30 @@ class TumblingOdometry {
     LidarInertialOdometry::SweepReport report;
   };
 
-  /// Throws InvalidParams if a parameter is out of bounds, the lever arm is not set, or a corner of the own-body box is
-  /// swapped.
+  /// Throws InvalidParams if a parameter is out of bounds, the lever arm is not set, or the own-body box is invalid.
   explicit TumblingOdometry(const Params& params);
 
-  /// Processes an IMU sample; time stamps must increase. Registers the sweeps whose rates become available. On
-  /// `non_finite`, `time_order` or `gap` the state is unchanged, with one exception. The sample after a gap of more
-  /// than a second is kept until the next sample confirms it. The rates then restart with the calibration estimated so
-  /// far (gaps() counts them), and the mapper bridges the gap by inertial integration. A single wrong stamp therefore
-  /// costs one sample.
+  /// Processes an IMU sample; stamps must increase. Registers the sweeps whose rates become available. On `non_finite`,
+  /// `time_order` or `gap` the state is unchanged, with one exception. The sample after a gap of more than a second
+  /// waits for confirmation by the next one. The rates then restart with the current calibration (gaps() counts them),
+  /// and the mapper bridges the gap by inertial integration. A single wrong stamp thus costs one sample.
   Status add_imu(const ImuSample& sample);
   /// Processes a sweep of points fired in [start_ns, end_ns], at any time after its last point. The points are copied.
-  /// Points from before the end of the last sweep are dropped because stamps jitter. The mapper's result is available
-  /// from take(). On error the state is unchanged:
-  /// - `time_order`: the end is before the start, or more than half of the sweep is before the end of the last sweep.
-  /// - `out_of_range`: a point's offset is beyond the sweep, the end is more than a second after the newest sample, or
-  ///   too many sweeps wait.
+  /// Points from before the end of the last sweep are dropped because stamps jitter. On error the state is unchanged.
+  /// `time_order`: the end is before the start, or half of the sweep is before the end of the last sweep.
+  /// `out_of_range`: a point is beyond the sweep, the end is a second after the newest sample, or too many sweeps wait.
   Status add_sweep(TimeNs start_ns, TimeNs end_ns, std::span<const LidarPoint> points);
-  /// Processes a velocity reading of the robot's odometer, if it has one (detail/odometer_reading.hpp). The reading
-  /// must arrive before its sweep is registered, which is lag_s after the sweep's end. Of several readings within a
-  /// sweep, the last one counts. On error the state is unchanged:
-  /// - `empty`: no IMU sample yet.
-  /// - `non_finite`: a component is not finite.
-  /// - `time_order`: its sweep is already registered.
-  /// - `out_of_range`: standard deviation not above 0, stamp a second ahead of the newest sample, or 1024 readings
-  ///   wait.
+  /// Processes an odometer reading (detail/odometer_reading.hpp). The reading must arrive before its sweep is
+  /// registered, which is lag_s after the sweep's end. The last reading of a sweep counts. On error the state is
+  /// unchanged: `empty` (no IMU sample yet), `non_finite`, `time_order` (the sweep is already registered),
+  /// `out_of_range` (standard deviation not above 0, stamp a second ahead of the newest sample, or 1024 readings wait).
   Status add_velocity(const VelocityReading& velocity);
   Status add_motion(const MotionReading& motion);
   /// Returns the next registered sweep, in order; nothing if there is none yet.
   std::optional<Sweep> take();
-  /// Registers all sweeps that the IMU covers, at the end of a run or during a halt. take() then returns them.
-  /// mapper().open_trajectories() returns the final poses of sweeps still in the window. Rates of later samples restart
-  /// with the calibration estimated so far.
+  /// Registers all sweeps that the IMU covers, at the end of a run or during a halt. take() then returns them, and
+  /// mapper().open_trajectories() the final poses of sweeps in the window. Later rates restart with the current
+  /// calibration.
   void finish();
 
   /// Predicts pose and velocity of the IMU at its newest sample, with covariance, by inertial integration from the last
@@ -90,22 +78,17 @@ class TumblingOdometry {
   Status newest(PoseState& pose) const;
 
   /// Reports whether the inputs and the pose are plausible now. Estimation continues in either case. Returns `ok`, or
-  /// `out_of_range` with one of these findings:
-  /// - the name of an IMU axis that is frozen, and for how long;
-  /// - an accelerometer with inverted sign (FlightSense);
-  /// - a scale error of the lidar's ranges that the IMU contradicts (SweepScale);
-  /// - evidence of tracking failure (Localisation), which is permanent;
-  /// - the change of the lidar's calibration from its stated values (GivenCalibration).
+  /// `out_of_range` with a finding: a frozen IMU axis and its duration, an inverted accelerometer (FlightSense), a
+  /// wrong scale of the lidar's ranges (SweepScale), tracking failure (Localisation, permanent), or too large a change
+  /// of the lidar's calibration (GivenCalibration).
   Status doubt() const;
-  /// Returns the estimator of the lidar's range scale relative to the IMU, as far as it is observable from the motion.
+  /// Returns the estimated range scale of the lidar relative to the IMU, as far as the motion determines it.
   const SweepScale& sweep_scale() const { return pass_.sweep_scale(); }
   /// Returns the time of the newest accepted sample.
   std::optional<TimeNs> newest_ns() const { return newest_ns_; }
-  /// Returns the rate of the newest sample, if any. The rate is provisional while the gyro is saturated because later
-  /// samples determine most of it.
+  /// Returns the rate of the newest sample, if any. While the gyro is saturated, the rate is provisional.
   std::optional<RateState> newest_rate() const { return pass_.rates().rate().newest(pass_.rate_state().rate); }
-  /// Returns the latest smoothed rate, which is lag_s old, or one sample less if a sweep waited for it. Empty while the
-  /// lag fills.
+  /// Returns the latest smoothed rate, about lag_s old. Empty while the lag fills.
   const std::optional<RateState>& smoothed_rate() const { return pass_.smoothed_rate(); }
   /// Returns the estimated calibration of the IMU on the body: lever arm, biases and sensing elements.
   RigCalibration rig() const { return pass_.rates().rate().calibration(pass_.rate_state().rate); }
@@ -114,13 +97,12 @@ class TumblingOdometry {
   std::size_t gaps() const { return gaps_; }
   /// Returns whether map and pose are those of the second pass (SecondPass).
   bool passed_again() const { return again_.taken(); }
-  /// Returns the number of rejected inputs: samples that the mapper rejected, sweeps not fetched in time, and odometer
-  /// readings that span two sweeps. The number is 0 in normal operation.
+  /// Return the numbers of samples that the mapper rejected, of sweeps not fetched in time, and of odometer readings
+  /// that span two sweeps. All are 0 in normal operation.
   std::size_t refused_samples() const { return pass_.refused_samples(); }
   std::size_t dropped_sweeps() const { return dropped_sweeps_; }
   std::size_t unused_readings() const { return readings_.straddling(); }
-  /// Returns the standard deviation of the IMU's stamps about a regular clock [s], while stamps are corrected by this
-  /// clock.
+  /// Returns the standard deviation of the IMU's stamps about a regular clock [s], while stamps are corrected.
   std::optional<double> mended_jitter_s() const;
   /// Returns the mapper: the map and further results.
   const LidarInertialOdometry& mapper() const { return pass_.mapper(); }
