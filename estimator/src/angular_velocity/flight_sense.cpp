@@ -16,8 +16,7 @@ namespace {
 // Minimum duration of flight for a half-scale gyro. Hand-held motion can look like flight at twice the rate for 0.05 s;
 // real flights last longer.
 constexpr double kHalvedRun_s = 0.08;
-constexpr double kAcross = 0.05;    // minimum square of the lever arm's component across an axis, as a fraction, for
-                                    // recovering its rate
+constexpr double kAcross = 0.05;    // of the lever arm squared: minimum across an axis for recovering its rate
 constexpr double kBelowRail = 0.1;  // tolerance by which a recovered rate may be below the saturation level
 
 /// Index and sign of the readings that are x, y, z.

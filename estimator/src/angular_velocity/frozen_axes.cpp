@@ -11,8 +11,7 @@ namespace {
 constexpr double kLonger = 10.0;         // ratio to the longest earlier repetition
 constexpr double kRailShare = 0.9;       // fraction of the stated range above which a reading may be saturated
 constexpr double kExtremeShare = 0.5;    // same for a reading that is an extreme of the axis
-constexpr double kQuanta = 50.0;         // change of another axis in quanta of this one, so that 2 % cross-axis
-                                         // sensitivity is one quantum
+constexpr double kQuanta = 50.0;         // change of another axis in quanta; cross-axis sensitivity of 2 % gives one
 constexpr double kRotating_rad_s = 0.3;  // change of another gyro axis that indicates motion
 constexpr double kPushed_m_s2 = 1.0;     // same for an accelerometer
 constexpr double kChanging =

@@ -44,7 +44,7 @@ std::optional<HeldRate> between(const OwnReading& z, const OwnReading& a, const 
   return out;
 }
 
-// Returns the first sample from i on with a new reading; the window's size if there is none.
+// Returns the first sample from i on with a new reading, or the window's size.
 std::size_t new_reading(std::span<const RateStreamKnot> window, std::size_t i) {
   while (i < window.size() && window[i].repeats) ++i;
   return i;

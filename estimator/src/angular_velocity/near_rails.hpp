@@ -16,7 +16,7 @@ namespace tumble {
 /// observed level are excluded, so nothing is returned without clipping. Repeated readings count once. O(N).
 std::vector<std::uint8_t> may_meet_rails(std::span<const ImuSample> samples, const RailPlanes& planes);
 
-/// Same for one reading, from the steps to its neighbours (null if there is none), for a stream. O(1).
+/// Same for one reading, from the steps to its neighbours (null at the ends), for a stream. O(1).
 std::uint8_t may_meet_rails(const ImuSample* before, const ImuSample& now, const ImuSample* after,
                             const RailPlanes& planes);
 

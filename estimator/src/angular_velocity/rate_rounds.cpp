@@ -47,7 +47,7 @@ bool tells(const TriadDelay& guess) {
   return guess.sigma_s > 0.0 || guess.delay_s != 0.0;
 }
 
-// Returns whether errors differ so much from those already corrected that the descent must be repeated.
+// Returns whether errors differ enough from those already corrected for another descent.
 bool far_apart(const SensorErrors& a, const SensorErrors& b) {
   constexpr double kMatrix = 1e-3, kFelt_s_m = 3e-5, kDelay_s = 3e-4, kBlur_s2 = 3e-6;
   return (a.gyro - b.gyro).cwiseAbs().maxCoeff() > kMatrix || (a.accel - b.accel).cwiseAbs().maxCoeff() > kMatrix ||

@@ -71,8 +71,7 @@ void RateStream::pair_force(std::size_t k, State& state) const {
   Knot& knot = state.window[k];
   const auto last = static_cast<std::ptrdiff_t>(state.window.size()) - 1;
   const std::ptrdiff_t own = static_cast<std::ptrdiff_t>(k), wanted = own + force_shift(state);
-  const std::ptrdiff_t at = wanted < 0 ? own : std::min(wanted, last);  // forces outside of the window are not
-                                                                        // available
+  const std::ptrdiff_t at = wanted < 0 ? own : std::min(wanted, last);  // only forces in the window are available
   const Knot& source = state.window[static_cast<std::size_t>(at)];
   RateObservation& o = knot.observation;
   o.sample.specific_force_m_s2 = source.read.force_m_s2;

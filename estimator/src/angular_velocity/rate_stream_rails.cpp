@@ -42,7 +42,7 @@ std::optional<std::size_t> reading_before(std::size_t k, const std::vector<RateS
   return k;
 }
 
-// Returns the first sample with the reading after that of sample k; the window's size if there is none yet.
+// Returns the first sample with the reading after that of sample k; the window's size before it arrives.
 std::size_t reading_after(std::size_t k, const std::vector<RateStream::Knot>& window) {
   const std::size_t size = window.size();
   if (k >= size) return size;
@@ -51,7 +51,7 @@ std::size_t reading_after(std::size_t k, const std::vector<RateStream::Knot>& wi
   return k;
 }
 
-// Samples with the gyro readings before and after that of a sample, null if there is none.
+// Samples with the gyro readings before and after that of a sample, or null.
 struct Beside {
   const ImuSample *before = nullptr, *after = nullptr;
 };

@@ -33,7 +33,7 @@ struct HeldReadings {
 /// of some 5000 clocks, on at most 1000 samples.
 std::optional<HeldReadings> find_held(std::span<const ImuSample> samples, Triad triad);
 
-/// The nearest samples with a different reading; null if there is none.
+/// The nearest samples with a different reading, or null.
 struct Neighbours {
   const ImuSample *before = nullptr, *after = nullptr;
 };

@@ -18,8 +18,7 @@ using so3::hat;
 
 using GyroRow = Eigen::Matrix<double, 1, 6>;          // by rate and angular acceleration
 using BorderRow = Eigen::Matrix<double, 1, kBorder>;  // by the constants
-using ForceState = Eigen::Matrix<double, 3, 12>;      // by attitude, rate, angular acceleration, held point's
-                                                      // acceleration
+using ForceState = Eigen::Matrix<double, 3, 12>;      // by attitude, rate, and both accelerations
 using ForceBorder = Eigen::Matrix<double, 3, kBorder>;
 
 // carried.md (C12): slope h = -d/du log Phi(u) is the hazard phi/Phi; asymptotic series in the tail, where both

@@ -26,8 +26,7 @@ constexpr double kHeld_s = 0.03;
 constexpr double kWindowMax_s = 0.05;  // maximum window for a central difference
 
 constexpr double kSuspect_s = 0.04;         // impacts come in groups, and a filter's response outlasts the impact
-constexpr double kAccelerationShare = 0.3;  // uncertainty of an acceleration as a fraction of its change from sample to
-                                            // sample
+constexpr double kAccelerationShare = 0.3;  // uncertainty of an acceleration, of its change between samples
 
 }  // namespace
 

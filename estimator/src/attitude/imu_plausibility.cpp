@@ -11,13 +11,10 @@ namespace tumble {
 
 namespace {
 
-constexpr double kStandstillRad2 = 1e-6;  // largest rotation by a gyro that does not move, while the force rotates by
-                                          // `rotation_min_rad2`
+constexpr double kStandstillRad2 = 1e-6;  // largest rotation of a gyro that does not move
 constexpr double kPushed = 0.5;           // difference from gravity that excludes rest, as a fraction of gravity
-constexpr double kPushedLeast_s = 0.2;    // and its minimum duration: such motion rotates any gyro by more than a
-                                          // quantum
-constexpr double kWeightless = 0.05;      // minimum force with a direction, in m/s^2 as a fraction of gravity, for any
-                                          // unit
+constexpr double kPushedLeast_s = 0.2;    // and its minimum duration
+constexpr double kWeightless = 0.05;      // of gravity: minimum force with a direction, for any unit
 
 auto least_unexplained(const ImuPlausibility::State& state) {
   return std::min_element(state.unexplained_rad2.begin(), state.unexplained_rad2.end());

@@ -18,8 +18,7 @@ namespace tumble {
 namespace {
 
 constexpr double kScaleStep = 0.05;
-constexpr std::size_t kHalf = kAxisLabels, kTwice = kAxisLabels + 1;  // after the axis labels; followed by those around
-                                                                      // 1
+constexpr std::size_t kHalf = kAxisLabels, kTwice = kAxisLabels + 1;  // after the labels; then those around 1
 constexpr std::size_t kLower = kAxisLabels + 2, kUpper = kAxisLabels + 3, kReadings = kAxisLabels + 4;
 constexpr std::size_t kCompared = kLower;  // alternatives that are not close to the unchanged rates
 constexpr double kClearly = 0.4;           // logarithm of a ratio of squares

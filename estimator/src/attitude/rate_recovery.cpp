@@ -150,8 +150,7 @@ void RateRecovery::start(const ImuSample& merged, State& state) const {
 /// imu_merge.md (I11), (I12).
 void RateRecovery::predict(double dt_s, State& state) const {
   const Eigen::Vector3d rate = state.x.segment<3>(kRate), force = state.x.segment<3>(kForce);
-  const Eigen::Matrix3d turn = so3::exp(-dt_s * rate).toRotationMatrix();  // a force that is constant in W rotates
-                                                                           // backwards in C
+  const Eigen::Matrix3d turn = so3::exp(-dt_s * rate).toRotationMatrix();  // a constant force in W rotates in C
   Eigen::Matrix<double, kArms, kArms> F = Eigen::Matrix<double, kArms, kArms>::Identity();
   F.block<3, 3>(kRate, kAcceleration) = dt_s * Eigen::Matrix3d::Identity();
   F.block<3, 3>(kForce, kForce) = turn;

@@ -21,10 +21,8 @@ using Vector9 = Eigen::Matrix<double, 9, 1>;
 using Matrix9 = Eigen::Matrix<double, 9, 9>;
 
 constexpr double kPi = std::numbers::pi;
-constexpr double kAgainst = 3.0;           // mean distance beyond the level over a segment, in standard deviations,
-                                           // below which the segment is tested
-constexpr double kRevolutionCost = 100.0;  // limit of the jerk cost of an additional revolution: ten standard
-                                           // deviations
+constexpr double kAgainst = 3.0;           // segments whose mean is closer to the level, in deviations, are tested
+constexpr double kRevolutionCost = 100.0;  // limit of a revolution's jerk cost: ten standard deviations
 constexpr double kAround_s = 0.3;          // duration before and after a segment that is solved with it
 constexpr double kTakeLogOdds = 3.0;       // 1 to 20: stricter for a change, because the cost excludes model errors
 constexpr int kTurnsMax = 2;               // more or less than the descent's solution

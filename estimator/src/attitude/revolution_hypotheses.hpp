@@ -5,8 +5,7 @@
 
 namespace tumble::carried {
 
-inline constexpr double kAngleShare = 1.0 / 3.0;  ///< as a fraction of pi: a standard deviation of the angle with a
-                                                  ///< revolution at six sigma
+inline constexpr double kAngleShare = 1.0 / 3.0;  ///< of pi: standard deviation with a revolution at six sigma
 inline constexpr double kLogOdds = 6.9;           ///< 1 to 1000: less probable alternatives are ignored
 
 /// Returns the minimum cost of an additional revolution within a time with fixed ends, for white jerk of a root density

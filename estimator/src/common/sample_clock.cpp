@@ -15,8 +15,7 @@ constexpr double kOutlier = 4.0;  // errors are limited to this many standard de
 constexpr double kStray = 0.4;    // error in periods above which the sample number is uncertain
 constexpr std::size_t kStraysMax = 8;
 constexpr double kNoPeriod = 0.25;    // maximum jitter in periods; random stamps have 0.29
-constexpr double kWander = 0.5;       // maximum correlation of successive errors; above it the line does not follow the
-                                      // clock
+constexpr double kWander = 0.5;       // maximum correlation of successive errors for a line that follows the clock
 constexpr double kLeastStep = 0.25;   // minimum time between two samples, in periods
 constexpr double kNumberSigma = 0.1;  // maximum uncertainty of the sample number after a gap, in periods
 

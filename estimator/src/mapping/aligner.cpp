@@ -14,8 +14,7 @@ Registration::Params full_params(const LidarInertialOdometry::Params& params) {
   return out;
 }
 
-constexpr double kCoarseReach = 2.0;  // multiple of the matching distance; matches at this distance still pull in the
-                                      // right direction
+constexpr double kCoarseReach = 2.0;  // multiple of the matching distance with useful matches
 
 /// Wider bounds: finds the neighbourhood of the solution only.
 Registration::Params coarse_params(const LidarInertialOdometry::Params& params) {

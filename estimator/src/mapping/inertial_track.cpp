@@ -16,8 +16,7 @@ using Params = LidarInertialOdometry::Params;
 
 constexpr TimeNs kArcStep_ns = 5'000'000;
 constexpr TimeNs kArcMost_ns = 10'000'000'000;  // longer than any flight
-constexpr double kArcOff_rad_s = 0.5;           // in addition to standard deviations: an impact changes the rate by
-                                                // more, a wrong inertia by less
+constexpr double kArcOff_rad_s = 0.5;           // in addition to deviations: impacts change the rate by more
 
 WindowRate rate_of(const MotionSample& sample) {
   return {sample.w_WI_I_rad_s, sample.rate_sigma_rad_s, sample.from_ns, sample.time_ns};

@@ -18,8 +18,7 @@ struct Estimated {
 /// A sweep that later sweeps still refine. Unknowns are those of its start.
 struct WindowSweep {
   Estimated predicted;
-  Registration::Matrix by_before = Registration::Matrix::Identity();  ///< derivative of the prediction by the previous
-                                                                      ///< sweep's unknowns
+  Registration::Matrix by_before = Registration::Matrix::Identity();  ///< derivative by the previous sweep
   Estimated filtered, smoothed;                                       ///< initially equal
   std::vector<MotionSample> samples;
   TimeNs end_ns = 0;

@@ -13,11 +13,9 @@ namespace {
 constexpr float kSurfaceSine = 0.17365f;
 // sin 2 deg: ground 0.5 m below is seen at this angle at 14 m; smaller angles are edges.
 constexpr float kGrazingSine = 0.0349f;
-constexpr float kBend = 0.15f;                     // tolerance as a fraction of the range difference, because ground is
-                                                   // not flat
+constexpr float kBend = 0.15f;                     // tolerance of the range difference for uneven ground
 constexpr int kNeighbours = 2;                     // on each side along the ring
-constexpr float kReachSteps = kNeighbours + 0.5f;  // angular steps; with misses in between, beams further apart are no
-                                                   // neighbours
+constexpr float kReachSteps = kNeighbours + 0.5f;  // angular steps; beams further apart are no neighbours
 constexpr float kStepMax = 0.05f;                  // rad; rings of 16-channel lidars are 0.035 apart
 constexpr float kDeviations = 3.0f;
 // Lone returns of a sweep in clear air: thin objects, edges and distant ground. Measured: 0.05 % at rest, 0.3 to 0.7 %
@@ -123,7 +121,7 @@ void LoneReturns::sort_by_ring(const std::vector<SweepPoint>& points) {
   }
 }
 
-/// Computes the step from each beam to the previous one on its ring; 1 if there is none.
+/// Computes the step from each beam to the previous one on its ring, or 1 for the first.
 void LoneReturns::measure_steps() {
   steps2_.assign(beams_.size(), 1.0f);
   sorted_steps2_.clear();

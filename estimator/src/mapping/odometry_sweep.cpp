@@ -201,8 +201,7 @@ void LidarInertialOdometry::Impl::forget_until(TimeNs end_ns) {
   known = mapping::InertialPrior{};
   track.forget_until(end_ns);
   if (mapping::is_to_be_borne_out(tracking))
-    return;  // its points may be withdrawn by their sweep numbers, which
-             // pruning changes
+    return;  // withdrawing its points needs their sweep numbers, which pruning changes
   if (map.prune(params, border.belief.mean.state.p_WI_m)) window.forget_inserted();
 }
 

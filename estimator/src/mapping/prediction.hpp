@@ -11,8 +11,7 @@ namespace tumble::mapping {
 /// State at the boundary of two sweeps: everything that the next sweep needs.
 struct Border {
   Belief belief;                                                         ///< at the boundary
-  Registration::Matrix end_by_start = Registration::Matrix::Identity();  ///< derivative by the unknowns at the last
-                                                                         ///< sweep's start
+  Registration::Matrix end_by_start = Registration::Matrix::Identity();  ///< derivative by the last start
   /// |s_j| of the saturation deficit at the boundary, on saturated axes; 0 if the last sweep was not aligned.
   Eigen::Vector3d deficit_share = Eigen::Vector3d::Zero();
   Eigen::Matrix3d railed_velocity_m2_s2 = Eigen::Matrix3d::Zero();  ///< variance from the last sweep's saturation, W
@@ -31,8 +30,7 @@ struct MotionWindow {
 /// Prediction of the next sweep's unknowns.
 struct Prediction {
   Registration::Prior prior;
-  Registration::Matrix by_last = Registration::Matrix::Identity();  ///< derivative of the mean by the unknowns at the
-                                                                    ///< boundary
+  Registration::Matrix by_last = Registration::Matrix::Identity();  ///< derivative by the unknowns at the boundary
   Registration::Matrix noise = Registration::Matrix::Zero();        ///< process noise
   Registration::Matrix errors = Registration::Matrix::Zero();       ///< covariance of the mean's errors, as reported
 
@@ -68,7 +66,7 @@ bool is_expected(const LidarInertialOdometry::Params& params, const Prediction& 
                  const Registration::Estimate& aligned, double innovation);
 
 /// Computes the boundary at the end of a sweep with the motion `trajectory`, from its posterior at the start.
-/// `alignment` is null if there is none.
+/// `alignment` may be null.
 void border_after(const LidarInertialOdometry::Params& params, const Belief& start, const MotionWindow& window,
                   const SweepTrajectory& trajectory, const Registration::Result* alignment, Border& border);
 

@@ -10,7 +10,7 @@
 namespace tumble::mapping {
 
 struct Attempt {
-  bool too_few_matches = false;  ///< why there is none: too few map points
+  bool too_few_matches = false;  ///< reason without an alignment: too few map points
   int iterations = 0;
   double inlier_share = 0.0;  ///< fraction of the points of the last registration
 };

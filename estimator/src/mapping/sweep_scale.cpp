@@ -22,8 +22,7 @@ constexpr double kChange_m_s = 0.5;  // smaller changes of velocity are dominate
 constexpr std::size_t kChangesMin = 5, kChangesMax = 1000;
 constexpr std::size_t kSpanMax = 64;  // maximum number of buffered sweeps
 constexpr int kIterations = 10;
-constexpr double kHuber = 1.5, kPerMedian = 1.4826;  // standard deviations; ratio of standard deviation to median
-                                                     // absolute deviation for normal errors
+constexpr double kHuber = 1.5, kPerMedian = 1.4826;  // standard deviations; per median absolute deviation
 
 using Change = SweepScaleWatch::Change;
 

@@ -34,8 +34,7 @@ using TrackingState = std::variant<WaitingForStart, Tracking, Lost, FoundAgain>;
 enum class Placement : std::uint8_t {
   not_tried,  ///< no points, or no map yet
   failed,
-  doubtful,  ///< found by a search that disagrees with inertial prediction, or surfaces do not fit well enough to
-             ///< confirm
+  doubtful,  ///< found by a search against the inertial prediction, or surfaces fit too badly to confirm
   found,
 };
 

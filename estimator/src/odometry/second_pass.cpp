@@ -156,8 +156,7 @@ void SecondPass::run(OdometryPass& first, std::size_t sweeps) {
       tail = true;
       pass_->flush_until(std::max(first.smoothed_rate()->time_ns, pass_->needed_ns(sweep.end_ns)));
     }
-    if (!pass_->covers(sweep.end_ns)) {  // the clocks differ by more than the first pass assumed: continue with the
-                                         // next sweep
+    if (!pass_->covers(sweep.end_ns)) {  // the clocks differ by more than assumed: continue with the next sweep
       --next_sweep_;
       return;
     }

@@ -19,8 +19,7 @@ namespace tumble {
 namespace {
 
 constexpr double kDropped = -120.0;   // log weight relative to the best below which a hypothesis is pruned
-constexpr double kRestFloor = -60.0;  // lower limit of the log likelihood of a node at rest, so that a single bad node
-                                      // cannot decide
+constexpr double kRestFloor = -60.0;  // minimum log likelihood at rest: a single bad node must not decide
 constexpr double kLongAgo_s = 1.0;    // time in one mode after which its start no longer matters
 // horizontal change of u per node; the plateau component is as narrow as grip, otherwise each plateau would be
 // classified as grip
@@ -269,8 +268,7 @@ void RollingFilter::correct_at_rest(State& state) const {
     double likelihood = 0.0;
     rolling::rest_rows(params_, state.sums, state.nominal, state.spins_in_place,
                        [&](int index, double measured, double variance) {
-                         if (index < rolling::kPosition)  // a velocity; information about a bias is no evidence of a
-                                                          // mode
+                         if (index < rolling::kPosition)  // a velocity; a bias is no evidence of a mode
                            likelihood += log_normal(measured - h.x[index], h.P(index, index) + variance);
                          rolling::update(index, measured, variance, h.x, h.P);
                        });

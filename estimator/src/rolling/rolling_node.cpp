@@ -24,8 +24,7 @@ Eigen::Vector3d normal(const Eigen::Vector2d& slope) {
 }
 
 constexpr double kUsual_m_s2 = 3.0;                   // difference of a force from gravity without an impact
-constexpr double kOffCentre_m = 0.02;                 // distance of an IMU from the centre that explains forces in fast
-                                                      // rotation
+constexpr double kOffCentre_m = 0.02;                 // of an IMU: explains forces in fast rotation
 constexpr double kHiddenFrom = 0.3, kHiddenTo = 0.6;  // as fractions of the accelerometer's range
 constexpr double kForceTilt_rad = 0.35;               // direction error of a force in motion
 constexpr double kLostTilt_rad = kForceTilt_rad;      // a tilt with a larger standard deviation is levelled by a force
@@ -35,8 +34,7 @@ constexpr double kRestTilt_rad = 5e-3;
 constexpr double kPush = 0.15;
 constexpr double kLostSpeed_m_s = 1.0;
 constexpr double kRecoveredTau_s = 0.1;  // correlation time of the error of a recovered rate
-constexpr double kFastRate_rad_s = 6.0;  // at higher rates, a node's force rotates too far to level by and is not
-                                         // gravity
+constexpr double kFastRate_rad_s = 6.0;  // at higher rates, a node's force rotates too far to level by
 constexpr double kUnsureSpeed_m_s = 0.1, kSpeedWindow_s = 1.0;
 constexpr double kStartTilt_rad = 0.15;  // of a start in motion: a push of 1.5 m/s^2
 // a sphere with smaller rates on both sides of a gap was hardly pushed during it
@@ -218,8 +216,7 @@ ImuAverage gap_piece(const RollingParams& params, const ImuSample& before, const
   const double off_rad = acceleration * gap_s * gap_s * gap_s / 12.0 + kGapStep * change.norm() * gap_s;
   doubt.rad2 = off_rad * off_rad / pieces;
   // rolling.md (R31)
-  doubt.rate_rad2_s = squared(off_rad / gap_s) * gap_s;  // the error is common to all pieces, hence one factor gap_s
-                                                         // per piece
+  doubt.rate_rad2_s = squared(off_rad / gap_s) * gap_s;  // common to all pieces, hence a factor gap_s
   doubt.speed_m2_s2 = squared(kGapTurned * params.radius_m * change.norm()) / pieces;  // rolling.md (R31a)
   ImuAverage piece;
   piece.add(sample, gap_s / pieces);

@@ -16,8 +16,7 @@ namespace tumble {
 /// Readings of another accelerometer on the same rigid body, in the primary IMU's axes and at its time stamps. The
 /// readings differ from the primary IMU's only by the effect of the body's rotation, in flight and in contact.
 struct AuxiliaryAccelerometer {
-  Eigen::Vector3d p_I_m = Eigen::Vector3d::Zero();   ///< position relative to the primary IMU, in the primary IMU's
-                                                     ///< axes
+  Eigen::Vector3d p_I_m = Eigen::Vector3d::Zero();   ///< relative to the primary IMU, in its axes
   std::vector<Eigen::Vector3d> specific_force_m_s2;  ///< one per sample of the primary IMU; NaN: no information
 };
 

@@ -20,8 +20,7 @@ struct RailPlane {
   double offset_rad_s = 0.0;    ///< b; close to 0 if only one sign was observed
   /// Covariance of (slope along axis (j+1) % 3, slope along (j+2) % 3, r, b).
   Eigen::Matrix4d covariance = Eigen::Matrix4d::Zero();
-  std::array<int, 2> samples{};   ///< samples on the plane of the negative and of the positive sign; 0: sign not
-                                  ///< observed
+  std::array<int, 2> samples{};   ///< samples on the negative and on the positive plane; 0: not observed
   std::array<int, 2> segments{};  ///< number of runs of such samples
   double deviation_rad_s = 0.0;   ///< root mean square distance of the samples from the plane
   double tolerance_rad_s = 0.0;   ///< readings within this distance of the plane, or beyond it, are clipped

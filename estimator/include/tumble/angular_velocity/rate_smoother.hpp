@@ -25,8 +25,7 @@ namespace tumble {
 struct RateSmootherParams {
   RateModelParams model = {};
   RailDetector::Params rails = {};
-  double recovered_sigma_rad_s = 0.5;  ///< a clipped axis with a smaller standard deviation is recovered, not only
-                                       ///< bounded
+  double recovered_sigma_rad_s = 0.5;  ///< a clipped axis with a smaller standard deviation is recovered
   /// If the constants move further from their prior (RateReport::calibration_mahalanobis), the run is estimated again
   /// with the constants fixed at the prior.
   double calibration_mahalanobis_max = 1.5;

@@ -16,8 +16,7 @@ namespace tumble {
 /// Clipped elements of each sample of a recording, as input of CarriedSmoother. Sources are flags of the device, and
 /// plateaus and tilted planes in the readings.
 struct CarriedElements {
-  Eigen::Matrix3d rows = Eigen::Matrix3d::Identity();  ///< sensing directions of the gyro's elements; the axes if no
-                                                       ///< plane was found
+  Eigen::Matrix3d rows = Eigen::Matrix3d::Identity();  ///< sensing directions of the gyro; axes without planes
   std::vector<ClipSigns> signs;                        ///< one per sample
   std::vector<std::uint8_t> near;                      ///< one per sample: bits of may_meet_rails()
 

@@ -37,8 +37,7 @@ struct CarriedReadingParams {
   double rotation_error_sqrts = 1e-3;   ///< random walk of the attitude per rad/s of rotation
   double recovered_sigma_rad_s = 1.0;   ///< a clipped rate with a smaller standard deviation is recovered
   double recovered_tau_s = 0.005;       ///< correlation time of the error of a recovered rate
-  double recovered_scale_share = 6e-3;  ///< scale error of all rates next to recovered ones, as a fraction of the
-                                        ///< rotation
+  double recovered_scale_share = 6e-3;  ///< scale error of rates next to recovered ones
 
   template <class Self, class Visitor>
   static void fields(Self& p, Visitor& visit) {

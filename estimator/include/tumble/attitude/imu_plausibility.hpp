@@ -87,8 +87,7 @@ class ImuPlausibility {
     bool in_range = true;  ///< of all samples of the window and of the current average
     double force_sum_m_s2 = 0.0, windows = 0.0;
     double pushed_s = 0.0;                               ///< time with forces that exclude rest
-    std::array<double, kAxisLabels> unexplained_rad2{};  ///< residual for each labelling of the axes; first: as
-                                                         ///< labelled
+    std::array<double, kAxisLabels> unexplained_rad2{};  ///< residual for each labelling of the axes
     double by_force_rad2 = 0.0, by_gyro_rad2 = 0.0;      ///< sums over the windows in which the force rotated
     double rotated_windows = 0.0;                        ///< number of these windows
     double all_force_rad2 = 0.0, all_gyro_rad2 = 0.0;    ///< sums over the windows in which force or gyro rotated

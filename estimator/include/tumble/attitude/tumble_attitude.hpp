@@ -21,8 +21,7 @@ struct TumbleAttitudeParams {
   double velocity_m_sqrts = 1.0;              ///< standard deviation of the mean velocity over 1 s of motion
   double displacement_m_sqrts = 0.3;          ///< standard deviation of the mean displacement over 1 s
   double displacement_tau_s = 10.0;           ///< time constant with which a displacement decays
-  double motion_tau_s = 3.0;                  ///< time constant of the body's velocity and displacement and of their
-                                              ///< magnitude
+  double motion_tau_s = 3.0;                  ///< time constant of the body's velocity and displacement
   double radius_m = 0.0;                      ///< radius of a sphere rolling on a level floor; 0: not a sphere
   Eigen::Vector3d lever_arm_m = Eigen::Vector3d::Zero();  ///< centre to IMU, sensor axes; length up to 10
 

@@ -14,8 +14,7 @@ namespace tumble {
 enum class RegistrationVerdict : std::uint8_t {
   converged,
   too_few,   ///< too few matches: the prior is returned
-  diverged,  ///< no convergence, correction of the prior out of bounds, or most matches do not fit: the prior is
-             ///< returned
+  diverged,  ///< no convergence, correction out of bounds, or most matches do not fit: the prior is returned
 };
 
 /// Result of a registration.
@@ -35,8 +34,7 @@ struct RegistrationResult {
   /// motion.
   SweepUnknowns::Matrix errors_in_variables_information = SweepUnknowns::Matrix::Zero();
   std::size_t points = 0, matches = 0, inliers = 0;
-  double correction_m = 0.0;  ///< correction of the position at the start; if it exceeded its bound, the exceeding
-                              ///< value
+  double correction_m = 0.0;  ///< of the position at the start; also if it exceeded its bound
   double correction_rad = 0.0;
   int iterations = 0;
   /// Normal matrix of (position, attitude scaled to metres by the root-mean-square lever) per unit of weight, without

@@ -134,8 +134,7 @@ class SweepTrajectory {
     Eigen::Vector3d deficit_share;                     // s_j where axis j is clipped, 0 elsewhere
     Eigen::Matrix<double, kKnots, 1> knot_weight =
         Eigen::Matrix<double, kKnots, 1>::Zero();                 // of each knot's deficit in this interval
-    ByDeficit deficit_attitude, deficit_v, deficit_p, deficit_a;  // derivatives at start_s; for the force via the
-                                                                  // attitude
+    ByDeficit deficit_attitude, deficit_v, deficit_p, deficit_a;  // derivatives at start_s
   };
   const Interval& interval_at(double t_s, std::size_t& hint) const;
   static ByDeficit gained_by_deficit(const Interval& now, double s);

@@ -66,7 +66,7 @@ class TumblingOdometry {
   /// `out_of_range` (standard deviation not above 0, stamp a second ahead of the newest sample, or 1024 readings wait).
   Status add_velocity(const VelocityReading& velocity);
   Status add_motion(const MotionReading& motion);
-  /// Returns the next registered sweep, in order; nothing if there is none yet.
+  /// Returns the next registered sweep, in order, or nothing.
   std::optional<Sweep> take();
   /// Registers all sweeps that the IMU covers, at the end of a run or during a halt. take() then returns them, and
   /// mapper().open_trajectories() the final poses of sweeps in the window. Later rates restart with the current

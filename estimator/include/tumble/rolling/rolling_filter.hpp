@@ -49,8 +49,7 @@ class RollingFilter {
     Eigen::Vector3d u_W_m_s = Eigen::Vector3d::Zero();  ///< contact velocity at the last node
     double log_weight = 0.0;                            ///< log probability; the most probable one has zero
     std::int64_t switched_node = 0;                     ///< node at which its current mode began
-    std::int32_t parent = 0;                            ///< index of its parent among the hypotheses of the previous
-                                                        ///< node
+    std::int32_t parent = 0;                            ///< index of its parent at the previous node
     RollingMode mode = RollingMode::grip;
     bool operator==(const Hypothesis&) const = default;
   };

@@ -78,8 +78,7 @@ class RollingSmoother {
     RollingMode mode = RollingMode::grip;
     double event_variance_m2 = 0.0;                         ///< of the position, when the event began
     Eigen::Vector3d held_p_WG_m = Eigen::Vector3d::Zero();  ///< while `held`
-    bool held = false;                                      ///< the sphere is at rest and the reported position is
-                                                            ///< constant
+    bool held = false;                                      ///< at rest, with constant reported position
     TimeNs last_time_ns = 0;
     Eigen::Vector3d last_rate_rad_s = Eigen::Vector3d::Zero();
     // Rate of the gap that contains the node, if any.

@@ -18,8 +18,7 @@ namespace tumble {
 /// A rate between two readings of the gyro, including its bias.
 struct HeldRate {
   Eigen::Vector3d rate_rad_s = Eigen::Vector3d::Zero();
-  Eigen::Vector3d variance_rad2_s2 = Eigen::Vector3d::Zero();  ///< interpolation variance of each axis, without the
-                                                               ///< readings' noise
+  Eigen::Vector3d variance_rad2_s2 = Eigen::Vector3d::Zero();  ///< of the interpolation, without noise
 };
 
 /// Returns the rate of sample `k` of a stream's window. Empty if each sample has its own reading, before the next

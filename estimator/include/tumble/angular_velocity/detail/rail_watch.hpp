@@ -37,8 +37,7 @@ class RailWatch {
   struct Memory {
     std::vector<Eigen::Vector3d> readings;           ///< distinct, in time order
     Eigen::Vector3d peak = Eigen::Vector3d::Zero();  ///< largest magnitude of each axis
-    std::size_t near = 0, unsearched = 0, past = 0;  ///< readings near the extremes; not searched yet; since the last
-                                                     ///< search
+    std::size_t near = 0, unsearched = 0, past = 0;  ///< readings near the extremes; new ones; since the last search
     bool forgot = false;                             ///< readings were dropped
     bool operator==(const Memory&) const = default;
   };
@@ -59,7 +58,7 @@ class RailWatch {
   bool observe(const ImuSample& sample, State& state) const;
 
   /// Classifies a finite sample by the levels found so far and the flags of the device. `before` and `after` are its
-  /// neighbours, null if there are none. The neighbours reveal saturation during a part of the window. O(1).
+  /// neighbours, null at the ends. The neighbours reveal saturation during a part of the window. O(1).
   Clipping judge(const ImuSample* before, const ImuSample& sample, const State& state,
                  const ImuSample* after = nullptr) const;
 

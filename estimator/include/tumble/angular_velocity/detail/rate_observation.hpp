@@ -25,8 +25,7 @@ struct RateObservation {
   std::uint8_t subsample_saturated = 0;  ///< saturated for a part of the window, see SubsampleSaturation
   std::uint8_t lone = 0;     ///< few readings as high as other elements' levels, on a side without a known level
   std::uint8_t doubted = 0;  ///< run of readings that may be at an unknown saturation level: lower bounds
-  Eigen::Vector3d lost_rad_s = Eigen::Vector3d::Zero();        ///< expected deficit of such axes, with the sign of the
-                                                               ///< reading
+  Eigen::Vector3d lost_rad_s = Eigen::Vector3d::Zero();        ///< expected deficit, with the reading's sign
   Eigen::Vector3d lost_sigma_rad_s = Eigen::Vector3d::Zero();  ///< of all three kinds
   /// Age of the triads' readings at the sample's stamp, and whether the gyro repeats the previous reading.
   double gyro_age_s = 0.0, accel_age_s = 0.0;

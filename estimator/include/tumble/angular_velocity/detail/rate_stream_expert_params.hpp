@@ -43,8 +43,7 @@ struct RateStreamExpertParams {
   RailPlaneFinder::Params planes = {};  ///< without a stated range, that of RateStreamParams::rails applies
   RailPlaneFinder::Params accel_planes = RailPlaneFinder::Params::for_accelerometer();  ///< same for the accelerometer
   RestDetector::Params rests = {};
-  double widen_first = 8.0;      ///< multiplier of the contact threshold for a new clipped sample, halved with each
-                                 ///< step
+  double widen_first = 8.0;      ///< contact threshold's factor for a new clipped sample, halved in each step
   double step_max_rad_s = 10.0;  ///< longest step of a rate at one sample
   int bound_age = 3;             ///< steps after which the bounds of a sample in contact become soft
   double bound_damping = 0.5;    ///< weight of a new bound in each step

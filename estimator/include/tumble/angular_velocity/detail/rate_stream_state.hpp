@@ -67,8 +67,7 @@ struct RateStreamDevice {
     SensorErrorEvidence told;
     DeviceDoubt::Work doubt;
   };
-  arrow::ErrorMatrix prior = arrow::ErrorMatrix::Zero();     ///< derivative of the oldest sample's gradient by each
-                                                             ///< error
+  arrow::ErrorMatrix prior = arrow::ErrorMatrix::Zero();     ///< derivative of the oldest sample's gradient
   arrow::BorderErrors corner = arrow::BorderErrors::Zero();  ///< derivative of the calibration's gradient
   SensorErrorEvidence evidence;
   DeviceDoubt::Open open;          ///< latest uncertainty from the evidence

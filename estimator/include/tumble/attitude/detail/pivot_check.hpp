@@ -74,8 +74,7 @@ class PivotCheck {
   /// Result over all segments.
   struct Found {
     int reading = 0;                    ///< number of the gyro alternative that explains most; 0: as it is
-    double evidence = 0.0;              ///< its evidence against the unchanged rates: sum of logarithms, larger is
-                                        ///< stronger
+    double evidence = 0.0;              ///< evidence against the unchanged rates: sum of logarithms
     std::size_t counted = 0;            ///< segments that it or the unchanged rates explain
     std::size_t better = 0, worse = 0;  ///< of those, by more than a fifth of the residual
     double scale = 1.0;                 ///< best scale of the rates, from segments with a near pivot

@@ -47,8 +47,7 @@ class RateRecovery {
     double lever_arm_sigma_m = 1.5e-3;              ///< prior; bound (0, 10]
     double acceleration_walk_rad_s2_sqrts = 200.0;  ///< of the angular acceleration; bound (0, 1e6]
     double force_walk_m_s2_sqrts = 25.0;            ///< of the common force; bound (0, 1e6]
-    double recovered_sigma_rad_s = 1.0;             ///< a rate with a larger standard deviation remains clipped; bound
-                                                    ///< (0, 1e3]
+    double recovered_sigma_rad_s = 1.0;             ///< rates with larger sigma remain clipped; bound (0, 1e3]
     ReadingNoise noise;
     /// Sensing directions of the units' elements. While one clips, the other axes are corrupted by its deficit, and
     /// free elements are used along their rows.

@@ -38,8 +38,7 @@ class RestGravity {
     double correlation_s = 0.1;       ///< minimum correlation time of a rate's error
     double rotation_least_rad = 1.0;  ///< minimum rotation between two rests
     double span_most_s = 60.0;        ///< maximum duration of a span, limited by the drift of a good gyro's bias
-    double gap_max_s = 0.1;           ///< a longer gap separates rests: an impact during the gap changes a rate by
-                                      ///< several rad/s
+    double gap_max_s = 0.1;           ///< longer gaps separate rests: an impact may change the rate by several rad/s
     double accel_range_m_s2 = 0.0;    ///< stated by the device; 0: not stated
 
     /// Visits every parameter: its value, name, unit, bounds and meaning (common/parameters.hpp).
@@ -68,15 +67,12 @@ class RestGravity {
     Eigen::Quaterniond turned = Eigen::Quaterniond::Identity();  ///< rotation since then
     double span_angle_rad = 0.0, variance_rad2 = 0.0;            ///< since then
     Eigen::Vector3d velocity_sum_m_s = Eigen::Vector3d::Zero();  ///< since then, of the force in the axes of that rest
-    double span_s = 0.0, hidden_m_s = 0.0;                       ///< since then, and the deficit of the saturated
-                                                                 ///< accelerometer
-    double segment_s = 0.0, segment_rad2_s = 0.0;                ///< of consecutive samples that the gyro did not
-                                                                 ///< measure
+    double span_s = 0.0, hidden_m_s = 0.0;                       ///< since then; deficit of the accelerometer
+    double segment_s = 0.0, segment_rad2_s = 0.0;                ///< of consecutive unmeasured samples
     double rest_s = 0.0, force_sum_m = 0.0;                      ///< of all rests, and of force by time
     double weightless_s = 0.0;                                   ///< duration of apparent rests without a force
     double miss_rad = 0.0, miss_sigma_rad = 0.0;                 ///< of the worst span between two rests
-    double velocity_share = 0.0, velocity_allowed_share = 0.0;   ///< of the worst span, relative to gravity times its
-                                                                 ///< duration
+    double velocity_share = 0.0, velocity_allowed_share = 0.0;   ///< of the worst span, over gravity times duration
     std::size_t spans = 0;                                       ///< number of compared spans
     TimeNs last_time_ns = 0;
     bool started = false, rests = false;

@@ -31,8 +31,7 @@ struct TumbleAttitudeState {
   double rotated_rad2_s = 0.0;
   Eigen::Vector2d recovered_rad2 = Eigen::Vector2d::Zero();  ///< variance of tilt and heading due to recovered rates
   double node_s = 0.0;
-  Eigen::Vector2d recovered_rad = Eigen::Vector2d::Zero();  ///< accumulated standard deviations over a run of recovered
-                                                            ///< rates
+  Eigen::Vector2d recovered_rad = Eigen::Vector2d::Zero();  ///< sum of deviations over recovered rates
   double velocity_power_m2_s2 = 0.0;                        ///< variance of the body's own velocity, one axis
   double displacement_power_m2 = 0.0;
   CoarseAlignment alignment;

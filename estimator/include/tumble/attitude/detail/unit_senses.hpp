@@ -13,8 +13,7 @@ namespace tumble {
 /// (I7a).
 struct UnitSenses {
   static constexpr std::size_t kSenses = 12;  ///< x, y, z flipped; x y, y z, z x swapped; of gyros, then accelerometers
-  static constexpr double kSizeMin_m2_s3 = 0.3;  ///< minimum effect of an alternative; smaller effects are within
-                                                 ///< biases
+  static constexpr double kSizeMin_m2_s3 = 0.3;  ///< minimum effect of an alternative, above biases
   static constexpr double kShareMin = 0.5;       ///< 1: the alternative explains all; -1: the unchanged axes do
 
   std::array<double, kSenses> gain_m2_s3{}, size_m2_s3{};

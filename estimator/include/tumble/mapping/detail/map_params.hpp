@@ -8,13 +8,11 @@ namespace tumble {
 
 /// Extent and resolution of the local map.
 struct LocalMapParams {
-  static constexpr double kPruneShare = 0.1;  ///< motion, as a fraction of radius_m, after which distant points are
-                                              ///< deleted
+  static constexpr double kPruneShare = 0.1;  ///< of radius_m: motion after which distant points are deleted
   double voxel_m = 0.5;                       ///< edge of a cell of the map's hash table
   double spacing_m = 0.1;                     ///< at most one map point per cube of this edge
   double radius_m = 100.0;                    ///< points within this distance of the sensor are kept, to a tenth of it
-  double sigma_max_m = 0.25;                  ///< points with a larger standard deviation from the trajectory are not
-                                              ///< inserted
+  double sigma_max_m = 0.25;                  ///< points with a larger trajectory error are not inserted
 
   template <class Self, class Visitor>
   static void fields(Self& p, Visitor& visit) {
