@@ -18,7 +18,6 @@ Vector3d nothing() {
   return Vector3d::Constant(std::numeric_limits<double>::quiet_NaN());
 }
 
-// Interpolated value and its standard deviation.
 struct Between {
   Vector3d value, sigma;
 };

@@ -54,7 +54,6 @@ struct ToldSlopes {
   Eigen::Vector2d slopes;
   Eigen::Matrix2d covariance;
 };
-/// Returns nothing if this is no more than the prior `before`.
 std::optional<ToldSlopes> told_slopes(const RailPlanes& planes, bool upright, int element,
                                       const Eigen::Matrix2d& before);
 

@@ -19,7 +19,6 @@ constexpr double kHalvedRun_s = 0.08;
 constexpr double kAcross = 0.05;    // of the lever arm squared: minimum across an axis for recovering its rate
 constexpr double kBelowRail = 0.1;  // tolerance by which a recovered rate may be below the saturation level
 
-/// Index and sign of the readings that are x, y, z.
 struct Axes {
   std::array<int, 3> axis;
   std::array<double, 3> factor;

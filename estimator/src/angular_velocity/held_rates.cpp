@@ -50,7 +50,6 @@ std::size_t new_reading(std::span<const RateStreamKnot> window, std::size_t i) {
   return i;
 }
 
-// Returns whether the clock of a triad is known.
 bool in_time(const std::optional<HeldReadings>& held, double sample_s) {
   return held && held->steady() && held->period_s <= sample_hold::kSlowest * sample_s;
 }

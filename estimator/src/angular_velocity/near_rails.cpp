@@ -59,7 +59,6 @@ std::uint8_t may_meet_rails(const ImuSample* before, const ImuSample& now, const
 std::vector<std::uint8_t> may_meet_rails(std::span<const ImuSample> samples, const RailPlanes& planes) {
   std::vector<std::uint8_t> out(samples.size(), 0);
   if (!planes.any()) return out;
-  // distinct
   std::vector<Eigen::Vector3d> readings;
   std::vector<std::size_t> of_sample(samples.size());
   for (std::size_t k = 0; k < samples.size(); ++k) {

@@ -53,7 +53,7 @@ double window_noise(std::span<const Vector3d> window, int axis) {
 }
 
 struct Segment {
-  std::size_t first, last;  // indices of rates
+  std::size_t first, last;
   std::size_t size() const { return last - first + 1; }
 };
 
@@ -132,7 +132,6 @@ double kink_evidence(const DistinctReadings& readings, const RailFacet& facet, c
   return std::clamp(-std::log(5.0 * ratio), -0.5, kKinkAlone);
 }
 
-// Information of a segment about the facet's slopes and level.
 Eigen::Matrix3d information_of(const DistinctReadings& readings, const RailFacet& facet, const Segment& s) {
   Vector3d mean = Vector3d::Zero();
   for (std::size_t k = s.first; k <= s.last; ++k) mean += readings.rates[k] / static_cast<double>(s.size());

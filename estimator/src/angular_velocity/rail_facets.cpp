@@ -34,7 +34,6 @@ double candidates(const DistinctReadings& readings, int axis, int sign, double s
   return sure - slab;
 }
 
-// Collects the samples for the fit of the facet.
 void collect(const DistinctReadings& readings, double from, Side& side, Workspace& workspace) {
   workspace.inliers.clear();
   side.gate.row = side.facet.row;

@@ -22,18 +22,16 @@ struct Gate {
 struct Side {
   int axis = 0, sign = 1;
   RailFacet facet;
-  Gate gate;  ///< of the facet's readings
+  Gate gate;
   int samples = 0;
   double log_odds = -std::numeric_limits<double>::infinity();
 };
 
-/// Prior of a facet.
 struct FacetPrior {
   Eigen::Vector2d slopes = Eigen::Vector2d::Zero();
   Eigen::Matrix2d information = Eigen::Matrix2d::Identity();
 };
 
-/// Returns the two other axes.
 inline Eigen::Vector2d others(const Eigen::Vector3d& y, int axis) {
   return {y[(axis + 1) % 3], y[(axis + 2) % 3]};
 }

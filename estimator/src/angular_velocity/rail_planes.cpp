@@ -118,14 +118,12 @@ RailPlane joined(const RailPlaneFinder::Params& params, const DistinctReadings& 
   return out;
 }
 
-// The accepted signs of an element: minus, plus.
 using Pair = std::array<std::optional<Side>, 2>;
 
 RailPlane joined(const RailPlaneFinder::Params& params, const DistinctReadings& readings, const Pair& pair) {
   return joined(params, readings, pair[0] ? &*pair[0] : nullptr, pair[1] ? &*pair[1] : nullptr);
 }
 
-// Search for the sides in the readings of one triad.
 struct SideSearch {
   const RailPlaneFinder::Params& params;
   const DistinctReadings& readings;

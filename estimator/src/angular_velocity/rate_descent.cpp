@@ -46,7 +46,7 @@ bool descend(const RateSmoother::Params& params, const RateModel& model, std::sp
   solution.rig = model.prior_constants();
   solution.rig_covariance = model.prior_covariance();
   std::vector<RateEstimate>& estimates = solution.estimates;
-  int soft = 0;  // iterations with soft bounds
+  int soft = 0;
   health.iterations = 0;
   health.converged = false;
   while (health.iterations < params.expert.descent.iterations_max) {

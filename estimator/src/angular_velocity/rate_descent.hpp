@@ -10,7 +10,6 @@
 
 namespace tumble {
 
-/// The linear system of one iteration and its solution.
 class RateIteration {
  public:
   explicit RateIteration(std::span<const RateObservation> observations)
@@ -53,7 +52,6 @@ class RateIteration {
   RigConstants::Matrix rig_covariance_;
 };
 
-/// Result of a descent.
 struct RateSolution {
   std::vector<RateEstimate> estimates;
   RigConstants rig;

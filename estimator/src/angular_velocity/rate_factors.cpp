@@ -25,7 +25,6 @@ Eigen::Matrix<double, 3, 5> basis_times(const Vector3d& v) {
   return out;
 }
 
-// Angular jerk of torque-free rotation.
 struct Jerk {
   Matrix3d J, J_inv;
   Vector3d Jw, Ja, value;

@@ -7,7 +7,6 @@
 #include "tumble/angular_velocity/rate_state.hpp"
 #include "tumble/angular_velocity/sensor_errors.hpp"
 
-/// Members of the inputs and estimates of the rate model: state_visitor.hpp.
 namespace tumble {
 
 template <StateOf<RateState> Self, class Visitor>

@@ -60,7 +60,6 @@ void mark_doubtful(const RailPlaneFinder::Params& expected, const ClippingFinder
   if (!rails.upright) doubt_motion_plateaus(planes, least, expected.offset_share, noise_rad_s, observations);
 }
 
-// Marks repeated readings of a triad, and their age.
 void mark_held(const std::optional<HeldReadings>& gyro, const std::optional<HeldReadings>& accel,
                std::span<RateObservation> observations, RateReport& health) {
   for (std::size_t k = 0; k < observations.size(); ++k) {

@@ -16,9 +16,9 @@ namespace tumble {
 /// A recording as input of the model, with the prior calibration including information from saturation planes.
 struct RateReadings {
   std::vector<RateObservation> observations;  ///< one per sample
-  RateModelParams known;                      ///< with a calibration
-  RailPlanes planes;                          ///< of the gyro's elements, in use
-  std::optional<HeldReadings> gyro_held;      ///< if the gyro is slower than the log
+  RateModelParams known;
+  RailPlanes planes;  ///< of the gyro's elements, in use
+  std::optional<HeldReadings> gyro_held;
 };
 
 /// Classifies each of at least two samples with the detected levels: clipped elements, partly saturated axes, suspect

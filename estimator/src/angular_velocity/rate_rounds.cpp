@@ -42,7 +42,6 @@ bool plausible(const SensorErrors& found, const SensorErrors& given, const Senso
          std::abs(errors.accel_blur_s2) <= delay_s * delay_s && errors.felt_s_m.cwiseAbs().maxCoeff() <= felt_s_m;
 }
 
-// Returns whether a guess contains information; otherwise the stated delay remains.
 bool tells(const TriadDelay& guess) {
   return guess.sigma_s > 0.0 || guess.delay_s != 0.0;
 }
@@ -160,14 +159,13 @@ SensorErrorFit fit_about(const SensorErrors& given, SensorErrorEvidence evidence
   return out;
 }
 
-// Constants of all rounds of one recording.
 struct Rounds {
   const RateSmoother::Params& params;
   const RateModelParams& known;  ///< its errors: those stated for the device
   std::span<const ImuSample> samples;
   std::span<const Clipping> clippings;
   double period_s = 0.0;
-  bool estimated = false;          ///< sensor errors are estimated
+  bool estimated = false;
   bool own_clocks = false;         ///< readings of a triad repeat, so the triads are asynchronous
   TriadDelay guess = {};           ///< empty if the data sheet states the delay
   std::vector<double> age_s = {};  ///< of the accelerometer's readings in the log
@@ -211,7 +209,6 @@ Start start_from(const SensorErrors& assumed, const Rounds& rounds) {
   return out;
 }
 
-// Runs the descent with readings corrected for `errors`.
 Status descend_corrected(const Rounds& rounds, const SensorErrors& errors, std::span<RateObservation> observations,
                          RateFit& fit, RateReport& health) {
   const double shift = std::round(errors.accel_delay_s / rounds.period_s);
@@ -239,7 +236,6 @@ Status take_evidence(const Rounds& rounds, const SensorErrors& errors, RateFit& 
   return {};
 }
 
-// Result of the rounds.
 struct Told {
   SensorErrors errors;  ///< corrected in the last descent
   SensorErrorEvidence learnt;

@@ -8,7 +8,6 @@
 
 namespace tumble {
 
-/// A descent with its inputs.
 struct RateFit {
   RateFit(std::span<const RateObservation> observations, const RateModel& first)
       : solution{{}, {}, {}, RateIteration(observations)}, model(first) {}

@@ -28,7 +28,6 @@ double seconds_between(const RateStream::Knot& from, const RateStream::Knot& to)
   return seconds(to.observation.sample.time_ns - from.observation.sample.time_ns);
 }
 
-// Moves the rate beyond the reading on every clipped axis.
 void hold_to_bounds(const RateObservation& o, Vector3d& rate) {
   for (int j = 0; j < 3; ++j) {
     if ((o.unseen() & o.clipping.gyro & 1u << j) == 0) continue;

@@ -68,7 +68,6 @@ Beside readings_beside(std::size_t k, const RateStream::State& state) {
 
 }  // namespace
 
-// Classifies the window again by the current levels of equal readings.
 void RateStream::classify_again(State& state) const {
   RailDetector::State& upright_rails = state.rails.known.upright_rails;
   for (RailDetector::Channel& channel : upright_rails.channels) channel.clipped = false;

@@ -20,7 +20,6 @@ constexpr double kPeriodShare = 0.03;
 // Window of an accelerometer as a fraction of its period: the middle between none and all.
 constexpr double kForceWindow = 0.5;
 
-// A clock in units of the sample time.
 struct Clock {
   double period = 1.0, phase = 0.0;
   double reading(double sample) const { return std::floor((sample - phase) / period); }

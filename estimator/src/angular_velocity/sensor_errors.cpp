@@ -33,7 +33,6 @@ double between(double sheet, double unknown, double share) {
   return std::max(kLeast, unknown <= sheet ? sheet : sheet * std::pow(unknown / std::max(kLeast, sheet), share));
 }
 
-// The sizes of one device.
 struct Shares {
   double scale = 1.0, cross = 1.0, felt = 1.0, delay = 1.0;
 };
@@ -88,7 +87,6 @@ Hypothesis posterior(const Matrix& information, const Matrix& learnt, const Vect
   return out;
 }
 
-// Removes negative eigenvalues due to rounding from the information.
 Matrix evidence_of(const Matrix& information, const SensorErrorSizes& sizes) {
   const Vector unit = deviations(sizes, {});
   const Matrix scaled = unit.asDiagonal() * (0.5 * (information + information.transpose())) * unit.asDiagonal();

@@ -20,7 +20,6 @@ bool is_free(const GyroReadings& rates, std::size_t k, Eigen::Index axis) {
   return rates.signs[k].gyro[static_cast<std::size_t>(axis)] == 0 && !(rates.open_rad_s[k][axis] > 0.0);
 }
 
-// Nodes [first, last) within [from_s, to_s].
 struct Reach {
   std::size_t first = 0, last = 0;
   Reach(double from_s, double to_s, double node_s, std::size_t nodes)

@@ -190,7 +190,7 @@ void Problem::restore(Answer answer) {
 
 // carried.md (C16), (C34)
 Status Problem::solve(CarriedSmoother::Report& report) {
-  std::optional<Iterate> before;  // the last step
+  std::optional<Iterate> before;
   report.converged = false;
   for (int k = 0; k < params_.expert.iterations_max; ++k) {
     if (k >= kFollowFirst && k <= kFollowLast && params_.expert.hand.hand_follow > 0.0) {

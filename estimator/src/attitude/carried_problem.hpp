@@ -36,7 +36,6 @@ struct Part {
   Message before = {}, after = {};
 };
 
-/// The normal equations of one recording and their solution.
 class Problem {
  public:
   Problem(const CarriedSmoother::Params& params, const Eigen::Matrix3d& rows, const Collected& collected,
@@ -76,7 +75,6 @@ class Problem {
   std::span<const Node> nodes() const { return nodes_; }
   /// Replaces the nodes from `first` on, as other initial values.
   void place(std::size_t first, std::span<const Node> nodes);
-  /// Adds to a node's covariance.
   void widen(std::size_t node, const Eigen::Matrix<double, 9, 9>& by) { covariances_[node] += by; }
   /// Covariance of attitude (error in sensor axes), rate, angular acceleration.
   const Eigen::Matrix<double, 9, 9>& covariance(std::size_t node) const { return covariances_[node]; }
@@ -112,7 +110,7 @@ class Problem {
   std::vector<double> hand_;        // multiplier of the density of the held point's acceleration, per step
   std::vector<double> hand_power_;  // cumulative sum of its square
   std::vector<System::Block> blocks_;
-  std::vector<System::StateVector> steps_;  // the last step
+  std::vector<System::StateVector> steps_;
   System::BorderVector border_step_ = System::BorderVector::Zero();
   System::Corner corner_;
   System::BorderMatrix constants_covariance_;

@@ -16,8 +16,8 @@ inline constexpr double kTaken_samples = 0.29;
 
 /// Positions of windows relative to the nodes, whose time starts at the centre of the first sample's window.
 struct Windows {
-  double period_s = 0.0;             ///< median
-  std::vector<double> centre_s;      ///< of each window
+  double period_s = 0.0;
+  std::vector<double> centre_s;
   std::vector<double> end_s;         ///< of each window: its time stamp
   std::vector<std::size_t> node_of;  ///< nearest node to each centre
 };
@@ -45,7 +45,6 @@ struct Collected {
   std::vector<double> jerk;
 };
 
-/// Sums the readings by node. O(N).
 Collected collect(const CarriedSmoother::Params& params, std::span<const ImuSample> samples,
                   const ClippedElements& clipped);
 

@@ -18,8 +18,8 @@ using Eigen::Vector3d;
 
 namespace {
 
-constexpr double kRotationMax_rad = 0.8;  // largest step of an attitude
-constexpr int kFirstNodes = 100;          // the first nodes, whose attitude still converges
+constexpr double kRotationMax_rad = 0.8;
+constexpr int kFirstNodes = 100;  // the first nodes, whose attitude still converges
 
 System::BorderVector moved(const carried::Constants& from, const carried::Constants& to) {
   System::BorderVector out;

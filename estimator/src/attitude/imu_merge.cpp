@@ -17,9 +17,9 @@ namespace {
 
 constexpr double kBiasSigma_rad_s = 0.01, kScaleSigma = 0.01;
 constexpr double kRotating_rad_s2 = 1.0;  // minimum angular acceleration for estimating a time offset
-constexpr double kBeyondDoubt = 4.0;      // sigmas
-constexpr int kRecovering = 3;            // minimum number of units for recovering the rate from accelerometers
-constexpr double kUnharmed = 0.8;         // errors are estimated up to this fraction of the accelerometer's range
+constexpr double kBeyondDoubt = 4.0;
+constexpr int kRecovering = 3;     // minimum number of units for recovering the rate from accelerometers
+constexpr double kUnharmed = 0.8;  // errors are estimated up to this fraction of the accelerometer's range
 constexpr int kOffset = ImuMerge::kErrors - 1;
 constexpr double kArmSquareMin_m2_s3 = 1.0;  // 1 m/s^2 for a second: a bias of 0.05 changes the result by 0.05
 constexpr double kHeld_s = 0.03;

@@ -106,7 +106,6 @@ Status RegimeStream::push(const ImuSample& sample, std::span<const AuxiliaryRead
   return {};
 }
 
-// Returns signs and rows as RateStream currently knows them.
 ClippedElements RegimeStream::known_of(State& state) const {
   state.signs.clear();
   for (const RateStream::Knot& knot : state.rate.window) state.signs.push_back(signs_of(knot.observation));
@@ -132,7 +131,6 @@ RegimeShares RegimeStream::next(const RegimeShares& before, double dt_s, std::sp
                         rig.constants.lever_arm_m, rig.covariance.topLeftCorner<3, 3>());
 }
 
-// Returns the index in the window of the sample that a rate belongs to.
 std::size_t RegimeStream::index_of(const RateState& rate, const State& state) const {
   const std::vector<RateStream::Knot>& window = state.rate.window;
   std::size_t k = 0;

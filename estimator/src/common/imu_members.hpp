@@ -6,7 +6,6 @@
 #include "tumble/common/imu.hpp"
 #include "tumble/common/pose.hpp"
 
-/// Members shared by many states, visited as state_visitor.hpp describes.
 namespace tumble {
 
 template <StateOf<ImuSample> Self, class Visitor>

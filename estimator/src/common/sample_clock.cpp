@@ -22,12 +22,10 @@ constexpr double kNumberSigma = 0.1;  // maximum uncertainty of the sample numbe
 constexpr double kPeriodMax_ns = 1e11;
 constexpr TimeNs kLast_ns = TimeNs{1} << 62;  // larger stamps are not corrected, to avoid overflow
 
-// Returns the difference of two stamps [ns] without overflow.
 double after_ns(TimeNs later_ns, TimeNs earlier_ns) {
   return static_cast<double>(static_cast<std::uint64_t>(later_ns) - static_cast<std::uint64_t>(earlier_ns));
 }
 
-// A line through numbered stamps.
 struct Line {
   double period_ns = 0.0, last_ns = 0.0;  ///< slope; value at the last stamp's number, from the first stamp
   double sum_n = 0.0, sum_nn = 0.0;       ///< sums over the numbers, counted from the last

@@ -4,7 +4,6 @@
 #include "state_visitor.hpp"
 #include "tumble/common/sample_clock.hpp"
 
-/// Members of the state of a sensor's clock, visited as state_visitor.hpp describes.
 namespace tumble {
 
 template <StateOf<SampleClock::State> Self, class Visitor>

@@ -29,7 +29,6 @@ void copy_little_endian(const std::byte* from, std::byte* to, std::size_t count,
 
 }  // namespace detail
 
-/// Appends states to bytes.
 class StateWriter : public StateVisitor<StateWriter> {
  public:
   static constexpr bool kReads = false;

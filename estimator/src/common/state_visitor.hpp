@@ -67,7 +67,6 @@ class StateVisitor {
     self().bounded(name, static_cast<double>(value), low, high);
   }
 
-  /// An enumeration.
   template <class T>
   requires std::is_enum_v<std::remove_const_t<T>>
   void operator()(const char* name, T& value, std::remove_const_t<T> last) {

@@ -40,7 +40,7 @@ class Aligner {
  private:
   Registration full_, subsampled_, coarse_;
   std::size_t subsample_points_, coarse_points_;
-  std::vector<SweepPoint> thinned_;  // buffer
+  std::vector<SweepPoint> thinned_;
 };
 
 Registration::Params registration_params(const LidarInertialOdometry::Params& params);

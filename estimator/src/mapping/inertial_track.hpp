@@ -34,7 +34,6 @@ class InertialTrack {
   /// Deletes samples that ended by `end_ns`, the end of a sweep.
   void forget_until(TimeNs end_ns);
 
-  /// Defined in `mapping_members.hpp`.
   template <class Self, class Visitor>
   static void members(Self& s, Visitor& visit);
 

@@ -9,7 +9,6 @@
 
 namespace tumble::mapping {
 
-/// Unknowns and the covariance of their errors.
 struct Estimated {
   Registration::Estimate mean;
   Registration::Matrix errors = Registration::Matrix::Zero();
@@ -19,7 +18,7 @@ struct Estimated {
 struct WindowSweep {
   Estimated predicted;
   Registration::Matrix by_before = Registration::Matrix::Identity();  ///< derivative by the previous sweep
-  Estimated filtered, smoothed;                                       ///< initially equal
+  Estimated filtered, smoothed;
   std::vector<MotionSample> samples;
   TimeNs end_ns = 0;
   std::vector<InsertedPoint> inserted;
@@ -48,7 +47,6 @@ class LagWindow {
   std::size_t length() const { return length_; }
   const std::deque<WindowSweep>& sweeps() const { return sweeps_; }
 
-  /// Defined in `mapping_members.hpp`.
   template <class Self, class Visitor>
   static void members(Self& s, Visitor& visit);
 

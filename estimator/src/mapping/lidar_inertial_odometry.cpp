@@ -14,7 +14,6 @@ namespace tumble {
 
 namespace {
 
-/// Checks a sample and its rate.
 Status check(const ImuSample& sample, const RateState& rate) {
   if (const Status status = check_sample(sample); !status.ok()) return status;
   if (!rate.w_WI_I_rad_s.allFinite() || !rate.covariance_rad2_s2.allFinite()) {

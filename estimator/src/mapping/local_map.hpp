@@ -22,7 +22,7 @@ struct InsertedPoint {
 /// A sweep to be inserted into the map.
 struct SweepToInsert {
   const SweepTrajectory& trajectory;
-  const Registration::Matrix& covariance;  ///< of its unknowns
+  const Registration::Matrix& covariance;
   std::span<const SweepPoint> points;
   bool rings_differ;
   bool sure_of_place;  ///< its free space may remove points of the map
@@ -60,7 +60,6 @@ class LocalMap {
 
   /// Returns whether each point has a valid sweep number. Checks loaded maps.
   bool knows_its_sweeps() const;
-  /// Defined in `mapping_members.hpp`.
   template <class Self, class Visitor>
   static void members(Self& s, Visitor& visit);
 
@@ -72,8 +71,8 @@ class LocalMap {
   std::vector<Eigen::Vector3f> seen_from_W_m_;  // per sweep that contributed points
   Eigen::Vector3f pruned_at_W_m_ = Eigen::Vector3f::Zero();
   ScanLines scan_lines_;
-  std::vector<Eigen::Vector3f> levers_W_m_;  // buffer
-  SightGrid sight_;                          // buffer
+  std::vector<Eigen::Vector3f> levers_W_m_;
+  SightGrid sight_;
 };
 
 }  // namespace tumble::mapping

@@ -82,7 +82,6 @@ struct LidarInertialOdometry::Impl {
                                      const Registration::Matrix& errors) const;
   std::vector<PoseState> poses_of(const mapping::WindowSweep& sweep) const;
 
-  /// Defined in `mapping_members.hpp`.
   template <class Self, class Visitor>
   static void members(Self& s, Visitor& visit);
   /// Checks the invariants between the members. Returns the first violation.

@@ -76,7 +76,7 @@ void members(Self& s, Visitor& visit) {
 
 template <class Self, class Visitor>
 void SweepScaleWatch::members(Self& s, Visitor& visit) {
-  visit.scratch(s.gravity_m_s2_);  // these two are derived from the parameters
+  visit.scratch(s.gravity_m_s2_);
   visit.scratch(s.samples_max_);
   visit("scale.samples", s.samples_);
   visit("scale.sweeps", s.sweeps_);
@@ -86,7 +86,7 @@ void SweepScaleWatch::members(Self& s, Visitor& visit) {
 
 template <class Self, class Visitor>
 void Localisation::members(Self& s, Visitor& visit) {
-  visit.scratch(s.matched_m_);  // derived from the parameters
+  visit.scratch(s.matched_m_);
   visit("localisation.mapped", s.mapped_);
   visit("localisation.largest_sigma_m", s.largest_sigma_m_);
   visit("localisation.largest_innovation", s.largest_innovation_);
@@ -103,7 +103,7 @@ template <StateOf<LidarInertialOdometry::Params> Self, class Visitor>
 void others(Self& p, Visitor& visit) {
   visit("T_IL", p.T_IL);
   visit("body", p.expert.flight.body);
-  visit.scratch(p.parallel_for);  // the caller's
+  visit.scratch(p.parallel_for);
 }
 
 }  // namespace tumble

@@ -33,7 +33,6 @@ struct Offsets {
   Eigen::Matrix<double, kMotion, 1> noise = Eigen::Matrix<double, kMotion, 1>::Zero();
 };
 
-/// A reading and its prediction.
 struct Expected {
   Rows<kUnknowns> by_start;
   Rows<kMotion> by_noise;

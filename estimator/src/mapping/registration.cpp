@@ -87,7 +87,6 @@ Registration::Registration(const Params& params) : params_(params) {
   require_within("plane_neighbours_min", params.expert.plane.neighbours_min, 3, params.neighbours);
 }
 
-/// Constants of the iterations.
 struct Registration::Problem {
   const Prior& prior;
   std::span<const MotionSample> samples;
@@ -98,18 +97,16 @@ struct Registration::Problem {
   Matrix information = information_of(prior.covariance);
   std::size_t matches_needed = 0;
 
-  /// Builds the trajectory of an estimate.
   Status build(const Estimate& of, SweepTrajectory& trajectory) const {
     return trajectory.build(of.state, samples, end_ns, of.calibration.gravity_W_m_s2, of.deficit_rad_s);
   }
 };
 
-/// State of the iterations.
 struct Registration::Descent {
   Estimate now;
   std::span<const SweepPoint> points;  ///< by the current calibration
-  Sums sum;                            ///< over the matches
-  Matrix H = Matrix::Zero();           ///< normal matrix, including the prior
+  Sums sum;
+  Matrix H = Matrix::Zero();  ///< normal matrix, including the prior
   double kernel_m = 0.0;
   bool converged = false;
   RegistrationVerdict verdict = RegistrationVerdict::converged;  ///< any other value stops the iterations
@@ -145,7 +142,6 @@ Status Registration::align(const Prior& prior, std::span<const MotionSample> sam
   return problem.build(prior.mean, trajectory);
 }
 
-/// Performs one Gauss-Newton step.
 Status Registration::iterate(const Problem& problem, Descent& at, SweepTrajectory& trajectory, Result& result) {
   const Estimate& mean = problem.prior.mean;
   if (problem.unknowns.calibration && result.iterations > 1) {
@@ -183,7 +179,6 @@ Status Registration::iterate(const Problem& problem, Descent& at, SweepTrajector
   return {};
 }
 
-/// Decides whether the end of a descent is accepted.
 RegistrationVerdict Registration::judge(const Problem& problem, const Descent& at) const {
   // at a false minimum, most matches are far from their planes
   const bool fits =

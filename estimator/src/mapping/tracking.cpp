@@ -27,7 +27,6 @@ bool contradicts(const TrackingState& before, Placement placement) {
   return is_to_be_borne_out(before) && placement != Placement::found;
 }
 
-/// Counts one more failed search.
 Lost given_up(const TrackingState& found_again) {
   const FoundAgain* found = std::get_if<FoundAgain>(&found_again);
   if (found == nullptr) return {};

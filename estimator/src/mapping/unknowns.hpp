@@ -57,7 +57,6 @@ auto block(Matrix& m, Block<Row, Rows>, Block<Column, Columns>) {
   return m.template block<Rows, Columns>(Row, Column);
 }
 
-/// A diagonal block.
 template <class Matrix, int First, int Size>
 auto block(Matrix& m, Block<First, Size> of) {
   return block(m, of, of);

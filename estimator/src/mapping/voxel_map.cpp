@@ -20,7 +20,6 @@ namespace {
 constexpr float kFar = 1e18f;
 constexpr int kReachMax = 8;  // cells searched to each side
 
-/// Inserts a candidate into the k best so far, nearest first.
 inline void keep(float distance2, std::uint32_t index, int k, Neighbours& best) {
   int place = best.count < k ? best.count++ : k - 1;
   while (place > 0 && best.distance2_m2[place - 1] > distance2) {
@@ -101,7 +100,6 @@ class VoxelMap::Rows {
     return bits >> (first_x_ & Group::kMask);
   }
 
-  /// First chunk of an occupied cell.
   std::uint32_t first_chunk(const Eigen::Vector3i& cell) {
     return map_.groups_[group_of(Group::of(cell) - low_)].first[Group::place_of(cell)];
   }

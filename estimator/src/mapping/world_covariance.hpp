@@ -27,7 +27,6 @@ class WorldCovariance {
   void add_insertion(double inserted_share, const SweepTrajectory& trajectory, const Registration::Matrix& errors,
                      const Eigen::Vector3d& p_IL_m);
 
-  /// Defined in `mapping_members.hpp`.
   template <class Self, class Visitor>
   static void members(Self& s, Visitor& visit);
 

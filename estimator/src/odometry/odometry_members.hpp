@@ -9,7 +9,6 @@
 #include "pass_members.hpp"
 #include "tumble/odometry/tumbling_odometry.hpp"
 
-/// Members of TumblingOdometry, visited as state_visitor.hpp describes.
 namespace tumble {
 
 namespace odometry {
@@ -73,7 +72,7 @@ void members(Self& s, Visitor& visit) {
 template <class Self, class Visitor>
 void TumblingOdometry::members(Self& s, Visitor& visit) {
   visit.scratch(s.params_);  // must equal the saved ones
-  visit.scratch(s.clock_);   // derived from the parameters
+  visit.scratch(s.clock_);
   visit("stamps", s.stamps_);
   visit("pass", s.pass_);
   visit("again", s.again_);

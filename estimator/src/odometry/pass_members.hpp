@@ -53,7 +53,7 @@ void OdometryPass::members(Self& s, Visitor& visit) {
   visit("pass.mapper", s.mapper_);
   visit("pass.scale", s.scale_);
   visit("pass.localisation", s.localisation_);
-  visit.scratch(s.rate_sigma_max_rad_s_);                    // derived from the parameters
+  visit.scratch(s.rate_sigma_max_rad_s_);
   visit("pass.time_offset_s", s.time_offset_s_, -1.0, 1.0);  // same bounds as the mapper's parameter
   visit("pass.pending", s.pending_);
   visit("pass.smoothed", s.smoothed_);
@@ -79,7 +79,7 @@ void SecondPass::Sweep::members(Self& s, Visitor& visit) {
 
 template <class Self, class Visitor>
 void SecondPass::members(Self& s, Visitor& visit) {
-  visit.scratch(s.params_);  // these three are derived from the parameters
+  visit.scratch(s.params_);
   visit.scratch(s.rate_);
   visit.scratch(s.mapping_);
   visit("again.wanted", s.wanted_);

@@ -200,7 +200,7 @@ std::optional<RollingOdometry::Pose> RollingOdometry::newest() const {
 std::optional<RollingOdometry::Pose> RollingOdometry::take() {
   if (taken_ == done_.size()) return std::nullopt;
   const Pose out = as_pose(done_[taken_++]);
-  if (taken_ == done_.size()) {  // keeps the memory
+  if (taken_ == done_.size()) {
     done_.clear();
     taken_ = 0;
   }

@@ -41,7 +41,7 @@ void RollingOdometry::members(Self& s, Visitor& visit) {
   visit.scratch(s.merged_state_);
   visit("rolling", *s.state_);
   visit("rails", s.rails_state_);
-  visit.scratch(s.watches_);  // derived from the parameters
+  visit.scratch(s.watches_);
   visit("frozen", s.frozen_);
   if constexpr (std::is_const_v<Self>) {
     const std::vector<RollingEstimate> waiting(s.done_.begin() + static_cast<std::ptrdiff_t>(s.taken_), s.done_.end());

@@ -32,10 +32,10 @@ class LastPass {
   /// Smoothed result at one sample.
   struct Smoothed {
     const SamplePoint& point;
-    const RollingNominal& nominal;  ///< at the previous node
-    Reported error;                 ///< of the sample
-    const NodeRecord* node;         ///< the node whose covariance applies; null if the window has no node
-    std::size_t index;              ///< index of the node in the window
+    const RollingNominal& nominal;
+    Reported error;          ///< of the sample
+    const NodeRecord* node;  ///< the node whose covariance applies; null if the window has no node
+    std::size_t index;
   };
 
   /// All arguments must outlive the pass. `distance`, if known, is measured at the end of the samples. `segment`:
@@ -72,8 +72,8 @@ class LastPass {
   std::span<const ImuSample> samples_;
   std::span<const PathNode> path_;
   std::optional<Distance> distance_;
-  std::size_t length_;      ///< of a segment
-  std::vector<Kept> kept_;  ///< one per segment
+  std::size_t length_;
+  std::vector<Kept> kept_;
   std::vector<double> horizontal_m2_;
   std::size_t cut_after_ = 0;
   Checkpoint cut_, end_;

@@ -175,7 +175,6 @@ void RollingFilter::call_uncertain(State& state) const {
   state.uncertain = event && variance_m2 - state.before_event_m2 > squared(params_.expert.modes.uncertain_m);
 }
 
-/// Computes the probabilities of slip and bump over all hypotheses.
 void RollingFilter::weigh_events(State& state) {
   double slipping = 0.0, hopping = 0.0, total = 0.0;
   for (int k = 0; k < state.count; ++k) {

@@ -121,7 +121,6 @@ double log_transition(const RollingParams& params, RollingMode from, RollingMode
   return -leaving * h_s;
 }
 
-/// A hypothesis with a possible mode after the node.
 struct Candidate {
   double log_weight = 0.0;
   int parent = 0;

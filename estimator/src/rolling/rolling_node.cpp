@@ -97,7 +97,6 @@ void set_prior(const RollingParams& params, const Eigen::Vector3d& rate_I_rad_s,
 
 namespace {
 
-/// A force with saturated accelerometer axes.
 struct RailedForce {
   Eigen::Vector3d force_m_s2 = Eigen::Vector3d::Zero();
   Eigen::Vector3d least_m_s2 = Eigen::Vector3d::Zero();  ///< components for which the reading is a lower bound

@@ -41,7 +41,6 @@ struct Contact {
 /// Returns the variance of a stationary contact point's velocity; when slipping, only its vertical component is used.
 Eigen::Vector3d contact_variance(const RollingParams& params, const Contact& c, RollingMode mode);
 
-/// Returns whether the first reading was taken in motion.
 bool starts_in_motion(const RollingParams& params, const Eigen::Vector3d& rate_I_rad_s);
 
 /// Returns the initial state: levelled or stated attitude, centre at the origin, at rest, or rolling if in motion.
@@ -52,14 +51,12 @@ void set_prior(const RollingParams& params, const Eigen::Vector3d& rate_I_rad_s,
 /// Whether a force was measured, at least up to saturation. In a gap it is unknown.
 enum class Force { read, unknown };
 
-/// Integrates averaged readings into the nominal trajectory and the sums.
 void integrate(const RollingParams& params, const ImuAverage& reading, RollingNominal& nominal, RollingSums& sums,
                Force known = Force::read);
 
 /// Returns the nominal trajectory extrapolated by readings that are not yet processed.
 RollingNominal carried_on(const RollingParams& params, const ImuAverage& reading, const RollingNominal& nominal);
 
-/// Returns the number of pieces into which a gap is divided.
 int gap_pieces(const RollingParams& params, double gap_s);
 
 /// Uncertainty of a piece of a gap, with interpolated rate and without force.
@@ -69,7 +66,6 @@ struct GapDoubt {
 ImuAverage gap_piece(const RollingParams& params, const ImuSample& before, const ImuSample& after, double gap_s, int k,
                      GapDoubt& doubt);
 
-/// Integrates a piece of a gap.
 void integrate_gap(const RollingParams& params, const ImuAverage& piece, const GapDoubt& doubt, RollingNominal& nominal,
                    RollingSums& sums);
 

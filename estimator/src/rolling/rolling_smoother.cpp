@@ -44,7 +44,6 @@ double stated(const RollingSmoother::Params& params) {
   return 1.0 / (params.path_noise * params.path_noise);
 }
 
-/// Cursor after the first sample.
 rolling::Readings::Cursor start_cursor(const ImuSample& sample) {
   rolling::Readings::Cursor cursor;
   cursor.time_ns = sample.time_ns;
@@ -95,7 +94,6 @@ void start_window(const RollingParams& filter, const RollingParams& path, const 
   start.reading = start_cursor(sample);
 }
 
-/// Nodes in events whose position became uncertain.
 struct Events {
   std::vector<bool> uncertain;
   double committed_m2 = 0.0;  ///< RollingSmoother::Committed::event_variance_m2 after the node `emitted`

@@ -10,7 +10,6 @@
 
 namespace tumble::rolling {
 
-/// Fixed mode of a node.
 struct PathNode {
   RollingMode mode = RollingMode::grip;
   bool at_rest = false;
@@ -39,7 +38,6 @@ struct NodeRecord {
   RollingNominal nominal;                            ///< after the update
   PathNode path;
   TimeNs time_ns = 0;
-  // Results of the backward pass.
   Reported smoothed;
   Eigen::Matrix<double, kReported, kReported> smoothed_P;
 };
@@ -61,7 +59,7 @@ class Readings {
   struct Cursor {
     TimeNs time_ns = 0;  ///< end of the last reading
     Eigen::Vector3d last_rate_rad_s = Eigen::Vector3d::Zero();
-    std::size_t next = 0;  ///< index of a sample
+    std::size_t next = 0;
     // Of the current gap.
     Eigen::Vector3d gap_rate_rad_s = Eigen::Vector3d::Zero();  ///< before the gap
     TimeNs gap_start_ns = 0;
@@ -73,7 +71,6 @@ class Readings {
       : params_(params), samples_(samples), cursor_(from) {}
 
   const Cursor& cursor() const { return cursor_; }
-  /// Returns false at the end.
   bool next(Reading& out);
 
  private:
@@ -84,7 +81,6 @@ class Readings {
   Cursor cursor_;
 };
 
-/// Nominal trajectory at a sample.
 struct SamplePoint {
   TimeNs time_ns = 0;
   Eigen::Quaterniond q_WI;
@@ -93,7 +89,6 @@ struct SamplePoint {
   std::size_t node = 0;  ///< first node that closes after it
 };
 
-/// State of the final pass between two nodes.
 struct PathFilter {
   RollingNominal nominal;
   Covariance P = Covariance::Zero();
