@@ -12,9 +12,9 @@ namespace tumble {
 
 namespace {
 
-constexpr double kRested_s = 1.0;  // in all, for its size to be asked
+constexpr double kRested_s = 1.0;  // total rest needed for checking the magnitude
 
-/// Of a body without any force that could be gravity, in whatever unit.
+/// Parameters that detect rest without any gravity-like force, for any unit.
 RestDetector::Params without_force(RestDetector::Params rests) {
   rests.force_max_m_s2 = rests.force_min_m_s2;
   rests.force_min_m_s2 = 0.0;
@@ -65,7 +65,7 @@ void RestGravity::step(const ImuSample& sample, const RateState& rate, State& st
   state.span_angle_rad = state.variance_rad2 = state.segment_s = state.segment_rad2_s = 0.0;
 }
 
-/// A reading is a mean over its time, and stands in the middle of it: imu_merge.md (I22).
+/// A reading is a mean over its window and refers to the middle of it: imu_merge.md (I22).
 void RestGravity::turn(const ImuSample& sample, const RateState& rate, double dt_s, State& state) const {
   const Eigen::Quaterniond half = so3::exp(0.5 * dt_s * rate.w_WI_I_rad_s);
   const Eigen::Vector3d& force = sample.specific_force_m_s2;
@@ -78,7 +78,7 @@ void RestGravity::turn(const ImuSample& sample, const RateState& rate, double dt
   if (at_range || (sample.device_clip_flags & kClipAccel) != 0) state.hidden_m_s += dt_s * peak;
 }
 
-/// What a rail hid of a segment hangs together as long as the segment lasts: imu_merge.md (I19).
+/// Saturation deficits within a segment are correlated: imu_merge.md (I19).
 void RestGravity::end_segment(State& state) const {
   state.variance_rad2 += std::max(params_.correlation_s, state.segment_s) * state.segment_rad2_s;
   state.segment_s = state.segment_rad2_s = 0.0;

@@ -46,7 +46,7 @@ Eigen::Matrix<double, 9, 9> inertial_noise(const LidarInertialOdometry::Params& 
       .setConstant(std::pow(params.expert.prior.sigma_m_s * span, 2) +
                    std::pow(params.expert.prior.force_share * pushed_m_s, 2) + gap_m2_s2);
   u::variances(noise, u::position).array() += gap_m2;
-  // held still: velocity is zero, and what it would have moved by does not count
+  // stationary: velocity is zero and its effect on the position is ignored
   const auto rests = [&](const MotionSample& sample) {
     return sample.at_rest || seconds(sample.from_ns - start_ns) >= trajectory.duration_s();
   };
@@ -61,7 +61,7 @@ Eigen::Matrix<double, 9, 9> inertial_noise(const LidarInertialOdometry::Params& 
 Eigen::Matrix3d railed_velocity_variance(const LidarInertialOdometry::Params& params, const SweepTrajectory& trajectory,
                                          std::span<const MotionSample> samples) {
   std::size_t hint = 0;
-  Eigen::Matrix3d lasted = Eigen::Matrix3d::Zero();  // column j: how long axis j was at its rail, in W
+  Eigen::Matrix3d lasted = Eigen::Matrix3d::Zero();  // column j: duration of saturation of axis j, in W
   for (const MotionSample& sample : samples) {
     const double from = std::max(seconds(sample.from_ns - trajectory.start_ns()), 0.0);
     const double to = std::min(seconds(sample.time_ns - trajectory.start_ns()), trajectory.duration_s());

@@ -10,8 +10,8 @@ namespace tumble::mapping {
 
 namespace {
 
-/// What the trajectory is uncertain by inside of a segment, as seen at a point: between its start and its end. Its part
-/// of mapping.md (R53).
+/// Uncertainty of the trajectory between start and end of a segment, as variance of a point. Its part of mapping.md
+/// (R53).
 class PoseVariance {
  public:
   PoseVariance(const Registration::Matrix& covariance, const SweepTrajectory& trajectory)
@@ -54,7 +54,7 @@ std::size_t LocalMap::insert(const Params& params, const SweepToInsert& sweep, c
   for (std::size_t i = 0; i < points.size(); ++i) {
     const Eigen::Vector3f position = levers_W_m_[i] + trajectory.base_m(points[i].t_s).cast<float>();
     sight_.add(position);
-    if (map_.is_taken(position)) continue;  // most are
+    if (map_.is_taken(position)) continue;  // true for most points
     // mapping.md (R53)
     const double sigma_m = std::sqrt(noise.point_variance_m2(points[i]) + of_pose.at_m2(points[i]));
     if (sigma_m > params.expert.map.sigma_max_m) continue;

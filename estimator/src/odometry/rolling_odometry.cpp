@@ -8,7 +8,7 @@ namespace tumble {
 
 namespace {
 
-constexpr std::size_t kRecoveringUnits = 3;  // so many IMUs tell a rate beyond the range
+constexpr std::size_t kRecoveringUnits = 3;  // number of IMUs needed to recover a rate beyond the range
 constexpr double kRecoveredSigma_rad_s = 1.0;
 
 constexpr std::array<std::array<const char*, 6>, ImuMerge::kImus> kFrozenFields = {
@@ -33,7 +33,7 @@ constexpr std::array<std::array<const char*, 6>, ImuMerge::kImus> kFrozenFields 
        "seconds for which unit 4's accel y repeats one reading",
        "seconds for which unit 4's accel z repeats one reading"}}}};
 
-// Of the radius the door's own counts; the smoother's has no default.
+// Checks the radius of RollingOdometry; the smoother's has no default.
 void require_stated(RollingOdometry::Params params) {
   params.expert.rolling.filter.radius_m = params.radius_m;
   require_fields(params);
@@ -146,7 +146,7 @@ Status RollingOdometry::add_imus(std::span<const ImuSample> samples) {
   UnitRails::Samples flagged;
   rails_.flag(samples, rails_state_, flagged);
   flagged.front().time_ns = time_ns;
-  *merged_state_ = *merge_state_;  // all take the sample, or none
+  *merged_state_ = *merge_state_;  // all parts accept the sample, or none
   Frozen frozen = frozen_;
   for (std::size_t k = 0; k < samples.size(); ++k) watches_[k].step(samples[k], frozen[k]);
   const std::span<ImuSample> judged = std::span(flagged).first(samples.size());
@@ -163,7 +163,7 @@ Status RollingOdometry::add_imus(std::span<const ImuSample> samples) {
   return {};
 }
 
-/// Gives NaN for what a unit reads of which an axis has frozen, and trouble where that leaves nobody.
+/// Sets the readings of frozen units to NaN. Returns an error if no unit remains.
 Status RollingOdometry::leave_out_frozen(const Frozen& states, std::span<ImuSample> samples) const {
   bool any = false, heard = false;
   for (std::size_t k = 0; k < samples.size(); ++k) {
@@ -200,7 +200,7 @@ std::optional<RollingOdometry::Pose> RollingOdometry::newest() const {
 std::optional<RollingOdometry::Pose> RollingOdometry::take() {
   if (taken_ == done_.size()) return std::nullopt;
   const Pose out = as_pose(done_[taken_++]);
-  if (taken_ == done_.size()) {  // memory is kept
+  if (taken_ == done_.size()) {
     done_.clear();
     taken_ = 0;
   }

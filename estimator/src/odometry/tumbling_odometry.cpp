@@ -11,10 +11,10 @@ namespace tumble {
 
 namespace {
 
-// Of the horizontal part of gravity: what the levelling leaves, and a world that is not quite level.
+// Standard deviation of gravity's horizontal part, after levelling in a world that is not exactly level.
 constexpr double kGravitySigma_m_s2 = 0.03;
 
-/// Points fired at `from_ns` and later, their times counted from there.
+/// Returns the points fired at `from_ns` or later, with times relative to it.
 std::vector<LidarPoint> points_from(TimeNs from_ns, TimeNs start_ns, std::span<const LidarPoint> points) {
   std::vector<LidarPoint> out;
   out.reserve(points.size());
@@ -58,9 +58,9 @@ LidarInertialOdometry::Params mapper_params(const TumblingOdometry::Params& para
   return out;
 }
 
-constexpr double kSilent_s = 1.0;       // a lidar that says nothing for so long is made up for
-constexpr double kAhead_s = 1.0;        // a sweep that ends so much after the newest sample has a stamp that is wrong
-constexpr double kSweepsMax_hz = 20.0;  // of the lidars that there are: so many a second wait for the lag
+constexpr double kSilent_s = 1.0;       // silence of the lidar after which empty sweeps are inserted
+constexpr double kAhead_s = 1.0;        // maximum time by which a sweep may end after the newest sample
+constexpr double kSweepsMax_hz = 20.0;  // highest sweep rate of lidars: determines how many sweeps wait for the lag
 
 }  // namespace
 
@@ -99,7 +99,7 @@ Status TumblingOdometry::add_imu(const ImuSample& sample) {
 }
 
 Status TumblingOdometry::take_in(const ImuSample& sample) {
-  SampleClock::State stamps = stamps_;  // one that is refused has no part in the clock
+  SampleClock::State stamps = stamps_;  // a rejected sample must not change the clock
   ImuSample timed = sample;
   if (const Status status = clock_.push(sample.time_ns, stamps, timed.time_ns); !status.ok()) return status;
   if (const Status status = pass_.add_imu(timed); !status.ok()) return status;
@@ -167,7 +167,7 @@ Status TumblingOdometry::doubt() const {
 }
 
 void TumblingOdometry::finish() {
-  if (!newest_rate()) return;  // nothing since the last time
+  if (!newest_rate()) return;  // no samples since the last call
   flush_all();
   again_.complete(pass_);
   begin_rates();
@@ -187,8 +187,8 @@ void TumblingOdometry::register_sweep(TimeNs start_ns, TimeNs end_ns, std::vecto
   again_.advance(pass_);
 }
 
-/// Whether the sweep would be more than lag_s old with the sample after the newest one, while the sample that covers it
-/// has all of the lag ahead of it but a period: one after a gap has not.
+/// Returns whether the sweep would be more than lag_s old at the sample after the newest one. In addition, the covering
+/// sample must have the whole lag ahead of it except one period, which is not the case after a gap.
 bool TumblingOdometry::is_due(TimeNs end_ns) const {
   const std::optional<TimeNs> covering_ns = pass_.covering_ns(end_ns);
   if (!covering_ns) return false;
@@ -200,7 +200,7 @@ bool TumblingOdometry::is_due(TimeNs end_ns) const {
 void TumblingOdometry::register_covered() {
   while (!waiting_.empty()) {
     const TimeNs end_ns = waiting_.front().end_ns;
-    // the sample that covers it ends up to a period later: its rate is given out so much sooner
+    // the covering sample ends up to one period later, so its rate is reported this much earlier
     if (!pass_.covers(end_ns) && is_due(end_ns)) pass_.flush_until(pass_.needed_ns(end_ns));
     if (!pass_.covers(end_ns)) break;
     WaitingSweep sweep = std::move(waiting_.front());
@@ -228,7 +228,7 @@ void TumblingOdometry::begin_anew() {
 
 void TumblingOdometry::begin_rates() {
   RegimeStream::Params params = rate_params(params_);
-  // where what was learnt is beyond what can be: from what was given
+  // if the estimated calibration is out of bounds, restart from the stated one
   if (const RigCalibration learnt = rig(); check_calibration(learnt).ok()) params.rate.model.calibration = learnt;
   pass_.begin_rates(params);
 }
