@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import json
 import pathlib
+import shutil
 
 import numpy as np
 
@@ -48,6 +49,21 @@ class Recording:
         R_WB = rotations(self.q_WB[k])
         offset = {"imu": self.p_BI_m, "centre": self.p_BG_m, "body": np.zeros(3)}[frame]
         return self.p_WB_m[k] + R_WB @ offset, R_WB @ (self.R_BI if frame == "imu" else np.eye(3))
+
+
+def state_true_mounting(recording: pathlib.Path, copy: pathlib.Path) -> None:
+    """Writes a copy of a recording in which the stated mounting of each IMU is the true one."""
+    import h5py
+
+    copy.parent.mkdir(parents=True, exist_ok=True)
+    part = copy.with_suffix(".part")
+    shutil.copyfile(recording, part)
+    with h5py.File(part, "r+") as file:
+        for index in file["sensors/imus"]:
+            file[f"sensors/imus/{index}/T_BI"][...] = file[f"truth/imus/{index}/T_BI"][:]
+        file.attrs["digest"] = ""  # of the recording before the change
+        del file["sensors"].attrs["digest"]
+    part.rename(copy)
 
 
 class Estimate:

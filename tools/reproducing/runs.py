@@ -101,14 +101,11 @@ class Scores:
 
     def __init__(self, path: pathlib.Path):
         with sqlite3.connect(f"file:{path.resolve()}?mode=ro", uri=True) as database:
-            plain = "SELECT '', seed, kind || '/' || method, status, metric, value FROM scores"
-            varied = "SELECT varied, seed, kind || '/' || method, status, metric, value FROM curves"
-            self.rows = database.execute(f"{plain} UNION ALL {varied}").fetchall()
+            self.rows = database.execute("SELECT seed, kind || '/' || method, metric, value FROM scores").fetchall()
 
-    def of(self, method: str, metric: str, varied: bool = False) -> dict[int, float]:
+    def of(self, method: str, metric: str) -> dict[int, float]:
         """Seed -> value of one method. A draw on which the method failed, or has no such score, is left out."""
-        return {seed: value for key, seed, name, _, found, value in self.rows
-                if (name, found, bool(key)) == (method, metric, varied) and value is not None}
+        return {seed: value for seed, name, found, value in self.rows if (name, found) == (method, metric) and value is not None}
 
     def values(self, method: str, metric: str, seeds: Iterable[int] | None = None, failed: float = float("inf")) -> list[float]:
         """Values of the named draws, else of all. A draw without a value failed and counts as `failed`."""
@@ -117,4 +114,4 @@ class Scores:
 
     def seeds(self, method: str) -> list[int]:
         """Draws on which the method was run, whatever came of it."""
-        return sorted({seed for key, seed, name, *_ in self.rows if name == method and not key})
+        return sorted({seed for seed, name, *_ in self.rows if name == method})
