@@ -1,0 +1,145 @@
+#!/usr/bin/python3
+# SPDX-License-Identifier: BSD-3-Clause
+"""tools/reproduce: scores of a small database, numbers of a page, and the check that finds a stale one. No program runs here.
+
+    reproducing_test.py TOOLS_FOLDER
+"""
+import pathlib
+import sqlite3
+import sys
+import tempfile
+import types
+import unittest
+
+import numpy as np
+
+sys.dont_write_bytecode = True
+sys.path.insert(0, sys.argv.pop(1))
+from reproducing import page, rig, runs, sphere  # noqa: E402
+
+SCHEMA = """
+CREATE TABLE scores (scenario TEXT, seed INTEGER, kind TEXT, method TEXT, status TEXT, metric TEXT, value REAL);
+"""
+
+
+class Case(unittest.TestCase):
+    def setUp(self):
+        scratch = tempfile.TemporaryDirectory()
+        self.addCleanup(scratch.cleanup)
+        self.root = pathlib.Path(scratch.name)
+
+    def scores(self, *rows: tuple) -> runs.Scores:
+        """Rows: seed, kind, method, status, metric, value."""
+        path = self.root / "scores.db"
+        path.unlink(missing_ok=True)
+        with sqlite3.connect(path) as database:
+            database.executescript(SCHEMA)
+            database.executemany("INSERT INTO scores VALUES ('hill', ?, ?, ?, ?, ?, ?)", rows)
+        return runs.Scores(path)
+
+
+class ReadingScores(Case):
+    def test_a_failed_draw_counts_as_the_worst(self):
+        scores = self.scores((1, "slam", "icp_raw", "ok", "ate_m", 2.0), (2, "slam", "icp_raw", "crashed", None, None),
+                             (3, "slam", "icp_raw", "ok", "ate_m", 1.0))
+        self.assertEqual(scores.values("slam/icp_raw", "ate_m"), [2.0, float("inf"), 1.0])
+        self.assertEqual(scores.values("slam/icp_raw", "ate_m", seeds=[2, 3], failed=9.0), [9.0, 1.0])
+
+
+class Numbers(unittest.TestCase):
+    def test_significant_digits(self):
+        self.assertEqual([page.number(v) for v in (0.012345, 12.345, 1234.5, 0.0, float("inf"), float("nan"))],
+                         ["0.0123", "12.3", "1234", "0", "lost", "-"])
+
+    def test_a_change_has_its_sign(self):
+        self.assertEqual(page.change(0.166, 1.0), "−83.4 %")
+        self.assertEqual(page.change(1.5, 1.0), "+50.0 %")
+        self.assertEqual(page.change(float("inf"), 1.0), "-")
+
+    def test_a_row_has_a_cell_for_each_column(self):
+        self.assertRaises(ValueError, page.Table(["a", "b"]).add, "only one")
+
+
+class StalePages(Case):
+    def test_a_stale_number_is_found_and_a_fresh_one_is_not(self):
+        path = self.root / "rig.md"
+        self.assertEqual(page.finish(path, "| error | 1.25 m |\n", check=False), [])
+        self.assertEqual(page.finish(path, "| error | 1.25 m |\n", check=True), [])
+        found = page.finish(path, "| error | 1.26 m |\n", check=True)
+        self.assertEqual(len(found), 1)
+        self.assertIn("page has '| error | 1.25 m |', results give '| error | 1.26 m |'", found[0])
+        self.assertIn("1.25", path.read_text())
+
+    def test_a_page_that_lacks_lines_or_is_not_there_is_stale(self):
+        self.assertEqual(len(page.stale("a\n", "a\nb\n")), 1)
+        self.assertEqual(len(page.finish(self.root / "none.md", "a\n", check=True)), 1)
+
+
+class RigPage(Case):
+    def recording(self, elements: int) -> types.SimpleNamespace:
+        clipped = np.array([0, 1, elements, 0])
+        return types.SimpleNamespace(true_rate_rad_s=np.full((4, 3), 5.0), true_force_m_s2=np.full((4, 3), 20.0),
+                                     clipped=clipped > 0, clipped_elements=clipped)
+
+    def text(self, overlap: float) -> str:
+        """The page of two draws."""
+        rows = []
+        for seed in (1, 2):
+            for name, method in rig.MAPS.items():
+                ours = name not in (rig.RAW, rig.PUBLISHED)
+                values = {rig.TRANSLATION: 0.1 if ours else 1.0, rig.ROTATION: 0.01, rig.OVERLAP: 0.99 if ours else overlap, rig.FAILED: 0.0}
+                rows += [(seed, "slam", method.split("/")[1], "ok", metric, value) for metric, value in values.items()]
+        maps = self.scores(*rows)
+        errors = {(m, e): np.array([1.0, 2.0, 3.0]) if m == rig.RAW else np.array([0.1, 0.5, 0.9])
+                  for m in rig.RATES for e in (rig.ANY, rig.ONE, rig.MORE)}
+        return rig.page(runs.Runs(pathlib.Path("tumble"), self.root, (1, 2)), {1: self.recording(1), 2: self.recording(2)}, errors,
+                        errors, maps)
+
+    def test_it_holds_the_results(self):
+        text = self.text(overlap=0.8)
+        for expected in ("−75.0 %", "2.00 rad/s", "80.0 %", "−90.0 %", "2 draws of", "8.66 rad/s"):
+            self.assertIn(expected, text)
+
+    def test_another_result_makes_it_stale(self):
+        found = page.stale(self.text(overlap=0.8), self.text(overlap=0.7))
+        self.assertEqual(len(found), 2)  # of all draws, and of those that clip one element at a time
+        self.assertIn("map overlap", found[0])
+
+    def test_draws_that_clip_two_elements_are_told_apart(self):
+        self.assertEqual(rig.draws_with_one({1: self.recording(1), 2: self.recording(2), 3: self.recording(3)}), [1])
+        self.assertIn("1 of the 2 draws are nearest to the paper", self.text(overlap=0.8))
+
+
+class Legs(unittest.TestCase):
+    def test_the_corner_parts_the_legs(self):
+        there = np.linspace(0, 1, 11)[:, None]
+        path = np.vstack([there * [1.0, 0.0], [1.0, 0.0] + there[1:] * [0.0, 0.5]])
+        corner = sphere.corner_of(path)
+        self.assertEqual(corner, 10)
+        np.testing.assert_allclose(sphere.legs_of(path, corner), (1.0, 0.5))
+
+
+class Running(Case):
+    def program(self, *lines: str) -> runs.Runs:
+        path = self.root / "tumble"
+        path.write_text("#!/bin/sh\n" + "\n".join(lines) + "\n")
+        path.chmod(0o755)
+        return runs.Runs(path, self.root / "work", (5, 8))
+
+    def test_a_failure_names_the_command_and_its_error(self):
+        with self.assertRaisesRegex(runs.ProgramFailed, "tumble sweep hill.*exit status 2: no such suite"):
+            self.program("echo no such suite >&2; exit 2").sweep("a", "hill")
+
+    def test_an_estimate_that_is_complete_is_not_made_again(self):
+        program = self.program('while [ "$1" != -o ]; do shift; done; mkdir "$2" && echo {} > "$2/estimate.json"')
+        folder = program.folder / "one"
+        program.estimate(self.root / "r.h5", "attitude/vqf", folder)
+        program.estimate(self.root / "r.h5", "attitude/vqf", folder)  # mkdir would fail
+        self.assertEqual(len(program.commands), 1)
+        (folder / "estimate.json").unlink()  # stopped half-way
+        program.estimate(self.root / "r.h5", "attitude/vqf", folder)
+        self.assertTrue((folder / "estimate.json").is_file())
+
+
+if __name__ == "__main__":
+    unittest.main()
