@@ -15,7 +15,7 @@ import numpy as np
 
 sys.dont_write_bytecode = True
 sys.path.insert(0, sys.argv.pop(1))
-from reproducing import page, rig, runs, sphere  # noqa: E402
+from reproducing import figures, page, rig, runs, sphere  # noqa: E402
 
 SCHEMA = """
 CREATE TABLE scores (scenario TEXT, seed INTEGER, kind TEXT, method TEXT, status TEXT, metric TEXT, value REAL);
@@ -139,6 +139,43 @@ class Running(Case):
         (folder / "estimate.json").unlink()  # stopped half-way
         program.estimate(self.root / "r.h5", "attitude/vqf", folder)
         self.assertTrue((folder / "estimate.json").is_file())
+
+
+class Figures(unittest.TestCase):
+    """Tables of docs/figures.yaml."""
+
+    GROUP = {"sweep": "s", "by": "scenario", "rows": {"hill": "grassy hill"},
+             "columns": [{"text": "end error [cm]"}, {"method": "slam/a", "metric": "end_m", "statistic": "median", "scale": 100},
+                         {"method": "slam/a", "statistic": "failures"}]}
+    TABLE = {"page": "page.md", "titles": ["scenario", "measure", "end error", "failed"], "text": "Medians.", "tolerance": 0.02, "groups": [GROUP]}
+    SCORES = {("hill", 1, "slam/a"): ("ok", {"end_m": 0.01}), ("hill", 2, "slam/a"): ("ok", {"end_m": 0.03}),
+              ("hill", 3, "slam/a"): ("diverged", {"end_m": 0.001}), ("hill", 3, "slam/b"): ("ok", {"end_m": 9.0})}
+
+    def test_a_failed_draw_counts_as_infinite(self):
+        self.assertEqual(figures.computed(self.GROUP, self.SCORES), {"hill": [[3.0, 3], [1, 3]]})
+
+    def test_a_cell_beyond_the_tolerance_is_stale(self):
+        found = figures.computed(self.GROUP, self.SCORES)
+        self.assertEqual(figures.stale("t", 0.02, {"hill": [[3.05, 3], [1, 3]]}, found), [])
+        self.assertIn("value 1", figures.stale("t", 0.02, {"hill": [[3.1, 3], [1, 3]]}, found)[0])
+        self.assertIn("value 2", figures.stale("t", 0.02, {"hill": [[3.0, 3], [0, 3]]}, found)[0])
+        self.assertEqual(len(figures.stale("t", 0.02, {"hill": [[3.0, 4], [1, 4]]}, found)), 2, "another number of draws")
+
+    def test_a_page_that_differs_from_the_values_is_found(self):
+        with tempfile.TemporaryDirectory() as folder:
+            root = pathlib.Path(folder)
+            marks = "before\n<!-- t: written by tools/reproduce figures -->\n<!-- end of t -->\nafter\n"
+            (root / "page.md").write_text(marks)
+            described = {"tables": {"t": self.TABLE}, "values": {"t": {"hill": [[3.0, 3], [1, 3]]}}}
+            self.assertEqual(len(figures.stale_pages(described, root)), 1)
+            figures.write_pages(described, root)
+            self.assertEqual(figures.stale_pages(described, root), [])
+            self.assertIn("| grassy hill | end error [cm] | 3 | 1 of 3 |", (root / "page.md").read_text())
+            described["values"]["t"]["hill"][0][0] = 4.0
+            self.assertEqual(len(figures.stale_pages(described, root)), 1)
+
+    def test_the_pages_of_the_tree_show_the_values_of_figures_yaml(self):
+        self.assertEqual(figures.stale_pages(figures.load()), [])
 
 
 if __name__ == "__main__":
