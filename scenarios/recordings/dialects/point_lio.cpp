@@ -11,7 +11,8 @@ namespace tumble::scenarios {
 
 namespace {
 
-/// Where the peer takes an axis for clipped. Its sheet may state less than the device gives: then what was read holds.
+/// Returns the saturation threshold for the peer. The data sheet may state less than the device reaches; then the
+/// largest reading is used.
 double rail(double stated, double largest) {
   return std::max(stated, largest);
 }
