@@ -32,7 +32,7 @@ namespace tumble::scenarios {
 
 namespace {
 
-/// What the recordings of a device span.
+/// Range of the planes over the recordings of a device.
 struct MeasuredRange {
   double low, high;
   double middle() const { return 0.5 * (low + high); }
@@ -42,7 +42,7 @@ struct MeasuredRange {
 struct MeasuredPlane {
   const char* name;
   int element;
-  MeasuredRange first_slope, second_slope;  // against the axes after the element's, cyclically [1]
+  MeasuredRange first_slope, second_slope;  // against the next axes, cyclically [1]
   MeasuredRange distance_rad_s, offset_rad_s;
 };
 
@@ -56,8 +56,8 @@ const char* axis_name(int axis) {
   return kNames[static_cast<std::size_t>(axis % 3)];
 }
 
-/// Elements whose plane is the middle of what was measured; those beside it and its own scale, which no plane tells,
-/// are upright.
+/// Returns elements with the mean of the measured planes. Other elements and the own scale, which a plane does not
+/// determine, are ideal.
 sim::Elements elements_of(const MeasuredPlane& plane, const RealRailsSetup& setup) {
   const int j = plane.element;
   Eigen::Matrix3d axes = Eigen::Matrix3d::Identity();
@@ -97,7 +97,7 @@ void show_plane(const DataSheet& sheet, const MeasuredPlane& plane, const RealRa
       plane.offset_rad_s);
 }
 
-/// Standard deviations of the planes of elements as a device's sheet has them drawn.
+/// Standard deviations of the planes that follow from a data sheet's distribution of elements.
 struct DrawnPlanes {
   double slope = 0.0, offset_rad_s = 0.0;
 };
@@ -134,7 +134,7 @@ std::vector<CertificateEntry> certify_real_rails(const CertificateInput& input, 
     slope = std::max({slope, plane.first_slope.farthest(), plane.second_slope.farthest()});
     offset_rad_s = std::max(offset_rad_s, plane.offset_rad_s.farthest());
   }
-  constexpr double kCut = 3.0;  // where what is drawn ends (sim::Elements)
+  constexpr double kCut = 3.0;  // truncation of the distribution (sim::Elements)
   for (const std::string& name : device_names(input.data)) {
     const DataSheet sheet = load_data_sheet(input.data, name);
     if (sheet.sensor_kind != "imu") continue;
