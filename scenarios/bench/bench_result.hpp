@@ -40,8 +40,8 @@ struct BenchResult {
 /// Returns one line of JSON without newline.
 std::string to_line(const BenchResult& result);
 
-/// Parses such a line. Throws BadInput that starts with `place`: not JSON, another format or version, a missing key or
-/// wrong type, an unknown kind or status, a repeated draw.
+/// Parses such a line. Throws BadInput, with a message that starts with `place`: not JSON, another format or version, a
+/// missing key or wrong type, an unknown kind or status, a repeated draw.
 BenchResult parse_bench_result(const std::string& line, const std::string& place);
 
 /// Returns the path of a suite's stored results: SUITE.jsonl.

@@ -6,14 +6,14 @@
 
 #include "sim/recording.hpp"
 
-/// The plane on which a saturated sensing element keeps its readings, fitted and in closed form. For M and o of
-/// sim/imu/elements.hpp and the limit r:
+/// The plane on which a saturated sensing element keeps its readings, fitted and in closed form. M and o are those of
+/// sim/imu/elements.hpp, r is the limit:
 ///   y_j = +-rho + b + sum over k != j of c_k y_k,  c_k = -M_jk / M_jj, rho = r / M_jj, b = -o_j / M_jj
 namespace tumble::scenarios {
 
-/// Returns a motion that saturates every element: rotation about x, y and z in turn beyond the gyro's limit [rad/s],
-/// with some rotation about the other axes, and a push along x that saturates each accelerometer element [m/s^2] as it
-/// rotates past.
+/// Returns a motion that saturates every element. It rotates about x, y and z in turn beyond the gyro's limit [rad/s],
+/// with some rotation about the other axes. A push along x saturates each accelerometer element [m/s^2] as it rotates
+/// past.
 sim::Truth beyond_every_rail(double gyro_rail_rad_s, double accel_rail_m_s2);
 
 /// Readings of one triad with its sensing elements.

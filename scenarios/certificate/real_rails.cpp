@@ -1,21 +1,19 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The planes on which two real gyros keep their readings at the rail (clipped_plane.hpp has the equation), as anchors:
-// a simulated device that is given the sensing elements of such a plane has to show it in its readings, and the spread
-// that devices are drawn with has to reach it.
+// Saturation planes of two real gyros (equation: clipped_plane.hpp) as references. A simulated device with the sensing
+// elements of such a plane must reproduce it in its readings, and the simulated distribution of devices must reach it.
 //
-// Measured on RepoIMU (Szczesna et al., ICCVG 2016) by the same least squares, over readings in the inside of stretches
-// at the rail, repeated readings left out (tests/bench/rail_measures x 7.3, y 7.2 or z 10.29 FILE.csv prints it of
-// Test05 and Test10 trial 1, of Test06, and of the pendulum's Test02a and Test07 trial 3); each interval is what its
-// recordings and their errors span:
-//   wand, x      Test05 trials 1 to 3, Test10 trials 1 to 3: 100 to 1700 readings each, the plane leaves 0.003 to 0.009
-//                rad/s (0.005 to 0.010 before it). The offset moves with the bias from day to day.
-//   wand, y      Test06 trial 1: 39 and 42 readings, leaves 0.004 rad/s (0.014 before). One recording: three standard
-//                errors about it, and the planes that more readings at the ends of stretches give.
-//   pendulum, z  its third segment; Test02a, 02b, 07 trials 1 to 3 and 08. Of Test02a (37 readings) and Test07 trial 3
-//                (10) the plane leaves 0.0003 rad/s (0.07 and 0.09 before it): less than the quantum of 0.0005, which
-//                their offsets of 0.0001 and 0.0003 are given either way. Fits that count the readings which the log
-//                repeats, and windows that were at the rail in a part, leave 0.02 to 0.07 and scatter: slopes of 0.045
-//                to 0.054 and -0.027 to 0.009.
+// Measured on RepoIMU (Szczesna et al., ICCVG 2016) by the same least squares, from readings inside saturated
+// intervals, without repeated readings. Command: tests/bench/rail_measures x 7.3, y 7.2 or z 10.29 FILE.csv, for Test05
+// and Test10 trial 1, Test06, and the pendulum's Test02a and Test07 trial 3. Each interval covers the recordings and
+// their errors. Residuals are in rad/s, in brackets without slopes:
+//   wand, x      Test05 trials 1 to 3, Test10 trials 1 to 3: 100 to 1700 readings each, residual 0.003 to 0.009 (0.005
+//                to 0.010). The offset changes with the bias from day to day.
+//   wand, y      Test06 trial 1: 39 and 42 readings, residual 0.004 (0.014). Only one recording: the interval is three
+//                standard errors, and includes planes from more readings at the ends of the intervals.
+//   pendulum, z  third segment; Test02a, 02b, 07 trials 1 to 3 and 08. Test02a (37 readings) and Test07 trial 3 (10):
+//                residual 0.0003 (0.07 and 0.09), below the quantum of 0.0005. Their offsets are 0.0001 and 0.0003.
+//                Fits with repeated readings and partly saturated windows have residuals of 0.02 to 0.07 and scattered
+//                slopes: 0.045 to 0.054 and -0.027 to 0.009.
 #include <algorithm>
 #include <array>
 #include <cmath>

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A device whose sensing elements clip along axes of their own keeps its readings on a plane for each element and sign
-// (clipped_plane.hpp). The row draws devices, makes their elements clip one at a time, fits that plane to what they say
-// and holds it to what was drawn. The planes of real devices are in real_rails.cpp.
+// Sensing elements saturate along their own axes, so a saturated element keeps the readings on a plane per element and
+// sign (clipped_plane.hpp). The row draws devices, saturates their elements one at a time, fits this plane to the
+// readings and compares it with the drawn one. Planes of real devices: real_rails.cpp.
 #include <algorithm>
 #include <cmath>
 

@@ -54,13 +54,13 @@ struct RotationAgreement {
   double turned_error = 1.0;
 };
 
-/// Compares gyro and lidar. Empty for fewer than a dozen pairs within the gyro's readings, or if neither the original
-/// axes, other axes nor a rotation agree within 30 % in any unit. Uses the mountings of `imu` and `lidar`. O(pairs).
+/// Compares gyro and lidar. Returns empty for fewer than a dozen pairs within the gyro's readings. Also returns empty
+/// if no unit, axes or rotation bring the two within 30 %. Uses the mountings of `imu` and `lidar`. O(pairs).
 std::optional<RotationAgreement> rotation_agreement(const sim::ImuRecord& imu, const sim::LidarRecord& lidar,
                                                     std::span<const SeenRotation> seen);
 
-/// Returns a note on the agreement, a warning with a better interpretation, or "" if undetermined. Throws BadInput that
-/// starts with `where` if the rates are in the other unit.
+/// Returns a note on the agreement, a warning with a better interpretation, or "" if undetermined. Throws BadInput,
+/// with a message that starts with `where`, if the rates are in the other unit.
 std::string agreement_text(const std::string& where, const RotationAgreement& agreement, GyroUnit unit);
 
 /// Returns notes on each IMU of a recording with lidar and IMUs, else none. Throws BadInput as above; `where` is the

@@ -17,8 +17,8 @@ const Settings<TumbleAttitude::Params>& attitude_tumble_settings();
 /// its IMUs merged. Errors: those of the records and of the filter; earlier attitudes are kept.
 Estimate run_attitude_tumble(const sim::Sensors& sensors, const sim::Values& parameters);
 
-/// Adds a doubt with the duration for which the inclination is unknown to 0.5 rad (2σ within a quarter turn), for
-/// example after an IMU gap in a tumble (`attitude_unknown_s`).
+/// Reports for how long the inclination is unknown to 0.5 rad (2σ within a quarter turn), for example after an IMU gap
+/// in a tumble. Adds a doubt and the health value `attitude_unknown_s`.
 void tell_unknown_attitude(Estimate& estimate);
 
 }  // namespace tumble::scenarios

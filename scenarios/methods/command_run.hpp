@@ -33,7 +33,7 @@ auto without_folder(const std::filesystem::path& scratch, Work&& work) {
 void require_done(const CommandEnd& end);
 
 /// Returns the first line of a version command's output, and a digest of the whole output. The command runs in `folder`
-/// for at most 30 s. On failure throws BadInput that starts with `place`.
+/// for at most 30 s. On failure throws BadInput, with a message that starts with `place`.
 std::string version_said(Command command, const std::string& place);
 
 }  // namespace tumble::scenarios

@@ -14,16 +14,19 @@ inline constexpr const char* kEstimateFiles[] = {"estimate.json",           "rat
                                                  "sweep_poses.csv",         "map.ply",       "position_covariance.csv",
                                                  "attitude_covariance.csv", "transcript.txt"};
 
-/// Writes an estimate to a folder: estimate.json (method, kind, frame, status, health, digest of the input sensors),
-/// rates.csv, attitude.tum, attitude_covariance.csv, trajectory.tum (t x y z qx qy qz qw), position_covariance.csv,
-/// contacts.csv, sweeps.csv, sweep_poses.csv, map.ply, transcript.txt (output of an external program). Only files that
-/// apply are written, estimate.json last.
+/// Writes an estimate to a folder. Only files that apply are written, estimate.json last. Columns: ESTIMATE.md.
+///
+/// - estimate.json: method, kind, frame, status, health, digest of the input sensors
+/// - rates.csv, attitude.tum, attitude_covariance.csv
+/// - trajectory.tum (t x y z qx qy qz qw), position_covariance.csv, contacts.csv
+/// - sweeps.csv, sweep_poses.csv, map.ply
+/// - transcript.txt: output of an external program
 ///
 /// All scored values are restored bit-exactly. The only exception is the last bit of quaternions in TUM files, which
 /// are normalised on reading. Velocities of `poses`, and covariances of `poses` other than position, are not written.
 ///
 /// Throws BadInput if writing fails. Throws std::invalid_argument if `contacts` is not as long as `poses`, or
-/// `uncertain` is neither empty nor as long. Columns: ESTIMATE.md.
+/// `uncertain` is neither empty nor as long.
 void write_estimate(const std::filesystem::path& folder, const std::string& method, Kind kind, const Estimate& estimate,
                     const std::string& sensors_digest = "");
 

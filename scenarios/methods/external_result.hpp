@@ -14,8 +14,8 @@ namespace tumble::scenarios {
 inline constexpr std::int64_t kExternalBagOrigin_ns = 1'000'000'000'000'000'000;
 
 /// Reads the result of a command at `output` as an estimate of the description's kind, and the map at `map` if it
-/// exists. Throws BadInput with place and reason: missing or empty file, AnswerBounds exceeded, a cell that is not a
-/// number, decreasing time, or rates that do not match the samples of the first IMU.
+/// exists. Throws BadInput with place and reason: a missing or empty file, AnswerBounds exceeded, a cell that is not a
+/// number, or decreasing time. Also throws if rates do not match the samples of the first IMU.
 Estimate read_external_result(const ExternalDescription& description, const std::filesystem::path& output,
                               const std::filesystem::path& map, const sim::Sensors& sensors);
 

@@ -41,9 +41,9 @@ Status check_rotation_about_pivots(const sim::Sensors& sensors, std::span<const 
                                    std::span<const RateState> rates, Estimate& estimate);
 
 /// Checks whether forces in a rig's flights contradict the lever arm, axes or signs of the sensor (FlightSense).
-/// Reports `imu_implausible` and the affected duration `imu_flight_against_s`. If `carried_share` (share of hand-held
-/// samples) shows that the body was never hand-held, flipped and swapped axes of both sensors are reported, and flights
-/// with a clipped axis count. O(N).
+/// Reports `imu_implausible` and the affected duration `imu_flight_against_s`. `carried_share` is the share of
+/// hand-held samples. If it shows that the body was never hand-held, flipped and swapped axes of both sensors are
+/// reported. Flights with a clipped axis then count too. O(N).
 Status check_flights(const sim::Sensors& sensors, std::span<const ImuSample> samples,
                      std::optional<double> carried_share, Estimate& estimate);
 

@@ -43,20 +43,20 @@ LearntRig learnt(const RateReport& report);
 /// certain.
 std::optional<LearntRig> with_rails(const LearntRig& before, const KnownRails& rails);
 
-/// Applies a calibration to the next run: constants with their covariance times `trust` (>= 1, because rigs are
-/// reassembled), the gyro's saturation planes, the device's errors, and the lowest limit of a sensor as its range.
-/// Throws std::invalid_argument if `trust` is below 1.
+/// Applies a calibration to the next run: constants, the gyro's saturation planes, and the device's errors. The lowest
+/// saturation limit of a sensor becomes its range. The covariance of the constants is multiplied by `trust` (>= 1),
+/// because rigs are reassembled. Throws std::invalid_argument if `trust` is below 1.
 void start_from(const LearntRig& rig, double trust, RateSmoother::Params& params);
 
-/// Writes a short JSON file: lever arm, biases, inertia, gyro elements, covariance by rows, saturation limits and
-/// planes of gyro and accelerometer, and the device's errors in the order of SensorErrors with covariance. Numbers
-/// round-trip bit-exactly. Throws BadInput if writing fails, and then leaves no partial file.
+/// Writes a short JSON file. It contains lever arm, biases, inertia and gyro elements with their covariance (by rows),
+/// and saturation limits and planes of both triads. It also contains the device's errors in the order of SensorErrors,
+/// with covariance. Numbers round-trip bit-exactly. Throws BadInput if writing fails, and then leaves no partial file.
 void write_learnt_rig(const std::filesystem::path& path, const LearntRig& rig);
 
 /// Reads a calibration file. Files of earlier versions may lack the gyro elements and their six covariance rows,
 /// accelerometer planes or device errors; defaults replace them.
-/// Throws BadInput with path and key for a missing, misspelt or extra key, an invalid number, a wrong count, or a
-/// covariance that is not symmetric positive definite.
+/// Throws BadInput with path and key for a missing, misspelt or extra key, an invalid number, or a wrong count. Also
+/// throws if a covariance is not symmetric positive definite.
 LearntRig read_learnt_rig(const std::filesystem::path& path);
 
 }  // namespace tumble::scenarios

@@ -29,24 +29,29 @@ enum class GyroUnit { rad_s, deg_s };
 /// Reads the readings of one IMU from a text table. The separator is the most frequent of comma, semicolon and tab in
 /// the first line.
 ///
-/// Columns are identified by the header's names. Accepted are the names of export_csv (each once, no others), short
-/// forms (sec nsec wx.. fx.. or ax..), flattened ROS messages (".../header/stamp" in seconds, ".../angular_velocity/x",
-/// ".../linear_acceleration/x", with y and z), and names of loggers and data sets ("time,gyro_x,...,accel_x,...",
-/// "#timestamp [ns],w_RS_S_x [rad s^-1],...": tables/logger_columns.hpp). Units in names are used. If the unit of times
-/// is not stated, it is inferred from their steps and noted.
-/// A first line of numbers is a sample; then columns count by position (from 0): 0 stamp s, 1 stamp ns, 8-10 rate,
-/// 12-14 specific force.
+/// Columns are identified by the names in the header:
+/// - the names of export_csv (each once, no others);
+/// - their short forms (sec nsec wx.. fx.. or ax..);
+/// - flattened ROS messages: ".../header/stamp" (seconds), ".../angular_velocity/x", ".../linear_acceleration/x", and y
+///   and z;
+/// - names of loggers and data sets (tables/logger_columns.hpp): "time,gyro_x,...,accel_x,...", "#timestamp
+///   [ns],w_RS_S_x [rad s^-1],...".
+///
+/// Units in names are used. If the unit of times is not stated, it is inferred from their steps and noted. If the first
+/// line has numbers, it is a sample, and columns count by position (from 0): 0 stamp s, 1 stamp ns, 8-10 rate, 12-14
+/// specific force.
 ///
 /// `device` supplies what the file lacks: name, device, ranges, noise, T_BI; its period and readings are replaced.
-/// Times count from the first stamp; the period is the median step. Stamps in whole milliseconds of a faster IMU are
+/// Times count from the first stamp; the period is the median step. Stamps of a faster IMU in whole milliseconds are
 /// resampled to its rate and noted (rounded_stamps.hpp). Units are checked against the size and rotation of gravity,
 /// with a note if the motion allows it.
 ///
-/// Throws BadInput with file and line: unknown, repeated or missing columns; an unexpected unit; differing numbers of
-/// columns; an invalid or non-finite number; a stamp that does not increase; a truncated last line. Also throws for
-/// fewer than two samples, a median specific force outside 3 to 30 m/s^2, or a period outside 20 us to 2 s. The same
-/// holds if more than 1 % of the rates exceed twice the device's range (100 rad/s if not stated), or if gravity rotates
-/// 57 times too fast or slow for the rates.
+/// Throws BadInput with file and line for unknown, repeated or missing columns, an unexpected unit, or differing
+/// numbers of columns. The same holds for an invalid or non-finite number, a stamp that does not increase, and a
+/// truncated last line.
+/// Throws BadInput for fewer than two samples, a median specific force outside 3 to 30 m/s^2, or a period outside 20 us
+/// to 2 s. Also throws if more than 1 % of the rates exceed twice the device's range (100 rad/s if not stated).
+/// Finally, throws if gravity rotates 57 times too fast or slow for the rates.
 Imported import_imu_csv(const std::filesystem::path& path, const sim::ImuRecord& device,
                         AccelUnit unit = AccelUnit::m_s2, GyroUnit gyro_unit = GyroUnit::rad_s);
 
@@ -100,19 +105,21 @@ Imported import_broad(const std::filesystem::path& path);
 
 /// Reads a recording of RepoIMU (Szczesna et al., ICCVG 2016) in its published form. Columns are separated by ';' after
 /// two header lines (group, column): time s, "Vicon Orientation" W X Y Z, "IMU Acceleration" m/s^2, "IMU Gyroscope"
-/// rad/s, "IMU Magnetometer" (without unit, omitted). These defects are detected, corrected and noted:
+/// rad/s, "IMU Magnetometer" (without unit, omitted).
 ///
+/// These defects are detected, corrected and noted:
 /// - coarsely printed stamps are regularised within their rounding (steady_stamps.hpp);
-/// - sample and hold: repeated readings are dropped, the others put on the gyro's rate; a slower accelerometer is
+/// - sample and hold: repeated readings are dropped, the others put on the gyro's rate. A slower accelerometer is
 ///   interpolated between its own readings (held_readings.hpp);
 /// - glitches of the optical reference are removed (reference_glitches.hpp);
 /// - delay, rotation and tilt between reference and IMU are estimated (align_reference.hpp). If `align` is set, they
 ///   are removed, so that the truth is the IMU's attitude in a world with z up.
 ///
 /// The truth's rates at the IMU's stamps are derived from the attitudes (reference_rate.hpp); positions are unknown.
+///
 /// Throws BadInput with file, line, value and bound: unknown, missing or repeated columns, invalid numbers, non-finite
-/// IMU readings, a stamp that does not increase, a truncated last line, or more than a fifth of the quaternions off
-/// unit length by more than 1 %.
+/// IMU readings, a stamp that does not increase, or a truncated last line. Also throws if more than a fifth of the
+/// quaternions are off unit length by more than 1 %.
 Imported import_repoimu(const std::filesystem::path& path, bool align);
 
 /// Returns true if the file starts like a recording of RepoIMU.

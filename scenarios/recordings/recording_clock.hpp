@@ -29,7 +29,7 @@ void add_lidar(Imported& recording, BuiltSweeps built);
 void attach_poses(Imported& recording, std::vector<ReferencePose> poses, const Eigen::Isometry3d& T_BA,
                   const std::string& where);
 
-/// Returns T_BL of the first lidar. Throws BadInput, starting with `where`, if there is none.
+/// Returns T_BL of the first lidar. Throws BadInput, with a message that starts with `where`, if there is none.
 const Eigen::Isometry3d& lidar_of_poses(const sim::Sensors& sensors, const std::string& where);
 
 }  // namespace tumble::scenarios

@@ -8,9 +8,10 @@
 /// Restores stamps of an IMU that were rounded to milliseconds although its period is not a whole number of them.
 namespace tumble::scenarios {
 
-/// Returns true if stamps are rounded: all are whole milliseconds from the first, and their steps are n or n + 1
-/// milliseconds, n up to 4, each at least once in fifty steps. Longer steps are gaps. A 500 Hz IMU has whole
-/// milliseconds and is not rounded. Periods within 0.02 ms of a whole millisecond are not detected. O(N).
+/// Returns true if stamps are rounded to milliseconds: all are whole milliseconds from the first, and their steps are n
+/// or n + 1 milliseconds, n up to 4. Both steps must occur at least once in fifty steps. Longer steps are gaps. A 500
+/// Hz IMU has whole milliseconds and is not rounded. Periods within 0.02 ms of a whole millisecond are not detected.
+/// O(N).
 bool are_rounded(std::span<const std::int64_t> stamps_ns);
 
 /// Returns rounded stamps on the IMU's true period: each on a line fitted within half a second on either side, not

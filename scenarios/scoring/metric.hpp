@@ -11,8 +11,11 @@
 /// description.
 namespace tumble::scenarios {
 
-/// Whether lower is better (errors), higher is better (overlap), a target is best (coverage of an interval, normalised
-/// errors), or values are not ranked (costs, counts, properties of the reference).
+/// Which values of a metric are better:
+/// - lower: errors;
+/// - higher: overlap;
+/// - two_sided: a target is best (coverage of an interval, normalised errors);
+/// - none: values are not ranked (costs, counts, properties of the reference).
 enum class Sense { lower, higher, two_sided, none };
 
 /// Unit of stored values. `share` is in [0, 1]. `verdict` is 0, or 1 for a failure; only its share over draws is

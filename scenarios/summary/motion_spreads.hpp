@@ -32,8 +32,8 @@ inline constexpr const char* kPublishedMotion =
     "the published campaign of the rig (32 tumbles down a hill) and the aim of the scenario hill";
 
 /// Returns one spread per quantity and scenario, scenarios in the order of the draws. For a share of draws ("draws that
-/// clip the gyro") values are 0 or 1, the median is the share, and the quantiles are its 95 % interval. The same holds
-/// for a share of all clipped samples, weighted by each draw's number of them.
+/// clip the gyro") values are 0 or 1. The median is then the share, and the quantiles are its 95 % interval. The same
+/// holds for a share of all clipped samples, weighted by each draw's number of them.
 std::vector<Spread> motion_spreads(std::span<const DrawValues> draws);
 
 }  // namespace tumble::scenarios

@@ -63,10 +63,10 @@ struct Gate {
 };
 
 std::vector<std::string> gate_names(const DataRoot& data);
-/// Loads the gate of a suite, or a file if `name` ends in ".yaml" (with its run in ".csv"). Throws BadInput with file
-/// and line: no such gate (suggests the nearest), another suite, unknown key, kind, method, metric or status, wrong row
-/// length, number out of bounds, or an empty run. `described` are external methods (external_method.hpp) that it may
-/// contain.
+/// Loads the gate of a suite, or a file if `name` ends in ".yaml" (with its run in ".csv"). `described` are external
+/// methods (external_method.hpp) that it may contain. Throws BadInput with file and line: no such gate (suggests the
+/// nearest), another suite, or an empty run. Also throws for an unknown key, kind, method, metric or status, a wrong
+/// row length, or a number out of bounds.
 Gate load_gate(const DataRoot& data, const std::string& name, std::span<const MethodPointer> described = {});
 /// Return policy and run as `load_gate` reads them; numbers round-trip exactly.
 std::string to_yaml(const Gate& gate);

@@ -13,18 +13,20 @@
 
 namespace tumble::baselines {
 
-/// Angular rates from several accelerometers at known positions (gyro-free inertial system), by an extended Kalman
-/// filter.
+/// Estimates angular rates from several accelerometers at known positions (gyro-free inertial system), by an extended
+/// Kalman filter.
 ///
-/// State: rate and angular acceleration, driven by white jerk. Measurements: differences of the specific force between
-/// each auxiliary IMU and the primary, alpha x p + w x (w x p), valid in flight, contact and rest; and the unclipped
-/// gyro axes (`use_gyro`). With the gyro, the accelerometers only need to supply clipped axes. Designed for long fast
-/// rotation and widely spaced accelerometers (projectiles, vehicles): centripetal force grows with the squared rate, so
-/// slow motion is lost in noise and misalignment.
+/// - State: rate and angular acceleration, driven by white jerk.
+/// - Measurements: the difference of the specific force between each auxiliary IMU and the primary, alpha x p + w x (w
+///   x p). It is valid in flight, contact and rest. The unclipped gyro axes are also used (`use_gyro`), so that the
+///   accelerometers only need to supply clipped axes.
+/// - Designed for long fast rotation and widely spaced accelerometers (projectiles, vehicles). Centripetal force grows
+///   with the squared rate, so slow motion is lost in noise and misalignment.
+/// - Not modelled: free flight, bias and misalignment of the accelerometers, correlation between the auxiliary IMUs'
+///   differences.
 ///
 /// With one auxiliary IMU, the rate about the line between both only appears in products with the other axes. Without
-/// any, the filter bridges clipped readings by smoothness only. Not modelled: free flight, bias and misalignment of the
-/// accelerometers, correlation between the auxiliary IMUs' differences.
+/// any, the filter bridges clipped readings by smoothness only.
 class AccelerometerRate {
  public:
   struct Params {

@@ -13,17 +13,20 @@
 
 namespace tumble::baselines {
 
-/// Angular rates from the rotation of the magnetic field: an extended Kalman filter over gyro and magnetometer.
+/// Estimates angular rates from the rotation of the magnetic field: an extended Kalman filter over gyro and
+/// magnetometer.
 ///
-/// State: rate, angular acceleration (white jerk), the field in IMU axes with b' = -w x b, and the sensor's hard iron.
-/// Measurements: unclipped gyro axes and the magnetometer. Field changes along the path (nearby iron) are process
-/// noise, which increases if the field strength differs from the Earth's: the adaptive part of Tan's method. Designed
-/// for bodies in the open that spin fast about an axis across the field (shells, balls). The rate about the field is
-/// not observable and follows from smoothness only; nearby steel resembles rotation.
+/// - State: rate, angular acceleration (white jerk), the field in IMU axes with b' = -w x b, and the sensor's hard
+///   iron.
+/// - Measurements: unclipped gyro axes and the magnetometer.
+/// - Field changes along the path (nearby iron) are process noise. The noise increases if the field strength differs
+///   from the Earth's: the adaptive part of Tan's method.
+/// - Designed for bodies in the open that spin fast about an axis across the field (shells, balls). The rate about the
+///   field is not observable and follows from smoothness only. Nearby steel resembles rotation.
+/// - Not modelled: bandwidth and delay of the magnetometer, soft iron, forces, and the loss of field strength by
+///   averaging over a window ((w dt)^2 / 24, 0.1 % at 15 rad/s and 100 Hz).
 ///
-/// Not modelled: bandwidth and delay of the magnetometer, loss of field strength by averaging over a window ((w dt)^2 /
-/// 24, 0.1 % at 15 rad/s and 100 Hz), soft iron, forces. Without magnetometer the filter bridges clipped readings by
-/// smoothness only.
+/// Without magnetometer the filter bridges clipped readings by smoothness only.
 class MagnetometerRate {
  public:
   struct Params {

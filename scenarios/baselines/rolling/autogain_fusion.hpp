@@ -10,10 +10,10 @@
 
 namespace tumble::baselines {
 
-/// Position of a rolling sphere by the published fusion of rolling with the integrated accelerometer (Zevering et al.,
-/// IEEE MFI 2021, eqs 6-13), on a flat floor. The acceleration integral is gated by the rates, limited to slightly more
-/// than the rolling velocity, and averaged with it. Only its sign matters, so a sphere that rolls without slip loses up
-/// to half of its path. For comparison; the options select between the paper's and the code's variants.
+/// Estimates the position of a rolling sphere on a flat floor by fusing rolling with the integrated accelerometer
+/// (Zevering et al., IEEE MFI 2021, eqs 6-13). The acceleration integral is gated by the rates, limited to slightly
+/// more than the rolling velocity, and averaged with it. Only its sign matters, so a sphere that rolls without slip
+/// loses up to half of its path. For comparison; the options select between the paper's and the code's variants.
 class AutogainFusion {
  public:
   struct Params {

@@ -55,15 +55,20 @@ struct BagWriting {
 /// Returns the stamp of time 0 in a bag [ns since 1970]: `origin_ns`, or the default if it is 0.
 std::int64_t bag_origin_ns(const BagWriting& writing);
 
-/// Writes a recording as a ROS 1 bag (version 2.0, by librosbag), a ROS 2 bag (a folder with metadata.yaml version 5
-/// and a SQLite file of CDR messages with definitions, schema 4 as since Iron), or an MCAP file with profile ros2
-/// (mcap.dev/spec: LZ4 chunks of 1 MiB, indexed, with all checksums). All contain:
+/// Writes a recording as a bag, in one of three formats:
+///
+/// - ROS 1: version 2.0, by librosbag;
+/// - ROS 2: a folder with metadata.yaml (version 5) and a SQLite file of CDR messages with definitions (schema 4, as
+///   since Iron);
+/// - MCAP: a file with profile ros2 (mcap.dev/spec), with indexed LZ4 chunks of 1 MiB and all checksums.
+///
+/// All contain these topics:
 ///
 /// - "/NAME" (sensor_msgs/Imu without attitude; covariance from the data sheet's white noise), with the exported sensor
 ///   name (export_names). The primary IMU's topic is the first of its type;
-/// - "/NAME/points" (sensor_msgs/PointCloud2, stamped at the sweep's start). The fields are those of Velodyne drivers,
-///   x y z intensity ring time, with time as float32 seconds after the stamp (4 ns resolution within 0.1 s), plus
-///   offset_ns in whole nanoseconds. Time fields are omitted for points without times; `sweeps` can choose another
+/// - "/NAME/points" (sensor_msgs/PointCloud2, stamped at the sweep's start), with the fields of Velodyne drivers: x y z
+///   intensity ring time. The time is in float32 seconds after the stamp (4 ns resolution within 0.1 s). The field
+///   offset_ns adds it in whole nanoseconds. Both are omitted for points without times. `sweeps` can choose another
 ///   layout;
 /// - "/truth" (nav_msgs/Odometry of "body" in "world", at most every 5 ms), "/TRACK" and "/TRACK/points";
 /// - "/tf_static": each sensor in "body", from the calibration that the estimator uses;

@@ -14,12 +14,12 @@ namespace tumble::scenarios {
 /// livox_interfaces, which have the same fields.
 bool is_livox_type(const std::string& type);
 
-/// Converts a cloud whose fields have one number each. Throws BadInput that starts with `where`: a layout that does not
-/// fit the data, or big-endian numbers.
+/// Converts a cloud whose fields have one number each. Throws BadInput, with a message that starts with `where`: a
+/// layout that does not fit the data, or big-endian numbers.
 Cloud cloud_of(const ros::PointCloud2& message, const std::string& where);
 
-/// Returns the columns x y z reflectivity tag line, and offset_time_ns since the header's stamp. Throws BadInput that
-/// starts with `where` if the number of points differs from the stated one.
+/// Returns the columns x y z reflectivity tag line, and offset_time_ns since the header's stamp. Throws BadInput, with
+/// a message that starts with `where`, if the number of points differs from the stated one.
 Cloud cloud_of(const ros::LivoxCustomMsg& message, const std::string& where);
 
 /// Returns a digest of all points: equal contents, equal digests. O(bytes).

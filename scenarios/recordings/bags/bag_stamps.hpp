@@ -19,8 +19,8 @@ class BagStamps {
  public:
   explicit BagStamps(StampSource source) : source_(source) {}
 
-  /// Returns the stamp from the chosen source. Throws BadInput that starts with `where` if it does not increase; the
-  /// message also describes the other source.
+  /// Returns the stamp from the chosen source. Throws BadInput, with a message that starts with `where`, if it does not
+  /// increase; the message also describes the other source.
   std::int64_t take(std::int64_t header_ns, std::int64_t record_ns, const std::string& where);
 
   /// Returns true if header stamps are used and the header equals the previous one. With the same content, the message

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Files without a summary, or with one that does not list everything: the data are gone through once.
+// Scans the data of files whose summary is missing or incomplete.
 #include <algorithm>
 
 #include "scenarios/recordings/bags/mcap_file.hpp"

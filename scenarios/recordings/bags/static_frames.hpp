@@ -23,7 +23,7 @@ class StaticFrames {
   /// its own parent.
   void add(const ros::TransformStamped& transform, const std::string& where);
 
-  /// Throws BadInput that starts with `where` if the frames have a cycle.
+  /// Throws BadInput, with a message that starts with `where`, if the frames have a cycle.
   void require_no_ring(const std::string& where) const;
 
   const std::vector<std::string>& remarks() const { return remarks_; }

@@ -22,10 +22,10 @@ struct Cloud {
 
 inline constexpr std::uint64_t kCloudPointsMax = std::uint64_t{1} << 26;
 
-/// Reads the points of a PLY or PCD file of any encoding (by PCL), a legacy VTK text file (vtk_file.hpp), or a KITTI
-/// .bin file (float32 x y z intensity), by file extension. A file without points gives an empty cloud. Checks the
-/// header against the file size before any allocation. Throws BadInput with file and place: missing, another format,
-/// damaged header, truncated, more than 2^26 points.
+/// Reads the points of a file; the extension selects the format. Formats: PLY and PCD of any encoding (by PCL), legacy
+/// VTK text (vtk_file.hpp), and KITTI .bin (float32 x y z intensity). A file without points gives an empty cloud.
+/// Checks the header against the file size before any allocation. Throws BadInput with file and place: missing, another
+/// format, damaged header, truncated, more than 2^26 points.
 Cloud read_cloud(const std::filesystem::path& path);
 
 /// Content of a PLY or PCD header.

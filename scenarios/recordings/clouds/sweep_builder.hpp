@@ -40,7 +40,7 @@ struct PointTimeRule {
 ///
 /// A stated unit is rejected if only another unit fits and the sweeps have at least 100 points. Times are absolute if
 /// they start more than two periods from 0 in any cloud. Of two fields, the one whose name states the unit is used.
-/// Throws BadInput that starts with `where`: a missing or ambiguous field, or no unit that fits.
+/// Throws BadInput, with a message that starts with `where`: a missing or ambiguous field, or no unit that fits.
 PointTimeRule find_point_times(const std::vector<Cloud>& first, std::int64_t period_ns, const SweepReading& reading,
                                const std::string& where);
 
@@ -71,8 +71,9 @@ class SweepBuilder {
   void add(std::optional<std::int64_t> stamp_ns, Cloud cloud, std::string where);
 
   /// Returns the record in the stamps' clock, and adds notes, for example on how point times were read. Without a
-  /// stated period, it is the median step, or the latest offset if larger. Throws BadInput that starts with `where`: no
-  /// points at all, most points beyond twice the data sheet's range, or a single sweep of unknown length.
+  /// stated period, it is the median step, or the latest offset if larger. Throws BadInput, with a message that starts
+  /// with `where`: no points at all, most points beyond twice the data sheet's range, or a single sweep of unknown
+  /// length.
   BuiltSweeps finish(const std::string& where, std::vector<std::string>& notes);
 
  private:

@@ -11,8 +11,9 @@ namespace tumble::scenarios {
 /// SCALARS of one number per point as named columns; skips vertices, vectors, normals, tensors, colours and other
 /// scalars. Private to scenarios/recordings/clouds.
 ///
-/// Throws BadInput with file and line: missing, not such a file, binary, another section, an invalid number, more
-/// points than the file can hold or than 2^26, truncated numbers, or a different number of point data and points.
+/// Throws BadInput with file and line: missing, not such a file, binary, another section, or an invalid number. Also
+/// throws for more points than the file can hold or than 2^26, truncated numbers, or point data of another length than
+/// the points.
 Cloud read_vtk(const std::filesystem::path& path);
 
 }  // namespace tumble::scenarios

@@ -48,8 +48,8 @@ Dialect norlab_dialect();
 
 std::span<const Dialect> all_dialects();
 
-/// Shared layouts: x y z and an intensity of 0 to 255, all float32, ring uint16, and the time since the sweep's start
-/// as float32 seconds ("time", Velodyne's driver) or uint32 nanoseconds ("t", Ouster's).
+/// Shared layouts: x y z and an intensity of 0 to 255, all float32, ring uint16, and the time since the sweep's start.
+/// The time is in float32 seconds ("time", Velodyne's driver) or uint32 nanoseconds ("t", Ouster's).
 SweepLayout velodyne_layout(const SensorFacts&);
 SweepLayout ouster_layout(const SensorFacts&);
 

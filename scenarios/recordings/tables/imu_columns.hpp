@@ -47,7 +47,8 @@ void require_width(const CsvLine& line, std::size_t columns);
 
 /// Determines the unit of stamps without a stated unit (as decimals) from up to a thousand steps: the one of s, ms, us
 /// and ns that gives 10 to 1000 samples per second. At most one fits; other rates must state the unit. `text` starts at
-/// the first sample; lines must have `columns` fields. Throws BadInput that starts with the file if no unit fits.
+/// the first sample; lines must have `columns` fields. Throws BadInput, with a message that starts with the file, if no
+/// unit fits.
 int decimals_by_step(CsvText text, std::size_t stamp, std::size_t columns, const std::string& file);
 
 }  // namespace tumble::scenarios

@@ -11,13 +11,13 @@ namespace tumble::scenarios {
 /// Returns the device without readings.
 sim::ImuRecord without_readings(sim::ImuRecord device);
 
-/// Appends a reading. Throws BadInput that starts with `where`: not finite, beyond 1e6, or a stamp that does not
-/// increase.
+/// Appends a reading. Throws BadInput, with a message that starts with `where`: not finite, beyond 1e6, or a stamp that
+/// does not increase.
 void add_reading(const std::string& where, std::int64_t stamp_ns, const Eigen::Vector3d& rate_rad_s,
                  const Eigen::Vector3d& force_m_s2, sim::ImuRecord& imu);
 
-/// Sets the period to the median step. Throws BadInput that starts with `where`: fewer than two readings, or a probable
-/// wrong unit: a median specific force outside 3 to 30 m/s^2 or a period outside 20 us to 2 s.
+/// Sets the period to the median step. Throws BadInput, with a message that starts with `where`: fewer than two
+/// readings, or a probable wrong unit: a median specific force outside 3 to 30 m/s^2 or a period outside 20 us to 2 s.
 void finish_readings(const std::string& where, AccelUnit unit, sim::ImuRecord& imu);
 
 /// Returns true if readings are in g instead of m/s^2, as some lidar drivers give them: the median is within a tenth of
@@ -43,9 +43,10 @@ struct GravityRotation {
 };
 GravityRotation gravity_rotation(const sim::ImuRecord& imu, RotationWindows windows = RotationWindows::even);
 
-/// Returns a note on the units indicated by gravity (in even, else brisk windows), or on a gyro that is always 0; "" if
-/// the motion does not suffice. Throws BadInput that starts with `where` if gravity indicates the other rate unit
-/// (factor 57.3), or if more than 1 % of the rates exceed twice the stated range (100 rad/s if none is stated).
+/// Returns a note on the units indicated by gravity (in even, else brisk windows), or on a gyro that is always 0.
+/// Returns "" if the motion does not suffice. Throws BadInput, with a message that starts with `where`, if gravity
+/// indicates the other rate unit (factor 57.3). Also throws if more than 1 % of the rates exceed twice the stated range
+/// (100 rad/s if none is stated).
 std::string require_plausible_rates(const std::string& where, const sim::ImuRecord& imu, GyroUnit unit);
 
 /// The same for a format that does not state the unit; insufficient motion is then noted.
