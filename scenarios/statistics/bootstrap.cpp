@@ -93,6 +93,7 @@ Interval MedianBootstrap::interval(std::span<const double> values, double risk) 
   const auto [first, last] = std::equal_range(medians.begin(), medians.end(), median);
   const auto count = static_cast<double>(medians.size());
   const double below = static_cast<double>(first - medians.begin()) + 0.5 * static_cast<double>(last - first);
+  // statistics.md (S2), (S4)
   const boost::math::normal normal;
   const double z0 = quantile(normal, std::clamp(below / count, 0.5 / count, 1.0 - 0.5 / count));
   const double a = acceleration(sorted);

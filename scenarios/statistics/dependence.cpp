@@ -58,6 +58,7 @@ std::vector<std::size_t> class_ends(const CompletePairs& sorted, std::size_t wan
   return ends;
 }
 
+/// statistics.md (S23)
 Interval mean_interval(std::span<const double> values) {
   const auto n = static_cast<double>(values.size());
   const double middle = mean(values);

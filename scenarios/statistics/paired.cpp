@@ -59,6 +59,7 @@ double exact_chance(const SignedRanks& ranks, std::size_t sum) {
   return std::min(1.0, tail);
 }
 
+/// statistics.md (S6)
 double normal_chance(const SignedRanks& ranks, std::size_t sum) {
   const auto n = static_cast<double>(ranks.doubled.size());
   const double middle = n * (n + 1.0) / 4.0;
