@@ -31,8 +31,8 @@ class StaticFrames {
   /// Returns the body's frame: "body", else "base_link", else "".
   std::string body() const;
 
-  /// Returns T_AB of two connected frames, else empty. Throws BadInput if a transform between them is invalid, and,
-  /// starting with `where`, for a cycle of frames.
+  /// Returns T_AB of two connected frames, else empty. Throws BadInput if a transform between them is invalid, or if the
+  /// frames have a cycle (message starts with `where`).
   std::optional<Eigen::Isometry3d> pose(const std::string& frame_A, const std::string& frame_B,
                                         const std::string& where) const;
 
