@@ -35,9 +35,8 @@ class AnswerBounds {
   void require_rates(const std::vector<RateState>& rates, const Place& place) const;
   void require_poses(const std::vector<PoseState>& poses, const Place& place) const;
   void require_attitudes(const std::vector<AttitudeState>& attitudes, const Place& place) const;
-  /// Throws BadInput if the stamps are probably in another unit. This needs at least ten stamps outside the recording
-  /// whose span matches another unit. A span of at most a hundredth of the recording is rejected too. `unit`: the
-  /// expected unit.
+  /// Throws BadInput if ten or more stamps are probably not in `unit`. Their span is then below a hundredth of the
+  /// recording, or above a hundred times the recording while matching another unit.
   void require_unit(std::span<const double> stamps_s, const char* unit, const Place& place) const;
   void require_unit(const Estimate& estimate, const char* unit, const Place& place) const;
   /// Checks the pose and trajectory of each sweep, and the points of the map, with the same bounds.

@@ -78,7 +78,7 @@ struct SweepOptions {
   const std::atomic<bool>* stop = nullptr;  ///< set to stop after storing completed results
   std::function<void(const SweepProgress&)> on_progress;
   std::vector<OutcomeStatus> again;  ///< repeat rows with these statuses: crashed, timeout, killed
-  Keep keep;                         ///< which draws are kept next to the database; unset: the database's rule
+  Keep keep;                         ///< which draws are kept next to the database; none: kept files are unchanged
   RecordingInfo versions;            ///< versions of program and engine, for kept recordings
   /// Simulates draws without lidars if their built-in methods read none. Estimates and scores are the same, but the
   /// recording's digest differs. Not with `keep`.
