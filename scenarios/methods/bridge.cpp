@@ -14,7 +14,7 @@ namespace tumble::scenarios::bridge {
 
 namespace {
 
-// sim's bit -> the estimator's flag, written out so that neither side can move alone
+// Maps the bits of sim to the estimator's flags explicitly, so that a change on one side cannot pass unnoticed.
 constexpr std::array<std::pair<int, ClipFlag>, 6> kClipBits = {
     {{0, kClipGyroX}, {1, kClipGyroY}, {2, kClipGyroZ}, {3, kClipAccelX}, {4, kClipAccelY}, {5, kClipAccelZ}}};
 
@@ -26,7 +26,7 @@ std::uint8_t clip_flags(std::uint8_t sim_bits) {
   return flags;
 }
 
-// Stamps of another unit are a thousand times off; a device that is read more seldom than it says is not.
+// Stamps in a wrong unit differ at least 1000-fold; slow reading of a device stays below this factor.
 constexpr double kPeriodsMax = 20.0;
 
 Status check_period(const sim::ImuRecord& record, std::span<const ImuSample> samples) {
@@ -37,7 +37,8 @@ Status check_period(const sim::ImuRecord& record, std::span<const ImuSample> sam
           step_s, step_s < stated_s ? stated_s / kPeriodsMax : stated_s * kPeriodsMax};
 }
 
-// what every method may rely on: finite, of what its device can read, rising at its period, without holes
+// Checks what every method assumes: finite readings within the device's range, increasing stamps at the stated period,
+// no gaps.
 Status check_stream(const sim::ImuRecord& record, std::span<const ImuSample> samples) {
   if (samples.empty()) return {Trouble::empty, "time_ns", 0.0, 1.0};
   if (const Status status = check_samples(samples, kGapMaxS); !status.ok()) return status;
@@ -95,7 +96,7 @@ Status unclipped_samples(const sim::ImuRecord& record, const sim::ImuTruth& trut
   twin.gyro_rad_s = truth.gyro_unclipped_rad_s;
   twin.accel_m_s2 = truth.accel_unclipped_m_s2;
   twin.clip_flags.clear();
-  twin.stated_gyro_range_rad_s = twin.stated_accel_range_m_s2 = 0.0;  // without a rail there is no range
+  twin.stated_gyro_range_rad_s = twin.stated_accel_range_m_s2 = 0.0;  // unclipped readings have no range
   return imu_samples(twin, out);
 }
 
@@ -117,7 +118,7 @@ std::size_t sweep_count(const sim::LidarRecord& record) {
   const std::size_t sweeps = record.sweep_start_ns.size();
   const std::size_t points = record.position_L_m.size();
   const std::string place = "lidar '" + record.name + "'";
-  // a lidar without sweeps may come without the closing index
+  // A lidar without sweeps may lack the closing index.
   if (sweeps == 0 && record.sweep_first.empty()) return 0;
   require_length(place, "sweep_first", record.sweep_first.size(), sweeps + 1);
   require_length(place, "offset_ns", record.offset_ns.size(), points);

@@ -27,14 +27,14 @@ struct TimedAttitude {
   Eigen::Quaterniond q;
 };
 
-/// Two attitudes and the turn between them that the gyro measured, IMU axes.
+/// Two attitudes and the measured rotation between them, IMU axes.
 struct TurnPair {
   Eigen::Quaterniond before, after;
   Eigen::Quaterniond said;
   double angle_rad;
 };
 
-/// What a file may mean by its quaternions.
+/// Possible quaternion conventions of a file.
 enum class Written { as_stated, w_first, inverse };
 
 std::vector<TimedAttitude> attitudes_of(const Estimate& estimate) {
@@ -46,7 +46,7 @@ std::vector<TimedAttitude> attitudes_of(const Estimate& estimate) {
   return out;
 }
 
-/// None beyond the readings, across a hole, or where a reading is at its rail.
+/// Integrates the gyro; empty outside the readings, across a gap, or with a saturated reading.
 std::optional<Eigen::Quaterniond> measured_turn(const sim::ImuRecord& imu, std::int64_t from_ns, std::int64_t to_ns) {
   const std::vector<std::int64_t>& ends = imu.time_ns;
   auto at = static_cast<std::size_t>(std::ranges::upper_bound(ends, from_ns) - ends.begin());
@@ -83,7 +83,7 @@ Eigen::Quaterniond as_meant(const Eigen::Quaterniond& read, Written written) {
   return written == Written::w_first ? Eigen::Quaterniond(read.x(), read.y(), read.z(), read.w()) : read;
 }
 
-/// IMU coordinates to those of the frame; none where the recording has no such sensor.
+/// Returns the rotation from IMU to frame coordinates; empty if the recording lacks the sensor.
 std::optional<Eigen::Quaterniond> q_AI(Frame frame, const sim::Sensors& sensors) {
   const Eigen::Quaterniond q_BI(sensors.imus.front().T_BI.linear());
   if (frame == Frame::imu) return Eigen::Quaterniond::Identity();
@@ -92,7 +92,7 @@ std::optional<Eigen::Quaterniond> q_AI(Frame frame, const sim::Sensors& sensors)
   return Eigen::Quaterniond(sensors.lidars.front().T_BL.linear()).conjugate() * q_BI;
 }
 
-/// Median difference as a share of the median rotation.
+/// Returns the median difference divided by the median rotation.
 double difference(const std::vector<TurnPair>& pairs, Written written, const Eigen::Quaterniond& q_AI) {
   std::vector<double> differences, angles;
   for (const TurnPair& pair : pairs) {
@@ -124,7 +124,7 @@ std::string turning_complaint(const Estimate& estimate, const sim::Sensors& sens
   if (!(off > kTurnsOtherwise)) return "";
   double least = kTurnsAsSaid;
   std::string found;
-  // the frame as stated first, which wins where two are mounted alike
+  // The stated frame comes first and wins if two sensors have equal orientation.
   for (const Frame frame : {estimate.frame, Frame::imu, Frame::lidar, Frame::body}) {
     const auto mounting = q_AI(frame, sensors);
     if (!mounting) continue;

@@ -42,7 +42,7 @@ double mean(std::span<const double> values) {
   return std::accumulate(values.begin(), values.end(), 0.0) / static_cast<double>(values.size());
 }
 
-/// Ends of the classes of sorted pairs, as many as are wanted at most. What has one x is never parted.
+/// Returns the ends of at most `wanted` classes of sorted pairs. Equal x are never separated.
 std::vector<std::size_t> class_ends(const CompletePairs& sorted, std::size_t wanted) {
   const std::size_t n = sorted.size();
   std::vector<std::size_t> distinct;
@@ -106,7 +106,7 @@ Correlation rank_correlation(std::span<const double> x, std::span<const double> 
   Correlation out;
   if (pairs.size() < kIntervalMin) return out;
   const std::vector<double> a = mean_ranks(column(pairs, &Pair::first)), b = mean_ranks(column(pairs, &Pair::second));
-  const double middle = mean(a);  // of both: the mean of all ranks
+  const double middle = mean(a);  // same for both: the mean of all ranks
   double ab = 0.0, aa = 0.0, bb = 0.0;
   for (std::size_t i = 0; i < a.size(); ++i) {
     ab += (a[i] - middle) * (b[i] - middle);

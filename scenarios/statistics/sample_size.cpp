@@ -26,17 +26,17 @@ double normal_quantile(double share) {
   return quantile(boost::math::normal(), share);
 }
 
-/// Signs all alike, of as few differences as can be: 2 / 2^n <= risk.
+/// Returns the smallest number of differences that can reach the risk: 2 / 2^n <= risk, with equal signs.
 double fewest(double risk) {
   return std::ceil(1.0 - std::log2(risk));
 }
 
-/// Share of the pairs of differences whose sum is positive, half of those whose sum is zero: statistics.md (S9).
+/// Returns the share of pairs of differences with a positive sum, counting zero sums half: statistics.md (S9).
 double positive_sums(std::vector<double> differences) {
   std::sort(differences.begin(), differences.end());
   double count = 0.0;
   for (auto i = differences.begin(); i != differences.end(); ++i) {
-    // those after it alone, so that no pair counts twice
+    // only later differences, so that each pair counts once
     const auto [first, last] = std::equal_range(i + 1, differences.end(), -*i);
     count += static_cast<double>(differences.end() - last) + 0.5 * static_cast<double>(last - first);
   }

@@ -32,7 +32,7 @@ void take_column(const pcl::PCLPointCloud2& cloud, std::size_t offset, std::vect
   }
 }
 
-/// False for a type that is no number.
+/// Returns false for a type that is not a number.
 bool take_field(const pcl::PCLPointCloud2& cloud, const pcl::PCLPointField& field, std::vector<double>& out) {
   using Field = pcl::PCLPointField;
   switch (field.datatype) {
@@ -71,7 +71,7 @@ Cloud to_columns(const pcl::PCLPointCloud2& cloud, std::size_t points) {
   out.points = points;
   for (const pcl::PCLPointField& field : cloud.fields) {
     std::vector<double> column(points);
-    // several numbers in one field, and bytes without meaning ("_"), are nothing that a sweep knows
+    // skip fields of several numbers and padding ("_")
     if (field.count > 1 || field.name == "_" || !take_field(cloud, field, column)) continue;
     out.names.push_back(plain_name(field.name));
     out.columns.push_back(std::move(column));
@@ -79,7 +79,7 @@ Cloud to_columns(const pcl::PCLPointCloud2& cloud, std::size_t points) {
   return out;
 }
 
-/// Whether a word is a number and nothing else: "nan" and "inf" are, "0,5" and "x" are not.
+/// Returns true if the whole word is a number: "nan" and "inf" are, "0,5" and "x" are not.
 bool is_number_of_pcl(std::string_view word) {
   if (word.starts_with('+')) word.remove_prefix(1);
   double value = 0.0;
@@ -87,8 +87,8 @@ bool is_number_of_pcl(std::string_view word) {
   return error != std::errc::invalid_argument && end == word.data() + word.size();
 }
 
-/// The library reads a word up to where it stops being a number, and 0 or NaN where it is none: the words of a file
-/// written as text are held to be numbers, as many in a line as the header says.
+/// Checks that all words of a text file are numbers, as many per line as the header states. The library silently reads
+/// a prefix, or 0 or NaN.
 void require_numbers(const std::filesystem::path& path, const CloudHeader& header) {
   std::ifstream stream(path, std::ios::binary);
   std::string text(static_cast<std::size_t>(header.header_bytes), '\0');

@@ -18,7 +18,7 @@ std::string ending_of(const std::string& format) {
   throw BadInput("sweeps of format '" + format + "' are not read: ply, pcd, vtk or kitti");
 }
 
-/// The file of stamps that is asked for, or lies beside the sweeps; empty when there is none.
+/// Returns the requested stamp file, or one next to the sweeps; empty if there is none.
 path times_file(const SweepSource& source, const std::vector<path>& files) {
   if (!source.times.empty()) return source.times;
   for (const std::string& name : {stem_of(files.front()) + "_times.txt", std::string("times.txt")}) {
@@ -27,7 +27,7 @@ path times_file(const SweepSource& source, const std::vector<path>& files) {
   return {};
 }
 
-/// A stamp per file; empty when nothing tells them.
+/// Returns one stamp per file; empty if unknown.
 std::vector<std::int64_t> stamps_of(const SweepSource& source, const std::vector<path>& files) {
   const path file = times_file(source, files);
   if (file.empty()) return stamps_in_names(files);

@@ -8,7 +8,7 @@ namespace tumble::scenarios {
 
 namespace {
 
-/// Times of a KITTI file's poses when there are no sweeps to give them.
+/// Returns times for a KITTI file's poses without sweeps.
 std::vector<std::int64_t> own_times(const ReferenceSource& source) {
   if (!source.times.empty()) return read_stamps(source.times);
   if (source.steady_ns <= 0) {
@@ -29,7 +29,7 @@ std::vector<ReferencePose> poses_of(const ReferenceSource& source, const std::ve
   throw BadInput("poses of format '" + source.format + "' are not read: tum, kitti or odometry");
 }
 
-/// From poses of A to poses of B.
+/// Converts poses of A to poses of B.
 void move_to(std::vector<ReferencePose>& poses, const Eigen::Isometry3d& T_AB) {
   if (T_AB.matrix().isIdentity(0.0)) return;
   const Eigen::Quaterniond q_AB(T_AB.linear());
