@@ -23,7 +23,7 @@ bool is_sphere(const scenarios::RunResult& run) {
   return run.recording.sensors.sphere_radius_m > 0.0;
 }
 
-/// The map of the first method that has one among those that `wanted` names; nothing when none has.
+/// Adds the map of the first method that has a map and fulfils `wanted`; adds nothing if there is none.
 void add_map(const scenarios::RunResult& run, const sim::Surface& surface, bool (*wanted)(const scenarios::MethodInfo&),
              std::vector<ErrorMap>& maps) {
   for (std::size_t i = 0; i < run.methods.size(); ++i) {
@@ -36,7 +36,7 @@ void add_map(const scenarios::RunResult& run, const sim::Surface& surface, bool 
   }
 }
 
-/// What the baseline makes of the map, beside what ours makes of it.
+/// Shows the map of the baseline next to the map of our method.
 void add_maps(const scenarios::RunResult& run, Example& example) {
   if (!run.surface) return;
   std::vector<ErrorMap> maps;
@@ -59,7 +59,7 @@ void add_maps(const scenarios::RunResult& run, Example& example) {
                               sim::png_bytes(map_picture(maps, run.recording.truth, 640, 480))});
 }
 
-/// Of the example's moving picture: long enough to see the robot turn, and a few hundred kB.
+/// Length of the animation [s]: long enough to see the robot turn, and a few hundred kB.
 constexpr double kMoving_s = 2.0;
 
 void add_moving(const Scene& scene, Example& example) {
@@ -86,7 +86,7 @@ void add_path(const scenarios::RunResult& run, const RunPaths& paths, int width,
                          {}};
   for (std::size_t i = 0; i < paths.methods.size(); ++i)
     picture.legend.emplace_back(paths.methods[i], static_cast<int>(i));
-  // spheres that stand close together hide their path
+  // many closely spaced spheres would hide the path
   picture.png = sim::png_bytes(scene_picture(scene_of(run, paths), is_sphere(run) ? 3 : 8, width, height));
   example.pictures.push_back(std::move(picture));
 }
@@ -107,7 +107,7 @@ void add_plot(Plot plot, Example& example) {
   if (!plot.lines.empty()) example.plots.push_back(std::move(plot));
 }
 
-/// What every example says of its draw, and its replay.
+/// Fills the fields that every example has, and generates the replay.
 Example replayed(const scenarios::RunResult& run) {
   Example example;
   example.scenario = run.scenario;

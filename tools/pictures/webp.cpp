@@ -19,7 +19,7 @@ struct WebpAnimation::Impl {
 
 namespace {
 
-/// A picture in libwebp's hands.
+/// RAII wrapper of libwebp's picture.
 class WebpPicture {
  public:
   explicit WebpPicture(const sim::Picture& picture) {
@@ -52,7 +52,7 @@ WebpAnimation::WebpAnimation(int width, int height, float quality) : impl_(std::
   WebPAnimEncoderOptions options;
   if (WebPAnimEncoderOptionsInit(&options) == 0 || WebPConfigInit(&impl_->config) == 0)
     throw std::runtime_error("libwebp is of another version than its headers");
-  // one thread and no measure of time: the bytes follow from the pictures alone
+  // one thread and no time limit, so that equal pictures give equal bytes
   impl_->config.thread_level = 0;
   impl_->config.quality = quality;
   impl_->encoder = WebPAnimEncoderNew(width, height, &options);
