@@ -16,7 +16,7 @@ namespace {
 
 constexpr int kHeight_px = 20, kPad_px = 7;
 
-/// Room for a text of 11 px Verdana or what stands in for it; `textLength` makes the letters fit.
+/// Width of a text in 11 px Verdana or its substitute. The SVG attribute `textLength` fits the letters to this width.
 int width_px(const std::string& text) {
   return static_cast<int>(std::lround(6.6 * static_cast<double>(character_count(text))));
 }

@@ -48,7 +48,7 @@ std::string row_html(const FailureComparison& row) {
          finding_cell(row.finding) + "</tr>\n";
 }
 
-/// A folded table for each run of rows of one section.
+/// Writes one folded table per section.
 template <class Row>
 std::string folded_tables(const std::vector<Row>& rows, const std::vector<std::string>& columns) {
   std::string out;

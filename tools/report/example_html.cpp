@@ -34,7 +34,7 @@ std::string play_html(const ShownExample& shown) {
          "and the gyro over time.";
 }
 
-/// Wide plots in a row of their own, the others two in a row.
+/// Places wide plots in their own row and the others two per row.
 std::string plots_html(const Example& example, std::vector<Figure>& figures) {
   std::string out;
   bool in_pair = false;
@@ -74,7 +74,8 @@ std::string moving_html(const ShownExample& shown) {
   const bool has_picture = !example.pictures.empty();
   const std::string still = has_picture ? html::png_address(example.pictures.front().png) : "";
   std::string out = "<figure class=\"moving\"><picture>";
-  // the browser's own choice, without a script; where there is nothing that stands, nothing is shown in its place
+  // the browser selects still or animated picture without a script; without a still picture the animation is always
+  // shown
   if (!example.moving.empty() && has_picture) {
     out += "<source media=\"print, (prefers-reduced-motion: reduce)\" srcset=\"" + still + "\">";
   }

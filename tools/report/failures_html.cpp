@@ -15,7 +15,7 @@ namespace {
 
 using html::escaped;
 
-/// So many failed draws stand open, the others are folded.
+/// This many failed draws are open; further ones are folded.
 constexpr std::size_t kOpenDraws = 8;
 
 const ShownExample* example_of(const PageContent& content, const FailedDraw& draw) {
@@ -25,7 +25,7 @@ const ShownExample* example_of(const PageContent& content, const FailedDraw& dra
   return shown == content.examples.end() ? nullptr : &*shown;
 }
 
-/// To what is shown of the draw among the motions, and to its replay.
+/// Links to the example of the draw and to its replay.
 std::string links_html(const ShownExample* shown) {
   if (shown == nullptr) return "";
   std::string out;

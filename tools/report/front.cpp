@@ -21,12 +21,12 @@ using scenarios::Interval;
 using scenarios::Section;
 using scenarios::Summary;
 
-/// So many contests stand open, the others are folded.
+/// This many contests are open; further ones are folded.
 constexpr std::size_t kShownContests = 6;
-/// So many scenarios are named in the first sentence.
+/// Maximum number of scenarios that the first sentence names.
 constexpr std::size_t kNamedScenarios = 4;
 
-/// "hill, roll and slip", or their number where they are many.
+/// Returns for example "hill, roll and slip", or the count if there are many.
 std::string names_text(const std::vector<std::string>& all, const char* many) {
   if (all.size() > kNamedScenarios) return fmt::format("{} {}", all.size(), many);
   std::string names;
@@ -34,7 +34,7 @@ std::string names_text(const std::vector<std::string>& all, const char* many) {
   return names;
 }
 
-/// "8 draws each of hill, roll and slip".
+/// Returns for example "8 draws each of hill, roll and slip".
 std::string draws_text(const Summary& summary) {
   std::int64_t least = 0, most = 0;
   for (const auto& [scenario, draws] : summary.draws) {
@@ -47,7 +47,7 @@ std::string draws_text(const Summary& summary) {
                        : fmt::format("{} to {} draws each of {}", least, most, names);
 }
 
-/// What the methods were given, and what is taken for the truth.
+/// Describes the input data of the methods and the source of the truth.
 std::string data_text(const PageContent& content) {
   if (!content.recorded)
     return draws_text(content.summary) +
@@ -56,7 +56,7 @@ std::string data_text(const PageContent& content) {
          "), and is judged by the truth or the reference that a recording holds.";
 }
 
-/// What the tasks of the contests are, in words.
+/// Describes the tasks of the contests.
 std::string tasks_text(const std::vector<ContestResult>& results) {
   using scenarios::Kind;
   const std::pair<Kind, const char*> tasks[] = {{Kind::rate, "rate, how fast it turns"},
@@ -71,7 +71,7 @@ std::string tasks_text(const std::vector<ContestResult>& results) {
   return out;
 }
 
-/// Of those that need no truth.
+/// Counts the methods that need no truth.
 std::size_t method_count(const Summary& summary) {
   std::set<std::pair<scenarios::Kind, std::string>> names;
   for (const Section& section : summary.sections) {
@@ -82,7 +82,7 @@ std::size_t method_count(const Summary& summary) {
   return names.size();
 }
 
-/// The interval on an axis from -100 % to +100 %; what lies beyond ends at its border.
+/// Draws the interval on an axis from -100 % to +100 %; values beyond are clipped at the border.
 std::string bar_html(const ContestResult& result) {
   if (!std::isfinite(result.percent)) return "<span class=\"bar none\"></span>";
   const auto at = [](double percent) { return 50.0 + 0.5 * std::clamp(percent, -100.0, 100.0); };
@@ -105,12 +105,12 @@ std::string difference_text(const ContestResult& result) {
   }
   const std::string value = styled_value(result.row.metric, own.value, true);
   const std::string sign = own.value > 0.0 ? "+" : "";
-  // an empty bracket tells a reader nothing
+  // an interval without any finite end is left out
   if (!std::isfinite(own.low) && !std::isfinite(own.high)) return sign + value;
   return sign + value + " " + styled_interval(result.row.metric, own);
 }
 
-/// "0.894 rad/s, 37 times as much".
+/// Returns for example "0.894 rad/s, 37 times as much".
 std::string baseline_text(const ContestResult& result) {
   const std::string value = styled_value(result.row.metric, result.row.against_median, true);
   if (!(result.times >= 1.5)) return value;
@@ -132,7 +132,7 @@ std::string contest_html(const ContestResult& result, std::size_t comparisons) {
       escaped(certainty_text(result, comparisons)));
 }
 
-/// What each method is; folded.
+/// Folded descriptions of the methods.
 std::string methods_html(const std::vector<Fact>& methods) {
   if (methods.empty()) return "";
   std::string out = "<details class=\"methods\"><summary>What the methods are</summary><dl class=\"facts\">";
@@ -156,8 +156,8 @@ std::string contests_html(const std::vector<ContestResult>& results, std::size_t
   return out + "</section>\n";
 }
 
-/// A typical draw before one that failed, one of these results before others, a picture that moves before one that
-/// stands.
+/// Chooses an example by priority: typical draws before failed ones, examples of these results before others,
+/// animations before still pictures.
 const ShownExample* example_to_show(const std::vector<ShownExample>& examples) {
   const ShownExample* best = nullptr;
   const auto rank = [](const ShownExample& shown) {

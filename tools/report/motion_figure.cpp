@@ -17,7 +17,7 @@ using scenarios::MotionCloud;
 using scenarios::MotionMap;
 using scenarios::PublishedExtreme;
 
-/// Beside the colours, which are fewer than scenarios may be.
+/// Symbols in addition to colours, because there may be more scenarios than colours.
 constexpr std::array kSymbols = {"circle", "square", "diamond", "triangle-up", "cross", "x", "star"};
 
 json density(const MotionMap& map) {
@@ -29,7 +29,7 @@ json density(const MotionMap& map) {
       each.push_back(five_digits(100.0 * map.share[row * MotionMap::kCells + i]));
     rows.push_back(std::move(each));
   }
-  // what lies below the first contour has the colour of half a step: none
+  // values below the first contour are transparent
   return {
       {"type", "contour"},
       {"name", "all draws"},
@@ -64,7 +64,7 @@ json points(const MotionCloud& cloud, std::size_t index) {
           {"y", std::move(y)}};
 }
 
-/// From the axes' lower ends to the extremes; a line where the rate is not stated.
+/// Outline from the lower ends of the axes to the extremes; a line if no rate is published.
 json outline(const PublishedExtreme& extreme, const MotionMap& map, bool dotted) {
   const double low_rate = map.rate_rad_s.front(), low_force = map.force_m_s2.front();
   json x = json::array({low_rate}), y = json::array({extreme.force_m_s2});

@@ -25,7 +25,7 @@ using html::escaped;
 using scenarios::Section;
 using scenarios::Summary;
 
-/// A part of the page that the list of contents names.
+/// A section of the page with an entry in the table of contents.
 struct Part {
   const char* id;
   const char* title;
@@ -42,7 +42,8 @@ std::string draws_html(const Summary& summary) {
   return out + "</tbody></table></div>\n";
 }
 
-/// Why draws were rejected: the instant at the end of a reason is left out, so that equal reasons count together.
+/// Lists the reasons why draws were rejected. The instant at the end of a reason is removed, so that equal reasons are
+/// counted together.
 std::string rejected_html(const std::vector<scenarios::RejectedDraw>& rejected) {
   std::map<std::pair<std::string, std::string>, std::vector<std::uint64_t>> reasons;
   for (const scenarios::RejectedDraw& draw : rejected) {
@@ -57,7 +58,7 @@ std::string rejected_html(const std::vector<scenarios::RejectedDraw>& rejected) 
   return out.empty() ? "" : "<p>Rejected, and why:</p><ul>" + out + "</ul>\n";
 }
 
-/// Adds what it shows to the figures of the page.
+/// Appends its plots to the figures of the page.
 std::string motions_html(const PageContent& content, std::vector<Figure>& figures) {
   std::string out;
   Figure map = motion_figure(content.motion_map);
@@ -119,7 +120,7 @@ std::string commands_html(const std::vector<Fact>& commands) {
   return out;
 }
 
-/// In the order of the page; those that say nothing are left out.
+/// Returns the sections in the order of the page, without empty ones.
 std::vector<Part> parts_of(const PageContent& content, std::vector<Figure>& figures) {
   std::vector<Part> parts;
   const auto add = [&](const char* id, const char* title, std::string html) {
@@ -154,7 +155,7 @@ std::string figures_json(const std::vector<Figure>& figures) {
   return html::script_json("[" + all + "]");
 }
 
-/// Nothing but what the page carries: scripts and styles within it, pictures as data.
+/// Allows only content that is embedded in the page: scripts, styles, and pictures as data.
 constexpr const char* kPolicy =
     "<meta http-equiv=\"Content-Security-Policy\" content=\"default-src 'none'; img-src data: blob:; style-src "
     "'unsafe-inline'; script-src 'unsafe-inline'\">";

@@ -44,7 +44,7 @@ std::vector<Fact> versions(const scenarios::Results& results, const Summary& sum
   return out;
 }
 
-/// What each method of the results is.
+/// Describes each method of the results.
 std::vector<Fact> methods_told(const Summary& summary) {
   std::vector<Fact> out;
   for (const scenarios::Section& section : summary.sections) {
@@ -58,7 +58,7 @@ std::vector<Fact> methods_told(const Summary& summary) {
   return out;
 }
 
-/// Whether a sweep by this build, over the data that are found here, would go on with them.
+/// True if a sweep by this build, with the data found on this machine, would continue these results.
 bool are_of_here(const scenarios::Results& results, const ReportOptions& options) {
   const std::string made_by = results.note("build"), made_of = results.note("data");
   return (made_by.empty() || made_by == scenarios::build_id()) &&
@@ -82,7 +82,7 @@ std::vector<Fact> commands(const scenarios::Results& results, const ReportOption
   return out;
 }
 
-/// The headline metrics of each kind but verdicts, whose share is in the table.
+/// Plots the headline metrics of each kind. Verdicts are left out, because the table shows their share.
 std::vector<Figure> errors_of_all_draws(const Summary& summary) {
   std::vector<Figure> figures;
   for (const Kind kind : {Kind::rate, Kind::attitude, Kind::position, Kind::slam}) {
@@ -96,8 +96,9 @@ std::vector<Figure> errors_of_all_draws(const Summary& summary) {
   return figures;
 }
 
-/// Whether an example is of these results: made of the rows that they hold, and its recording, simulated once more, of
-/// their digest, as it is or without its lidars, which a sweep of methods that read none leaves out.
+/// True if the example belongs to these results: the database holds its rows, and a new simulation of its recording has
+/// the same digest. The digest may be the one without lidars, because sweeps of methods that need no lidar leave them
+/// out.
 bool is_of(const scenarios::Results& results, const Example& example) {
   if (example.made_of != scenarios::digest_of_rows(results, {example.scenario, example.seed})) return false;
   const std::vector<scenarios::Outcome> rows = results.outcomes_of(example.scenario, example.seed);
@@ -107,7 +108,8 @@ bool is_of(const scenarios::Results& results, const Example& example) {
   });
 }
 
-/// Why there are no pictures, and what makes them: of a sweep, which adds to results of its own build and data alone.
+/// States why there are no pictures, and which command creates them. Only a sweep adds pictures, and only to results of
+/// its own build and data.
 std::string how_to_get_pictures(const scenarios::Results& results, const ReportOptions& options) {
   const std::string none =
       fmt::format("No pictures of single draws: there are none in {}", examples_folder(options.database).string());
@@ -133,7 +135,7 @@ std::string how_to_get_pictures(const scenarios::Results& results, const ReportO
       scenarios::shell_word(options.database.string()));
 }
 
-/// From the page to a replay beside the database, as an address.
+/// Returns the URL, relative to the page, of a replay next to the database.
 std::string replay_address(const ReportOptions& options, const Example& example) {
   if (example.replay.empty()) return "";
   const std::filesystem::path replay = examples_folder(options.database) / example.replay;
@@ -150,7 +152,7 @@ void add_examples(const scenarios::Results& results, const ReportOptions& option
     std::string replay = replay_address(options, example);
     content.examples.push_back({std::move(example), of_these, std::move(replay)});
   }
-  // what is wrong with the pictures must not cost the reader the scores
+  // errors of the pictures must not hide the scores
   for (const std::string& what : found.unreadable)
     content.warnings.push_back("Pictures of single draws that cannot be shown: " + what);
   if (!found.unreadable.empty()) return;

@@ -26,13 +26,13 @@ std::string median_text(const Sensitivity& row, double value) {
   return styled_value(row.metric, value, true);
 }
 
-/// A bar from 0 to 1 beside the number.
+/// Draws a bar from 0 to 1 next to the number.
 std::string strength_cell(double strength) {
   return fmt::format("<td class=\"number\"><span class=\"strength\" style=\"width:{:.0f}px\"></span>{:.2f}</td>",
                      60.0 * strength, strength);
 }
 
-/// What the score is where the number lies, drawn.
+/// Draws the score as a function of the number.
 std::string dependence_cell(const Sensitivity& row, const Influence& each) {
   const bool is_share = row.metric == kFailure || scenarios::metric_info(row.metric).unit == scenarios::Unit::verdict;
   const auto told = [&](const scenarios::DependenceClass& part) {
@@ -68,7 +68,7 @@ std::string row_html(const Sensitivity& row) {
   return "<tr>" + cell(row.method) + cell(row.metric) + "<td colspan=\"6\">none is told from chance</td></tr>\n";
 }
 
-// two classes are the least that show a way
+// two classes are the minimum for a trend
 constexpr auto kToldFrom = static_cast<std::int64_t>(scenarios::kSensitivityDrawsMin);
 constexpr auto kDrawnFrom = static_cast<std::int64_t>(2 * scenarios::kDependenceDrawsMin);
 
