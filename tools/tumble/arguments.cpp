@@ -55,7 +55,7 @@ Shard parse_shard(const std::string& text) {
 
 bool shard_seeds(const Shard& shard, std::uint64_t& first, std::uint64_t& last) {
   if (shard.count == 1) return true;
-  // of 2^64 seeds the number does not fit, the difference of the ends does
+  // 2^64 seeds overflow a counter, but the difference between the ends fits
   const std::uint64_t span = last - first, rest = span % shard.count + 1;
   const std::uint64_t length = span / shard.count + rest / shard.count, longer = rest % shard.count;
   const std::uint64_t before = shard.index - 1;
@@ -113,7 +113,7 @@ std::uint64_t seed_of(const scenarios::Scenario& scenario, const std::string& te
   throw BadInput("--seed is missing: which draw of scenario '" + scenario.name + "'");
 }
 
-// BadInput passes through CLI11 with its one line
+// CLI11 passes BadInput on unchanged.
 std::function<void(const std::string&)> a_scenario(const Session& session) {
   return [&session](const std::string& text) { scenarios::load_scenario(session.data(), text); };
 }

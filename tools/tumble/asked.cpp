@@ -29,7 +29,7 @@ scenarios::Margin parse_margin(const std::string& option, const std::string& tex
 
 Question parse_question(const std::string& text, double risk, const scenarios::Suite& suite) {
   std::vector<std::string> words;
-  std::stringstream stream(text + ":");  // what ends in a colon has an empty word behind it
+  std::stringstream stream(text + ":");  // the extra colon makes std::getline return an empty word after a final colon
   for (std::string word; std::getline(stream, word, ':');) words.push_back(word);
   if (words.size() < 3 || words.size() > 4 || std::find(words.begin(), words.end(), "") != words.end())
     throw BadInput("--until is '" + text + "', must be A:B:METRIC or A:B:METRIC:MARGIN, as in rate/tumble:rate/raw:" +

@@ -42,7 +42,7 @@ struct BenchOptions {
   bool store = false;
 };
 
-/// Methods of one kind, since a suite is of one.
+/// All methods must have the same kind, because a suite has one kind.
 std::vector<scenarios::MethodPointer> methods_of(const BenchOptions& options) {
   std::vector<scenarios::MethodPointer> methods = scenarios::find_methods(options.methods);
   for (const scenarios::MethodPointer& each : methods)
@@ -60,8 +60,8 @@ scenarios::Suite suite_of(const scenarios::DataRoot& data, const BenchOptions& o
   return suite;
 }
 
-/// One name for what is to be run by this build: a run that was stopped goes on in it, and another method, or the same
-/// after a change, begins its own.
+/// The name depends on suite, methods and build. A stopped run therefore continues in its database, while a changed
+/// method or build starts a new database.
 fs::path database_of(const scenarios::DataRoot& data, const BenchOptions& options, const scenarios::Suite& suite,
                      const std::vector<scenarios::MethodPointer>& methods) {
   if (!options.database.empty()) return options.database;
@@ -73,7 +73,8 @@ fs::path database_of(const scenarios::DataRoot& data, const BenchOptions& option
   return fmt::format("{}_{}_{}.db", suite.name, whose, scenarios::digest_of_texts(texts).substr(0, kDigestShown));
 }
 
-/// Of the tree, and of files that were named, which are refused as a whole where they are of another suite.
+/// Reads the results stored in the source tree, and named files. A named file with results of another suite is an
+/// error.
 std::vector<BenchResult> stored_results(const scenarios::DataRoot& data, const BenchOptions& options,
                                         const scenarios::Suite& suite) {
   std::vector<BenchResult> all = scenarios::read_bench_results(scenarios::bench_results_file(data, suite.name));
@@ -86,7 +87,7 @@ std::vector<BenchResult> stored_results(const scenarios::DataRoot& data, const B
   return all;
 }
 
-/// As it was asked for, without the folders of whose machine it was.
+/// Returns the command with file names only, so that no path of this machine appears on the page.
 std::string command_of(const BenchOptions& options) {
   std::string words = "tumble bench";
   for (const std::string& method : options.methods) {
@@ -117,7 +118,7 @@ BenchPage page_of(const scenarios::Results& results, const scenarios::Suite& sui
   return page;
 }
 
-/// The page, and under it a line of JSON for each method that ran; with --json these alone.
+/// Prints the page, followed by one JSON line per method that ran. With --json only the JSON lines are printed.
 void print(const Session& session, const std::vector<Table>& tables, const std::string& lines) {
   if (!session.json) session.print(tables, {});
   if (!session.json && session.format != TableFormat::text) return;
@@ -141,7 +142,8 @@ int bench(const Session& session, const BenchOptions& options) {
   scenarios::SweepOptions how;
   how.jobs = options.jobs;
   how.stop = &interrupt.raised();
-  how.again = {scenarios::OutcomeStatus::killed};  // what the machine ended says nothing of a method
+  how.again = {scenarios::OutcomeStatus::killed};  // a run that the operating system killed does not characterise the
+                                                   // method
   const scenarios::SweepProgress final = sweep_with_progress(session, data, suite, owner, how);
   if (final.draws_done < final.draws_total) return say_stopped(final);
 

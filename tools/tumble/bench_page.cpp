@@ -20,7 +20,7 @@ using scenarios::BenchResult;
 constexpr const char* kCost = "estimate_cpu_s";
 constexpr std::size_t kVersionShown = 40;
 
-/// All that stand on one page, those that ran first.
+/// Returns all methods on the page, those of this run first.
 struct MethodRow {
   const BenchResult* result;
   std::string label;
@@ -33,8 +33,8 @@ std::vector<MethodRow> rows_of(const BenchPage& page) {
   return rows;
 }
 
-/// What the others are paired with: the method that does nothing about the problem; where there is none on the page,
-/// the one that stands first in the registry.
+/// Returns the method that the others are paired with: the baseline, or the first in the registry if the page has no
+/// baseline.
 const BenchResult* baseline_of(const std::vector<MethodRow>& rows) {
   const BenchResult* first = nullptr;
   for (const scenarios::Method& method : scenarios::methods()) {
@@ -79,7 +79,7 @@ Table metric_table(const scenarios::Suite& suite, const std::string& metric, con
   return table;
 }
 
-/// Statuses, cost and where a result is from.
+/// Table of statuses, cost and origin of each result.
 Table origin_table(const scenarios::Suite& suite, const std::vector<MethodRow>& rows,
                    const std::vector<BenchResult>& all) {
   Table table(fmt::format("how each came about; {} {}", suite.name, scenarios::bench_suite_digest(suite)),

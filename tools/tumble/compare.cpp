@@ -36,7 +36,7 @@ struct CompareOptions {
   double risk = 0.05, power = 0.8;
 };
 
-/// One method against the baseline, or against the one that is named last.
+/// Compares with the baseline, or with the last method if several are named.
 scenarios::ComparisonOptions read(const CompareOptions& options) {
   scenarios::ComparisonOptions out;
   out.methods = options.methods;
@@ -59,7 +59,7 @@ std::string title_of(const Contest& contest, const std::string& what) {
   return fmt::format("{}: {}, {}", contest.scenario, to_string(contest.kind), what);
 }
 
-/// A row's cells, each under its head.
+/// Builds the cells of a row together with their column titles.
 struct ComparisonRow {
   std::vector<std::string> heads = {}, cells = {};
 
@@ -67,7 +67,7 @@ struct ComparisonRow {
     heads.push_back(head);
     cells.push_back(std::move(cell));
   }
-  /// As tables that programs read (CSV) have an interval: two cells of numbers, empty where it has no end.
+  /// Adds the two ends of an interval as separate numeric cells for CSV; infinite ends are empty.
   void add_ends(const std::string& head, const scenarios::Interval& interval, double unit = 1.0) {
     const auto end = [&](double value) { return std::isfinite(value) ? fmt::format("{:.6g}", unit * value) : ""; };
     add(head + " low", end(interval.low));
@@ -130,7 +130,7 @@ ComparisonRow cells_of(const FailureComparison& row, bool apart) {
   return out;
 }
 
-/// A table for each contest; `cells(row)` of each row.
+/// Returns one table per contest; `cells(row)` builds a row.
 template <typename Comparisons, typename Cells>
 std::vector<Table> tables_of(const Comparisons& rows, const std::string& what, const Cells& cells) {
   std::vector<Table> tables;

@@ -33,7 +33,7 @@ struct EstimateOptions {
   std::filesystem::path learnt;
 };
 
-/// Why a run failed; a sensor that the recording does not have is called by its name.
+/// Returns why a run failed; sensors are named if the recording lacks them.
 std::string reason(const Status& status, const sim::Sensors& sensors) {
   const std::string field = status.field;
   if (status.trouble == Trouble::empty && field == "imus") return "it needs an IMU, and the recording has none";
@@ -41,7 +41,7 @@ std::string reason(const Status& status, const sim::Sensors& sensors) {
   return status.message() + (place.empty() ? "" : ": " + place);
 }
 
-/// The one method of that name which can run on this recording without the truth.
+/// Returns the method of that name that can run on this recording without the truth.
 scenarios::MethodPointer choose(const std::string& name, const scenarios::Subject& subject) {
   std::vector<scenarios::MethodPointer> fitting;
   std::string refused;
@@ -64,7 +64,7 @@ scenarios::MethodPointer choose(const std::string& name, const scenarios::Subjec
   return fitting.front();
 }
 
-/// A command of somebody else's that gives no answer is told as such.
+/// Converts a failure of an external command to BadInput.
 scenarios::Estimate run_of(const scenarios::Method& method, const sim::Sensors& sensors) {
   try {
     return method.run(sensors, {}, {});
@@ -73,7 +73,7 @@ scenarios::Estimate run_of(const scenarios::Method& method, const sim::Sensors& 
   }
 }
 
-/// What the estimate holds, and its health.
+/// Lists the content of an estimate and its health counters.
 Table summary(const scenarios::Estimate& estimate) {
   Table table("", {"estimate", "value"});
   table.align_right_from(1);
@@ -119,10 +119,10 @@ int run_estimate(const Session& session, const EstimateOptions& options) {
                                    {"health", estimate.health}};
   session.print({summary(estimate)}, document);
   if (const std::string caution = learnt.caution(sensors); !caution.empty()) session.note(caution);
-  // also of one that failed: what is wrong with the sensors may be why
+  // printed also after a failure, because a sensor fault may be the cause
   for (const std::string& line : verdict_lines(estimate)) session.note(full_name(method.info) + ": " + line);
   if (estimate.status.ok()) return kDone;
-  // the estimate is left for inspection, and its trouble lies in the recording
+  // the estimate is kept for inspection; the cause is in the recording
   throw BadInput(options.recording.string() + ": " + full_name(method.info) +
                  " failed: " + reason(estimate.status, sensors));
 }

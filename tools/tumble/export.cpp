@@ -21,7 +21,7 @@ struct ExportOptions {
   std::vector<std::filesystem::path> estimates;
 };
 
-/// The one that is asked for, or that the output's ending tells.
+/// Returns the requested format, or the one that corresponds to the output's extension.
 std::string format_of(const ExportOptions& options) {
   const std::string told = options.format.empty() ? scenarios::format_of_ending(options.out) : options.format;
   if (told.empty())
@@ -30,7 +30,7 @@ std::string format_of(const ExportOptions& options) {
   return told;
 }
 
-/// Says what was written, and where.
+/// Reports what was written, and where.
 int said(const Session& session, const ExportOptions& options, const std::string& what, const std::string& name) {
   Table table("", {"recording", what, "written to"});
   table.add_row({options.recording.string(), name, options.out.string()});

@@ -47,8 +47,8 @@ bool is_of(const scenarios::MethodRun& run, const scenarios::MethodPointer& meth
   return run.kind == method->info.kind && run.method == method->info.name;
 }
 
-/// Methods of this build need not be given: what was accepted says which are held. Where a run is accepted, one that is
-/// given is held from then on.
+/// Without --accept, only external methods may be named: the accepted results determine which methods of this build
+/// run. With --accept, named methods are added to the gate.
 std::vector<scenarios::MethodPointer> given_methods(const GateOptions& options) {
   for (const std::string& name : options.methods) {
     if (!options.accept && !scenarios::is_method_file(name))
@@ -59,7 +59,7 @@ std::vector<scenarios::MethodPointer> given_methods(const GateOptions& options) 
   return scenarios::find_methods(options.methods);
 }
 
-/// Only what was accepted is run; where a run is accepted, what is given for the first time too.
+/// Restricts the suite to accepted methods; with --accept, newly named methods are added.
 void keep_accepted(const scenarios::Gate& gate, const GateOptions& options,
                    const std::vector<scenarios::MethodPointer>& given, scenarios::Suite& suite) {
   std::vector<std::string> methods = options.methods, names;
@@ -73,7 +73,7 @@ void keep_accepted(const scenarios::Gate& gate, const GateOptions& options,
     add(names, run.scenario);
   }
   suite.methods = methods;
-  if (options.accept) return;  // a scenario that the suite has gained is accepted with the others
+  if (options.accept) return;  // with --accept, new scenarios of the suite are accepted with the others
   for (const scenarios::MethodPointer& method : given) {
     if (std::none_of(accepted.begin(), accepted.end(), [&](const auto& run) { return is_of(run, method); }))
       throw scenarios::BadInput(full_name(method->info) + ": the gate of suite " + suite.name +
@@ -83,7 +83,7 @@ void keep_accepted(const scenarios::Gate& gate, const GateOptions& options,
   suite.scenarios = names;
 }
 
-/// A database that was kept may hold more than the suite has.
+/// Drops results that do not belong to the suite, because a database that the user keeps may hold more.
 scenarios::GateRun of_suite(scenarios::GateRun run, const scenarios::Suite& suite) {
   const std::vector<scenarios::MethodPointer> methods = scenarios::find_methods(suite.methods);
   std::erase_if(run.methods, [&](const scenarios::MethodRun& each) {
@@ -146,7 +146,7 @@ json to_json(const std::vector<GateResult>& results, bool passes) {
   return {{"verdict", passes ? "pass" : "fail"}, {"held", std::move(rows)}};
 }
 
-/// The gate that is there, or, to be accepted for the first time, none yet.
+/// Loads the gate; the result is empty if there is none and --accept creates the first one.
 std::optional<scenarios::Gate> load(const scenarios::DataRoot& data, const GateOptions& options,
                                     const std::vector<scenarios::MethodPointer>& given, const std::string& suite) {
   const fs::path file = gate_file(data, options, suite);
@@ -161,15 +161,15 @@ std::optional<scenarios::Gate> load(const scenarios::DataRoot& data, const GateO
   return gate;
 }
 
-/// Writes the run as accepted, the policy as it was.
+/// Stores the run as accepted and keeps the policy.
 void write_accepted(const fs::path& file, const scenarios::Gate& gate) {
   if (file.has_parent_path()) make_folder(file.parent_path());
   scenarios::replace_file(fs::path(file).replace_extension(".csv"), scenarios::to_csv(gate.accepted));
   if (!fs::exists(file)) scenarios::replace_file(file, scenarios::to_yaml(gate));
 }
 
-/// The certificate that is known of this build goes with what is kept; it is not measured here: a gate is run often.
-/// Says how it stands.
+/// Stores the known certificate of this build next to a kept database and describes its state. It is not measured here,
+/// because gates run often.
 std::string certificate_text(const Session& session, const scenarios::DataRoot& data, const fs::path& database) {
   scenarios::Results results(database, scenarios::Results::Mode::create_or_append);
   const auto certificate = scenarios::known_certificate(results, scenarios::CertificateStore(session.cache(), data));
@@ -177,7 +177,7 @@ std::string certificate_text(const Session& session, const scenarios::DataRoot& 
                      : "not measured of this build on this machine ('tumble certify' and 'tumble sweep' do)";
 }
 
-/// Cases say themselves what is held.
+/// Runs named cases, which define their own expectations.
 int run_case_gate(const Session& session, const scenarios::DataRoot& data, const GateOptions& options) {
   if (!options.accepted.empty() || !options.methods.empty())
     throw scenarios::BadInput("--against, --method: a named case says itself what is held");
@@ -194,7 +194,7 @@ int run_gate(const Session& session, const GateOptions& options) {
     throw scenarios::BadInput("suite '" + suite.name + "' names its draws; a gate holds seeds in a row");
   if (!options.accepted.empty() && options.accepted.extension() != ".yaml")
     throw scenarios::BadInput("--against " + options.accepted.string() + ": must be a FILE.yaml");
-  suite.curves.clear();  // held are the scenarios as they are
+  suite.curves.clear();  // a gate covers scenarios at their stated settings only
   const std::vector<scenarios::MethodPointer> given = given_methods(options);
   const std::optional<scenarios::Gate> known = load(data, options, given, suite.name);
   if (known)

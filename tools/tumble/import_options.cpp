@@ -23,7 +23,7 @@ using scenarios::BadInput;
 const std::vector<std::string> kFormats = {"airbrakes", "broad",   "csv",     "kitti",   "mcap", "pcd", "odometry",
                                            "ply",       "repoimu", "rosbag1", "rosbag2", "tum",  "vtk"};
 
-/// A file of a bag may be read by itself.
+/// Suggests the bag's folder if the user named one of its files.
 std::string bag_hint(const std::filesystem::path& folder) {
   std::set<std::string> bags;
   for (const auto& entry : std::filesystem::directory_iterator(folder)) {
@@ -34,7 +34,7 @@ std::string bag_hint(const std::filesystem::path& folder) {
   return "; of the " + std::to_string(bags.size()) + " bags in it one at a time is read, as " + *bags.begin();
 }
 
-/// What the files in a folder are.
+/// Detects the format from the files in a folder.
 std::string format_of_folder(const std::filesystem::path& folder) {
   const std::map<std::string, std::string> known = {
       {".ply", "ply"}, {".pcd", "pcd"}, {".bin", "kitti"}, {".vtk", "vtk"}};
@@ -55,7 +55,7 @@ std::string format_of_folder(const std::filesystem::path& folder) {
   return found;
 }
 
-/// By its first line.
+/// Detects the format from the first line.
 std::string format_of_csv(const std::filesystem::path& file) {
   if (scenarios::is_repoimu(file)) return "repoimu";
   if (scenarios::is_odometry(file)) return "odometry";
@@ -73,13 +73,13 @@ bool is_sweeps(const std::string& format) {
 void require_numbers(const std::string& option, const std::vector<double>& numbers, double bound) {
   for (const double x : numbers) {
     if (!(std::abs(x) <= bound)) {
-      // a number that is none is told as such: in tables it is a dash
+      // NaN is reported with its own message, because in tables it appears as a dash
       throw BadInput(fmt::format("{}: {:g} must be within +-{:g}", option, x, bound));
     }
   }
 }
 
-/// x y z qx qy qz qw.
+/// Converts x y z qx qy qz qw.
 Eigen::Isometry3d pose_of(const std::string& option, const std::vector<double>& numbers) {
   Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();
   if (numbers.empty()) return pose;
@@ -203,7 +203,7 @@ std::string format_of(const ImportOptions& options) {
   if (!options.format.empty()) require_known("format", options.format, kFormats);
   std::error_code error;
   const bool folder = std::filesystem::is_directory(options.path, error);
-  // TUM's poses are read once, from wherever they come
+  // a pipe can be read only once, so it is not opened here
   if (!folder && options.format != "tum" && std::filesystem::exists(options.path, error))
     scenarios::require_regular_file(options.path);
   if (!options.format.empty()) return options.format;

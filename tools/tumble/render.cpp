@@ -39,7 +39,7 @@ struct RenderOptions {
   int width = 1280, height = 720;
 };
 
-/// All that a scene points to.
+/// Owner of all data that a scene refers to.
 struct RenderContent {
   std::optional<sim::BuiltSituation> built;
   sim::Sensors sensors;
@@ -48,17 +48,17 @@ struct RenderContent {
 };
 
 bool is_recording(const std::string& what) {
-  // whoever names a file means the file, also when it is not there
+  // a name with a recording's extension means a file, even if the file does not exist
   return std::filesystem::exists(what) ? !what.ends_with(".yaml") : what.ends_with(".h5") || what.ends_with(".hdf5");
 }
 
-/// World, sensors and truth of a recording.
+/// Loads world, sensors and truth of a recording.
 void load_situation(const scenarios::DataRoot& data, const RenderOptions& options, RenderContent& content) {
   const scenarios::RecordingInfo info = scenarios::read_info(options.what);
   if (info.situation_yaml.empty()) throw BadInput(options.what + ": holds no situation, so there is no world to draw");
   content.built = built_from(info, options.what, data);
   content.sensors = scenarios::read_sensors(options.what);
-  // the truth places the robot and the estimates in a picture for people; no estimate is made here
+  // the truth positions the robot and the estimates in the picture; no estimate is computed here
   if (!info.has_truth) throw BadInput(options.what + ": holds no truth, so there is no path to draw");
   content.truth = scenarios::read_truth(options.what);
 }
@@ -85,7 +85,7 @@ void load_draw(const scenarios::DataRoot& data, const RenderOptions& options, Re
   content.built.emplace(scenarios::draw(data, scenario, seed_of(scenario, options.seed)), data.models());
 }
 
-/// Maps of the estimates side by side, coloured by error.
+/// Draws the maps of the estimates next to each other, coloured by error.
 int render_maps(const Session& session, const RenderOptions& options, const scenarios::DataRoot& data) {
   if (!is_recording(options.what) || options.estimates.empty()) {
     throw BadInput("--map shows the maps of estimates of a recording: FILE.h5 ESTIMATE...");
@@ -116,10 +116,10 @@ int render_maps(const Session& session, const RenderOptions& options, const scen
   return kDone;
 }
 
-/// Frames of a video: minutes of rendering, and of watching.
+/// Maximum number of video frames: more would take minutes to render and to watch.
 constexpr std::size_t kFramesMax = 3000;
 
-/// A line every so often, of what takes minutes.
+/// Interval of progress lines for long renderings.
 constexpr double kSayEvery_s = 10.0;
 
 std::vector<std::uint8_t> video_of(const Session& session, const RenderOptions& options, const Scene& scene) {

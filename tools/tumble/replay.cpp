@@ -29,7 +29,7 @@ struct ReplayOptions {
   std::size_t points = ReplayLimits{}.points;
 };
 
-/// All that a replay points to.
+/// Owner of all data that a replay refers to.
 struct ReplayContent {
   sim::Sensors sensors;
   std::optional<sim::Truth> truth;
@@ -38,7 +38,7 @@ struct ReplayContent {
   std::list<scenarios::Estimate> estimates;
 };
 
-/// The truth is opened for people's eyes; no estimate is made here.
+/// Loads the recording with its truth, for display only; no estimate is computed here.
 void load_recording(const Session& session, const ReplayOptions& options, const scenarios::RecordingInfo& info,
                     ReplayContent& content) {
   content.sensors = scenarios::read_sensors(options.recording);

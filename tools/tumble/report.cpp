@@ -47,7 +47,7 @@ std::string wins_text(const Wins& wins) {
   return wins.pairs == 0 ? "" : fmt::format("{} of {}", wins.count, wins.pairs);
 }
 
-/// A row per method and metric: the headline metrics, or all of them.
+/// Returns one row per method and metric: the headline metrics, or all metrics.
 Table score_table(const Section& section, bool all) {
   Table table(
       fmt::format("{}: {} (paired with {})", section.scenario, to_string(section.kind), section.baseline),
@@ -79,7 +79,7 @@ Table draws_table(const Summary& summary) {
   return table;
 }
 
-/// Everything that the page's tables hold, in SI units.
+/// Returns the content of the page's tables in SI units.
 json to_json(const Summary& summary) {
   json rows = json::array();
   for (const Section& section : summary.sections) {
@@ -113,7 +113,7 @@ std::string read_text(const std::filesystem::path& path) {
   return text;
 }
 
-/// Digest of the data that a sweep would take; a report needs none.
+/// Returns the digest of the data that a sweep would use; empty if there are none, because a report works without them.
 std::string data_found(const Session& session) {
   try {
     return scenarios::data_digest(session.data());
@@ -122,11 +122,11 @@ std::string data_found(const Session& session) {
   }
 }
 
-/// Draws of a scenario that a page tells what breaks a method from.
+/// Maximum number of draws per scenario that the sensitivity section of a page uses.
 constexpr std::size_t kSensitivityDraws = 2000;
 
-/// What breaks each method, by one score and by failures, over at most so many draws: what a table of all metrics and
-/// all draws costs is for `tumble sensitivity`.
+/// Adds the sensitivity of each method for one score and for failures, with a limited number of draws. The complete
+/// table takes long and belongs to `tumble sensitivity`.
 void add_sensitivity(const Session& session, const std::string& data_found, ReportInput& input) {
   const Summary some = scenarios::at_most_draws(*input.summary, kSensitivityDraws);
   NumbersByScenario numbers;
@@ -211,7 +211,7 @@ int report(const Session& session, const ReportVerbOptions& options) {
   for (const scenarios::Certificate& certificate : results.certificates()) {
     document["certificates"].push_back(json::parse(to_json(certificate)));
   }
-  // the page first: that nobody reads standard output costs nobody the page
+  // write the page first: it must not depend on a reader of standard output
   if (!options.page.empty() || !options.badge.empty())
     write_page(session, options, {&results, &summary, draws, std::move(curves), std::move(motions), {}, {}});
   session.print(tables, document);

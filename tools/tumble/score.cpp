@@ -33,15 +33,16 @@ struct ScoreOptions {
   std::string frame, kind;
 };
 
-/// Somebody else's poses may bear the stamps of the recording's source: they are moved to the recording's own clock
-/// when its origin is nearer to them than its zero.
+/// Converts external poses with time stamps of the recording's source to the recording's clock. The conversion applies
+/// if the clock's origin is nearer to the stamps than zero is.
 void move_to_clock(std::int64_t origin_ns, scenarios::Estimate& estimate) {
   const std::int64_t first = estimate.poses.empty() ? 0 : estimate.poses.front().time_ns;
   if (std::abs(first - origin_ns) >= std::abs(first)) return;
   for (PoseState& pose : estimate.poses) pose.time_ns -= origin_ns;
 }
 
-/// The other verbs name the recording first, so that either order is taken: no estimate bears a recording's ending.
+/// Accepts estimate and recording in either order, because other verbs take the recording first. The extensions of
+/// recordings identify it.
 void order(ScoreOptions& options) {
   const auto is_recording = [](const std::filesystem::path& file) {
     return file.extension() == ".h5" || file.extension() == ".hdf5";
@@ -49,7 +50,7 @@ void order(ScoreOptions& options) {
   if (is_recording(options.estimate) && !is_recording(options.recording)) options.estimate.swap(options.recording);
 }
 
-/// What was seen and what is claimed must share some time, and the truth must know something.
+/// Checks that the truth has poses and that the estimate overlaps with the truth in time.
 void require_common_time(const ScoreOptions& options, const scenarios::Estimate& estimate, const sim::Truth& truth) {
   const bool known = std::any_of(truth.p_WB_m.begin(), truth.p_WB_m.end(), [](const auto& p) { return p.allFinite(); });
   if (!known) throw scenarios::BadInput(options.recording.string() + ": its truth holds no known place");
@@ -63,18 +64,19 @@ void require_common_time(const ScoreOptions& options, const scenarios::Estimate&
                   options.estimate.string(), first_s, last_s, options.recording.string(), end_s));
 }
 
-constexpr double kHoleShare = 0.2;  // of the recording; a longer one is a divergence (scenarios::verdict)
-// below these nothing is compared but the pose at which the two are aligned, or hardly more
+constexpr double kHoleShare = 0.2;  // share of the recording; a longer gap counts as a divergence (scenarios::verdict)
+// below these limits, hardly more than the alignment pose would be compared
 constexpr std::size_t kComparedMin = 2;
 constexpr double kSpannedShareMin = 0.01;
 
-/// How a trajectory of somebody else stands to the truth, beside its scores.
+/// Temporal coverage and alignment of an external trajectory relative to the truth.
 struct Standing {
-  double first_s = 0, last_s = 0, end_s = 0;  ///< of its poses that the truth knows; of the truth
-  std::size_t compared = 0, poses = 0;        ///< poses that the truth knows, of how many
-  double covered_s = 0;                       ///< without what is longer than a fifth of the truth and has no pose
+  double first_s = 0, last_s = 0, end_s = 0;  ///< first and last pose within the time of the truth; end of the truth
+  std::size_t compared = 0, poses = 0;        ///< number of poses within the time of the truth, and of all poses
+  double covered_s = 0;                       ///< covered time, without gaps longer than a fifth of the truth
   scenarios::Alignment alignment;
-  double spanned() const { return end_s > 0.0 ? (last_s - first_s) / end_s : 1.0; }  ///< share, holes included
+  /// share of the truth's time between first and last pose, gaps included
+  double spanned() const { return end_s > 0.0 ? (last_s - first_s) / end_s : 1.0; }
   double share() const { return end_s > 0.0 ? covered_s / end_s : 1.0; }
 };
 
@@ -96,8 +98,9 @@ Standing standing_of(const scenarios::Estimate& estimate, const sim::Truth& trut
   return out;
 }
 
-/// Of times in ms, us or ns that are read as seconds the first few fall into the recording, far apart, and would be
-/// scored. A long one of which the recording is a part has poses that are nearer to each other, or another length.
+/// Detects time stamps in ms, us or ns that were read as seconds. Then only the first few poses, far apart, would
+/// overlap with the recording and be scored. A longer trajectory that contains the recording has denser poses or
+/// another length.
 void require_seconds(const ScoreOptions& options, const scenarios::Estimate& estimate, const Standing& standing) {
   constexpr double kNear = 1.5, kLeastStep_s = 0.1;
   if (estimate.poses.size() < 2 || !(standing.end_s > 0.0)) return;
@@ -114,7 +117,7 @@ void require_seconds(const ScoreOptions& options, const scenarios::Estimate& est
   }
 }
 
-/// A trajectory that shares next to nothing with the recording has no score: all of its errors would be zero.
+/// Refuses a trajectory with nearly no overlap, because all its errors would be zero.
 void require_compared(const ScoreOptions& options, const Standing& standing) {
   if (standing.compared >= kComparedMin && standing.spanned() >= kSpannedShareMin) return;
   throw scenarios::BadInput(
@@ -138,8 +141,8 @@ std::string cover_text(const Standing& standing) {
                      standing.poses);
 }
 
-/// A trajectory of somebody else is judged over what it answers, and how much that is is said: "partial" for one that
-/// holds there, but leaves more than a fifth of the recording in one piece without a pose.
+/// Judges an external trajectory over the part that it covers, and reports the coverage. "partial" means: no divergence
+/// in the covered part, but a gap of more than a fifth of the recording.
 std::string judge_trajectory(const Session& session, const Standing& standing, const scenarios::ScoredEstimate& scored,
                              scenarios::Outcome& outcome) {
   std::string status = to_string(outcome.status);
@@ -168,13 +171,14 @@ nlohmann::json to_json(const Standing& standing) {
             {"translation_m", {t.x(), t.y(), t.z()}}}}};
 }
 
-/// Below the scores: over how much of the recording they hold.
+/// Adds the coverage below the scores.
 void add_cover(const Standing& standing, Table& table) {
   table.add_row({"covered_share", number_text(standing.share())});
   table.add_row({"poses_compared", fmt::format("{} of {}", standing.compared, standing.poses)});
 }
 
-/// Of a TUM file: as named, else position of a rolling sphere and of what has no lidar, else slam.
+/// Returns the kind of a TUM file: the named kind, else `position` for a rolling sphere or a recording without lidar,
+/// else `slam`.
 scenarios::Kind kind_of(const std::string& name, const sim::Sensors& sensors) {
   if (name.empty()) {
     return sensors.lidars.empty() || sensors.sphere_radius_m > 0.0 ? scenarios::Kind::position : scenarios::Kind::slam;
@@ -184,7 +188,7 @@ scenarios::Kind kind_of(const std::string& name, const sim::Sensors& sensors) {
   return name == "slam" ? scenarios::Kind::slam : scenarios::Kind::position;
 }
 
-/// What is to be scored.
+/// The estimate to be scored.
 struct Claim {
   scenarios::RecordingInfo info;
   sim::Sensors sensors;
@@ -192,10 +196,10 @@ struct Claim {
   scenarios::Estimate estimate;
   scenarios::Kind kind = scenarios::Kind::position;
   std::string method;
-  bool foreign = false;  ///< a trajectory of somebody else, which says nothing of itself
+  bool foreign = false;  ///< an external trajectory without information about its method
 };
 
-/// What the estimate itself does not say.
+/// Adds the information that an external estimate does not contain.
 void complete_foreign(const Session& session, const ScoreOptions& options, Claim& claim) {
   claim.kind = kind_of(options.kind, claim.sensors);
   move_to_clock(claim.info.origin_ns, claim.estimate);
@@ -227,7 +231,7 @@ Claim read_claim(const Session& session, const ScoreOptions& options) {
   return claim;
 }
 
-/// The true one, which matters to maps alone, and building it takes a while: null where there is none to score.
+/// Builds the true surface, which only maps need. Returns null if there is no map, because building takes long.
 std::unique_ptr<const sim::Surface> surface_of(const Session& session, const ScoreOptions& options,
                                                const Claim& claim) {
   if (claim.kind != scenarios::Kind::slam || claim.foreign || claim.info.situation_yaml.empty()) return nullptr;

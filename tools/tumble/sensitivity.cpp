@@ -31,7 +31,7 @@ struct SensitivityVerbOptions {
   bool motion = false, all = false, dependence = false;
 };
 
-/// What the numbers of a draw are follows from the models and scenarios that it was made of.
+/// Refuses a database made with other models or scenarios, because the numbers of its draws would differ.
 void require_same_data(const scenarios::Results& results, const scenarios::DataRoot& data,
                        const std::filesystem::path& database) {
   const std::string made_of = results.note("data"), found = scenarios::data_digest(data);
@@ -51,7 +51,7 @@ std::map<std::string, scenarios::NumbersOfDraws> numbers_of(const Session& sessi
   return numbers_of_catalogue(session, data, summary);
 }
 
-/// The strongest, and of these the ones that chance does not explain; all where asked for.
+/// Returns the strongest influences that chance does not explain, or all on request.
 std::vector<Influence> shown(const Sensitivity& row, bool all) {
   std::vector<Influence> out;
   for (const Influence& each : row.influences) {
@@ -88,7 +88,7 @@ std::vector<Table> tables_of(const std::vector<Sensitivity>& rows, bool all) {
   return tables;
 }
 
-/// Of each influence that is shown a line per class of its number.
+/// Returns one row per class of the number, for each influence that is shown.
 Table dependence_table(const std::vector<Sensitivity>& rows, bool all) {
   Table table("partial dependence: median, or share that failed, where the number lies",
               {"scenario", "method", "metric", "number", "from", "to", "draws", "score", "95 %"});

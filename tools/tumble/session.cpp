@@ -16,7 +16,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Folders that may hold the project's files, best first.
+/// Candidate folders for the project's files, in order of priority.
 std::vector<fs::path> candidate_roots() {
   std::vector<fs::path> roots;
   if (const char* given = std::getenv("TUMBLE_DATA"); given != nullptr && *given != '\0') roots.emplace_back(given);
@@ -49,8 +49,7 @@ scenarios::DataRoot Session::data() const {
   for (const fs::path& root : candidate_roots()) {
     const scenarios::DataRoot data{root};
     if (fs::is_directory(data.models(), error)) return data;
-    // a folder that the user has named is taken at its word: falling back would run other models than the ones asked
-    // for
+    // if the user names a folder, no other folder is tried: it might hold other models
     if (given != nullptr && *given != '\0')
       throw scenarios::BadInput("TUMBLE_DATA: no folder " + data.models().string());
   }

@@ -26,7 +26,7 @@ namespace tumble::tools {
 
 namespace {
 
-/// Unless told: each example costs a draw run once more and its pictures.
+/// Defaults: each example costs one more run of a draw, and its pictures.
 constexpr std::uint64_t kExamplesMax = 3, kDrawsPerExample = 8, kFailuresMax = 8, kDrawsPerFailure = 4;
 
 struct SweepVerbOptions {
@@ -34,7 +34,7 @@ struct SweepVerbOptions {
   std::string seeds, shard;
   std::vector<std::string> scenarios, methods, again;
   int jobs = available_processors();
-  std::optional<std::size_t> examples, failures;  ///< as many as the sweep can bear, where it is not told
+  std::optional<std::size_t> examples, failures;  ///< if not stated, depends on the size of the sweep
   std::filesystem::path database, recordings;
   double memory_mib = scenarios::kWorkerMemoryMib;
   std::string keep = "none";
@@ -42,7 +42,7 @@ struct SweepVerbOptions {
   double risk = 0.05;
 };
 
-/// Of the suite's scenarios those that are named, in the suite's order.
+/// Keeps only the named scenarios, in the order of the suite.
 void take_scenarios(const std::vector<std::string>& named, scenarios::Suite& suite) {
   if (named.empty()) return;
   if (!suite.recordings.empty() || !suite.classes.empty())
@@ -52,7 +52,7 @@ void take_scenarios(const std::vector<std::string>& named, scenarios::Suite& sui
   std::erase_if(suite.scenarios, [&](const std::string& name) { return std::ranges::count(named, name) == 0; });
 }
 
-/// Whoever means a scenario and names a suite of the same name waits for others.
+/// Prints the content of the suite, because a scenario and a suite may have the same name.
 void say_what_it_holds(const Session& session, const SweepVerbOptions& options, const scenarios::Suite& suite) {
   if (!options.scenarios.empty() || suite.scenarios.size() < 2) return;
   if (std::ranges::count(suite.scenarios, options.suite) == 0) return;
@@ -60,7 +60,7 @@ void say_what_it_holds(const Session& session, const SweepVerbOptions& options, 
                            fmt::join(suite.scenarios, " ")));
 }
 
-/// The suite with what the command line changes of it. Returns false when this shard has no seed.
+/// Builds the suite with the changes from the command line. Returns false if this shard has no seed.
 bool select(const scenarios::DataRoot& data, const SweepVerbOptions& options, scenarios::Suite& suite) {
   suite = scenarios::load_suite(data, options.suite);
   take_scenarios(options.scenarios, suite);
@@ -74,13 +74,14 @@ bool select(const scenarios::DataRoot& data, const SweepVerbOptions& options, sc
     throw scenarios::BadInput("--data: suite '" + suite.name + "' has no recordings");
   if (!options.recordings.empty()) suite.recordings_folder = options.recordings;
   if (!options.methods.empty()) {
-    for (const std::string& name : options.methods) scenarios::find_methods(name);  // refuses an unknown one now
+    // refuses an unknown name before the sweep starts
+    for (const std::string& name : options.methods) scenarios::find_methods(name);
     suite.methods = options.methods;
   }
   return options.shard.empty() || shard_seeds(parse_shard(options.shard), suite.first_seed, suite.last_seed);
 }
 
-/// The certificate of this build goes with its results; measured at most once per build and machine.
+/// Stores the certificate of this build with the results; it is measured at most once per build and machine.
 void certify(const Session& session, const scenarios::DataRoot& data, const std::filesystem::path& database,
              const std::atomic<bool>& stop) {
   scenarios::Results results(database, scenarios::Results::Mode::create_or_append);
@@ -98,7 +99,7 @@ void certify(const Session& session, const scenarios::DataRoot& data, const std:
   }
 }
 
-/// The words that ask for the same sweep once more, but for its database.
+/// Returns the command for the same sweep, without its database.
 std::string command_of(const SweepVerbOptions& options) {
   using scenarios::shell_word;
   std::string words = shell_word(options.suite);
@@ -109,22 +110,21 @@ std::string command_of(const SweepVerbOptions& options) {
   return words;
 }
 
-/// Behind those of the sweeps before into the same database.
+/// Appends to the commands of earlier sweeps in the same database.
 void note_command(scenarios::Results results, const SweepVerbOptions& options) {
   const std::string known = results.note(scenarios::kCommandNote);
   results.set_note(scenarios::kCommandNote, scenarios::with_commands(known, command_of(options)));
 }
 
-/// Of a whole suite alone: what is typical of a part of its seeds need not be so of all. What is wrong with the
-/// pictures costs the sweep a line, not its table and its status. Returns false when it was
-/// stopped.
+/// Generates examples only if the complete suite was swept, because draws that are typical of a shard may not be
+/// typical of the suite. Errors in pictures are reported but do not change the table and the exit status. Returns false
+/// if it was stopped.
 bool leave_examples(const Session& session, const scenarios::DataRoot& data, const scenarios::Suite& suite,
                     const SweepVerbOptions& options, std::uint64_t draws, const std::atomic<bool>& stop) {
   if (!options.shard.empty()) return true;
   LeaveOptions leave;
   leave.count = options.examples.value_or(std::min(kExamplesMax, draws / kDrawsPerExample));
-  // who wants no pictures wants none of failures either; who sweeps too few draws for a typical one, of those that
-  // failed
+  // `--examples 0` also disables pictures of failures; a sweep that is too small for typical draws still shows failures
   const bool wants_none = options.examples && *options.examples == 0;
   leave.failures =
       options.failures.value_or(wants_none ? 0 : std::clamp(draws / kDrawsPerFailure, std::uint64_t{1}, kFailuresMax));
@@ -182,7 +182,7 @@ scenarios::SweepOptions sweep_options(const SweepVerbOptions& options, const std
   return out;
 }
 
-/// A database that a refused sweep has made goes again, unless draws are stored in it.
+/// Removes a database that a refused sweep created, unless it holds draws.
 class NewDatabase {
  public:
   explicit NewDatabase(const std::filesystem::path& path) : path_(path), is_new_(!exists_at(path)) {}
@@ -200,7 +200,7 @@ class NewDatabase {
     std::error_code ignored;
     return std::filesystem::exists(std::filesystem::symlink_status(path, ignored));
   }
-  /// What cannot be read is not removed, but where the disk had no room for the first byte.
+  /// An unreadable database is kept, unless it is empty because the disk was full.
   bool holds_rows() const {
     try {
       const scenarios::Results results(path_, scenarios::Results::Mode::read_only);
@@ -215,7 +215,7 @@ class NewDatabase {
   bool is_new_, kept_ = false;
 };
 
-/// Recorded in the results before anything runs. An empty word asks nothing.
+/// Stores the question in the results before anything runs; an empty text asks nothing.
 std::optional<scenarios::Question> ask(const SweepVerbOptions& options, const scenarios::DataRoot& data,
                                        const scenarios::Suite& suite) {
   if (options.until.empty()) return std::nullopt;
@@ -252,7 +252,7 @@ int run_sweep(const Session& session, const SweepVerbOptions& options) {
   const scenarios::DatabaseOwner owner(options.database);
   NewDatabase made(options.database);
   if (!any) {
-    // an empty database, so that all shards can be merged, with what they keep
+    // creates an empty database, so that all shards can be merged
     scenarios::Results results = scenarios::open_results(data, suite, options.database);
     if (options.keep != "none") results.set_note(scenarios::kKeepNote, options.keep);
     made.keep();
@@ -265,7 +265,7 @@ int run_sweep(const Session& session, const SweepVerbOptions& options) {
   scenarios::require_sound(suite, how);
   const std::optional<scenarios::Question> question = ask(options, data, suite);
   note_command(scenarios::open_results(data, suite, options.database), options);
-  // it speaks of simulations
+  // the certificate applies only to simulations
   if (suite.recordings.empty()) certify(session, data, options.database, interrupt.raised());
   AskedSweep swept;
   if (question) {
@@ -301,10 +301,9 @@ Action declare_sweep(VerbOptions& verb, const Session& session) {
   verb.add("SUITE", options->suite, "a suite, a suite file, or a scenario").required().check(a_suite(session));
   verb.add("--scenario", options->scenarios, "of the suite's scenarios this one; repeat for more [all of them]")
       .one_at_a_time();
-  verb.add("--seeds", options->seeds, "A..B, both included [the suite's]")
-      .filled();  // an empty word would mean all of them
+  verb.add("--seeds", options->seeds, "A..B, both included [the suite's]").filled();  // an empty word would select all
   verb.add("--method", options->methods, "a method; repeat for more [the suite's]")
-      .one_at_a_time();  // the word after a method is not another one
+      .one_at_a_time();  // each option takes exactly one word
   verb.add("--jobs", options->jobs, "processes at a time [the processors]").whole(1, 1024).shows_default();
   verb.add("--shard", options->shard, "i/n: the i-th of n parts of the seeds").filled();
   verb.add("--again", options->again, "run rows of these statuses once more: crashed,timeout,killed")

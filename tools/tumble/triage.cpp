@@ -34,7 +34,7 @@ struct TriageVerbOptions {
   std::filesystem::path database;
 };
 
-/// "cures" when the run failed as it was and does not with this input true.
+/// "cures" if the original run failed and the run with this true input does not.
 std::string verdict(const TriageRow& row, const TriageRow& base) {
   if (!base.fails) return "";
   return row.fails ? "" : "cures";
@@ -103,15 +103,15 @@ int run_triage_of_draw(const Session& session, const TriageVerbOptions& options)
   return kDone;
 }
 
-/// Refuses a name that is neither a suite's nor a scenario's, before anything else is missing. What a file is of is
-/// seen when all options are known.
+/// Refuses a name that is neither a suite's nor a scenario's, before CLI11 reports missing options. The content of a
+/// file is checked when all options are known.
 std::function<void(const std::string&)> known_name(const Session& session) {
   return [&session](const std::string& text) {
     if (!text.ends_with(".yaml")) scenarios::load_suite(session.data(), text);
   };
 }
 
-/// A seed, or a named case, is one draw; what else stands there is a suite.
+/// True if a seed or a named case is given; otherwise the name is a suite.
 bool is_one_draw(const Session& session, const TriageVerbOptions& options) {
   const bool named = !options.what.ends_with(".yaml") && names_cases(session.data(), options.what);
   const bool one = !options.seed.empty() || (named && options.seeds.empty());
@@ -120,7 +120,7 @@ bool is_one_draw(const Session& session, const TriageVerbOptions& options) {
   return one;
 }
 
-/// What one draw of a suite is asked with.
+/// Returns the options for the command that triages one draw of the suite.
 std::string words_of(const TriageVerbOptions& options) {
   std::string words = " --method " + scenarios::shell_word(options.method);
   if (!options.metric.empty()) words += " --metric " + scenarios::shell_word(options.metric);

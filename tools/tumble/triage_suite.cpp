@@ -95,10 +95,10 @@ json to_json(const std::vector<InputWorth>& worths, const std::vector<DrawTriage
           {"draws", std::move(all)}};
 }
 
-/// Of all draws together, what cures most; all inputs at once are a bound, no answer.
+/// Names the input that cures most draws. All inputs together are only a bound and are not considered.
 std::string conclusion(const std::vector<InputWorth>& worths) {
   if (worths.empty()) return "no draw could be run";
-  const std::string& whole = worths.back().scenario;  // of all, where there are several scenarios
+  const std::string& whole = worths.back().scenario;  // the summary over all scenarios, if there are several
   const auto is_single = [&](const InputWorth& worth) { return worth.scenario == whole && worth.input != "all"; };
   const auto first = std::find_if(worths.begin(), worths.end(), is_single);
   if (first == worths.end()) return "no input could be replaced";

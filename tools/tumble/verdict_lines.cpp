@@ -7,7 +7,7 @@ namespace tumble::tools {
 
 namespace {
 
-/// Null: said by the line of another.
+/// Returns null for findings that the line of another finding covers.
 const char* meaning(scenarios::Doubt::About about) {
   using About = scenarios::Doubt::About;
   switch (about) {
