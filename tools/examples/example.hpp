@@ -53,9 +53,9 @@ struct Example {
   std::string made_of;  ///< digest of the rows of the results that the example shows
   std::vector<ExamplePicture> pictures;
   std::vector<Plot> plots;
-  std::vector<std::uint8_t> moving;  ///< animated WebP of a part of the draw; empty if there is none
+  std::vector<std::uint8_t> moving;  ///< animated WebP of a part of the draw; empty if absent
   std::string moving_caption;        ///< for example "2.5 s of it at half speed"
-  std::string replay;                ///< file name of the replay in the folder of examples; empty if there is none
+  std::string replay;                ///< file name of the replay in the folder of examples; empty if absent
   std::string replay_page;           ///< HTML of the replay page; only written, never read back
 };
 

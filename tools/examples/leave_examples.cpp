@@ -204,7 +204,7 @@ class Makers {
     poll(waiting.data(), waiting.size(), kPollMs);
   }
 
-  /// Returns true if the worker has ended.
+  /// Returns true when the worker has ended.
   bool serve(Worker& worker) {
     const bool open = worker.process.read_available(worker.making->text);
     const bool late = open && scenarios::now_s() > worker.deadline_s;

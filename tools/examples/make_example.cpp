@@ -23,7 +23,7 @@ bool is_sphere(const scenarios::RunResult& run) {
   return run.recording.sensors.sphere_radius_m > 0.0;
 }
 
-/// Adds the map of the first method that has a map and fulfils `wanted`; adds nothing if there is none.
+/// Adds the map of the first method that has a map and fulfils `wanted`; adds nothing if there is no match.
 void add_map(const scenarios::RunResult& run, const sim::Surface& surface, bool (*wanted)(const scenarios::MethodInfo&),
              std::vector<ErrorMap>& maps) {
   for (std::size_t i = 0; i < run.methods.size(); ++i) {

@@ -22,8 +22,7 @@ struct ShownExample {
   Example example;
   bool of_these_results = false;  ///< the database holds the rows that the example shows, and the digest of its
                                   ///< recording agrees
-  std::string replay_address;     ///< URL of its replay relative to the page, escaped for an attribute; empty if there
-                                  ///< is none
+  std::string replay_address;     ///< URL relative to the page, escaped for an attribute; may be empty
 };
 
 /// Name and value.

@@ -27,9 +27,8 @@ struct ReportOptions {
   std::filesystem::path database;  ///< path of the results; examples are next to it
   std::filesystem::path page;      ///< path of the page, from which links to replays are relative
   std::string version;             ///< version of the program
-  std::string data;                ///< digest of the models and scenarios that a sweep would use on this machine; empty
-                                   ///< if there are none
-  std::string made_at;             ///< date and time as shown on the page
+  std::string data;     ///< digest of the models and scenarios that a sweep would use on this machine; may be empty
+  std::string made_at;  ///< date and time as shown on the page
 };
 
 /// Computes the content of the page from the results and from the examples that a sweep left next to them. Nothing is

@@ -113,7 +113,7 @@ std::string read_text(const std::filesystem::path& path) {
   return text;
 }
 
-/// Returns the digest of the data that a sweep would use; empty if there are none, because a report works without them.
+/// Returns the digest of the data that a sweep would use; empty if absent, because a report works without them.
 std::string data_found(const Session& session) {
   try {
     return scenarios::data_digest(session.data());

@@ -52,7 +52,7 @@ fs::path free_folder(const std::string& name) {
   return folder;
 }
 
-/// Returns the first method of a kind that needs no truth and fulfils the condition; null if there is none.
+/// Returns the first method of a kind that needs no truth and fulfils the condition; null if there is no match.
 template <class Is>
 const scenarios::MethodInfo* first_of(scenarios::Kind kind, Is is) {
   for (const scenarios::Method& method : scenarios::methods()) {
@@ -136,7 +136,7 @@ std::vector<scenarios::MethodPointer> pointers(const std::vector<scenarios::Meth
   return out;
 }
 
-/// Returns the requested point of a curve; empty if there is none.
+/// Returns the requested point of a curve; empty if there is no match.
 scenarios::Setting setting_of(const scenarios::DataRoot& data, const RunOptions& options, std::uint64_t seed) {
   if (options.vary.empty()) return {};
   const scenarios::Setting setting = scenarios::setting_from(options.vary);
