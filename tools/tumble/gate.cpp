@@ -146,7 +146,7 @@ json to_json(const std::vector<GateResult>& results, bool passes) {
   return {{"verdict", passes ? "pass" : "fail"}, {"held", std::move(rows)}};
 }
 
-/// Loads the gate; the result is empty if absent and --accept creates the first one.
+/// Loads the gate; the result is empty if it does not exist and --accept creates the first one.
 std::optional<scenarios::Gate> load(const scenarios::DataRoot& data, const GateOptions& options,
                                     const std::vector<scenarios::MethodPointer>& given, const std::string& suite) {
   const fs::path file = gate_file(data, options, suite);

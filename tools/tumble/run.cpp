@@ -136,7 +136,7 @@ std::vector<scenarios::MethodPointer> pointers(const std::vector<scenarios::Meth
   return out;
 }
 
-/// Returns the requested point of a curve; empty if there is no match.
+/// Returns the requested point of a curve; empty by default.
 scenarios::Setting setting_of(const scenarios::DataRoot& data, const RunOptions& options, std::uint64_t seed) {
   if (options.vary.empty()) return {};
   const scenarios::Setting setting = scenarios::setting_from(options.vary);
