@@ -82,7 +82,7 @@ fs::path unfinished(const fs::path& folder) {
 
 std::vector<std::uint8_t> read_bytes(const fs::path& path) {
   std::ifstream file(path, std::ios::binary);
-  if (!file) throw BadInput(path.string() + ": cannot be read");
+  if (!file) throw BadInput(path.string() + ": cannot be read; must be a regular file");
   try {
     return {std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
   } catch (const std::ios_base::failure& error) {  // opening a folder succeeds, but reading it fails
@@ -93,7 +93,7 @@ std::vector<std::uint8_t> read_bytes(const fs::path& path) {
 /// The list may come from an untrusted source, so only files in its own folder are read or removed.
 std::string file_name(const std::string& name, const char* ending, const char* what) {
   if (name.empty() || fs::path(name).filename() != name || name.starts_with('.') || !name.ends_with(ending))
-    throw BadInput("'" + name + "' is not the name of a " + what + " beside it");
+    throw BadInput("'" + name + "' is not the name of a " + what + " in the same folder");
   return name;
 }
 

@@ -24,7 +24,7 @@ namespace fs = std::filesystem;
 constexpr int kPollMs = 200;
 /// Time limit for simulation and drawing in addition to the methods, in units of one method's time limit.
 constexpr double kOtherTimeouts = 3.0;
-constexpr const char* kTypical = "The draw whose score is the median one of its scenario";
+constexpr const char* kTypical = "The draw with the median score of its scenario";
 constexpr const char* kFailed = "The draw on which most methods failed";
 constexpr const char* kAlsoFailed = "A draw on which methods failed";
 
@@ -139,7 +139,7 @@ std::vector<std::string> keep_known(const scenarios::DataRoot& data, const fs::p
   if (!options.note) return others;
   for (const std::string& what : found.unreadable)
     options.note(
-        fmt::format("an example that stood there is left out: {}; the list as it was: {}", what, aside.string()));
+        fmt::format("an existing example is left out: {}; copy of the damaged list: {}", what, aside.string()));
   return others;
 }
 
@@ -187,7 +187,7 @@ class Makers {
   };
 
   void start(Making& making) {
-    say(fmt::format("{}, seed {}: running it again for its pictures", making.draw.scenario, making.draw.seed));
+    say(fmt::format("{}, seed {}: running the draw again for its pictures", making.draw.scenario, making.draw.seed));
     const double limit_s = timeout_s_ * (static_cast<double>(making.methods.size()) + kOtherTimeouts);
     try {
       scenarios::Process process([&](int fd) { make(data_, folder_, making, fd); }, true);
@@ -212,7 +212,7 @@ class Makers {
     if (late) worker.process.kill();
     const scenarios::Process::End end = worker.process.wait();
     worker.making->done = !late && end.normal && worker.making->text.starts_with('{');
-    if (late) worker.making->text = "it did not end in time";
+    if (late) worker.making->text = "exceeded its time limit";
     if (!late && !end.normal) worker.making->text = "its process " + end.describe();
     if (!worker.making->done) say_failed(*worker.making);
     return true;

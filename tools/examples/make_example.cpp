@@ -50,13 +50,13 @@ void add_maps(const scenarios::RunResult& run, Example& example) {
     names += fmt::format("{}{} ({:.1f} % of its points within 0.1 m)", names.empty() ? "" : ", ", map.name,
                          100.0 * map.share_within(0.1f));
   }
-  example.pictures.push_back({"maps",
-                              "maps side by side, coloured by error",
-                              "Maps, left to right: " + names +
-                                  ". Each point has the colour of its distance from the true surface, from 0 (blue) to "
-                                  "1 m and more (red).",
-                              {},
-                              sim::png_bytes(map_picture(maps, run.recording.truth, 640, 480))});
+  example.pictures.push_back(
+      {"maps",
+       "maps next to each other, coloured by error",
+       "Maps, left to right: " + names +
+           ". The colour of each point is its distance to the true surface, from 0 (blue) to 1 m and more (red).",
+       {},
+       sim::png_bytes(map_picture(maps, run.recording.truth, 640, 480))});
 }
 
 /// Length of the animation [s]: long enough to see the robot turn, and a few hundred kB.
@@ -70,7 +70,7 @@ void add_moving(const Scene& scene, Example& example) {
   options.quality = 45.0f;
   const Span span = liveliest_span(*scene.truth, kMoving_s);
   example.moving = moving_picture(scene, span, options);
-  example.moving_caption = fmt::format("{:.1f} s of it at half speed, where it turns most",
+  example.moving_caption = fmt::format("{:.1f} s of the draw at half speed, where the robot turns fastest",
                                        1e-9 * static_cast<double>(span.end_ns - span.begin_ns));
 }
 
@@ -81,7 +81,7 @@ Scene scene_of(const scenarios::RunResult& run, const RunPaths& paths) {
 void add_path(const scenarios::RunResult& run, const RunPaths& paths, int width, int height, Example& example) {
   ExamplePicture picture{"scene",
                          "the robot along its path, with true and estimated paths",
-                         "The robot at instants equally far apart along its path." + paths.left_out_text(),
+                         "The robot at instants that are equally far apart along its path." + paths.left_out_text(),
                          {{"truth", kTruthColour}},
                          {}};
   for (std::size_t i = 0; i < paths.methods.size(); ++i)
@@ -96,7 +96,7 @@ void add_pictures(const scenarios::RunResult& run, const RunPaths& paths, Moving
   add_path(run, paths, 1280, 640, example);
   example.pictures.push_back({"film",
                               "film strip of the same motion",
-                              "The same motion close by, left to right and down.",
+                              "Close-ups of the same motion, in rows from left to right.",
                               {},
                               sim::png_bytes(film_picture(scene, 8, 4, 400, 300))});
   if (moving == Moving::drawn) add_moving(scene, example);

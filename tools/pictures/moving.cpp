@@ -61,7 +61,7 @@ std::size_t frame_count(const Span& span, const MovingOptions& options) {
 
 std::vector<std::uint8_t> moving_picture(const Scene& scene, const Span& span, const MovingOptions& options) {
   if (scene.truth == nullptr || scene.truth->p_WB_m.empty())
-    throw scenarios::BadInput("a moving picture needs a recording with its truth: it shows where the robot was");
+    throw scenarios::BadInput("an animation needs a recording with truth, which gives the position of the robot");
   const scenarios::TruthTrack track(*scene.truth, scenarios::Frame::body);
   const std::vector<std::int64_t> stands =
       options.strobe > 0 ? instants_along(*scene.truth, options.strobe) : std::vector<std::int64_t>{};

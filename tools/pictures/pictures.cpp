@@ -54,7 +54,7 @@ sim::Picture scene_picture(const Scene& scene, int robots, int width, int height
 
 sim::Picture film_picture(const Scene& scene, int frames, int columns, int width, int height) {
   if (scene.truth == nullptr || scene.truth->p_WB_m.empty()) {
-    throw scenarios::BadInput("a film strip needs a recording with its truth: it shows where the robot was");
+    throw scenarios::BadInput("a film strip needs a recording with truth, which gives the position of the robot");
   }
   const scenarios::TruthTrack track(*scene.truth, scenarios::Frame::body);
   sim::Renderer renderer(*scene.built);

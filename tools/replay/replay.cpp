@@ -30,7 +30,8 @@ void require_parallel(const sim::Sensors& sensors) {
   for (const sim::LidarRecord& lidar : sensors.lidars) {
     if (lidar.offset_ns.size() != lidar.position_L_m.size())
       throw scenarios::BadInput("replay: lidar '" + lidar.name + "' has " + std::to_string(lidar.position_L_m.size()) +
-                                " points and " + std::to_string(lidar.offset_ns.size()) + " times of them");
+                                " points and " + std::to_string(lidar.offset_ns.size()) +
+                                " time stamps; the numbers must be equal");
   }
 }
 
@@ -117,7 +118,8 @@ std::vector<Motion> motions_of(const ReplayInput& input, std::int64_t step_ns) {
     if (reference.empty()) reference = motions.back();
   }
   if (reference.empty())
-    throw scenarios::BadInput("there is no path to show: no truth that knows positions, and no estimate with poses");
+    throw scenarios::BadInput(
+        "there is no path to show: give a recording whose truth has positions, or an estimate with poses");
   return motions;
 }
 

@@ -47,12 +47,12 @@ Badge badge_of(const PageContent& content) {
   Badge badge;
   badge.label = content.title;
   if (!sound) {
-    badge.message = "certificate fails";
+    badge.message = "certificate failed";
     badge.colour = Badge::Colour::bad;
   } else if (counts.contests == 0) {
     badge.message = "nothing to compare";
   } else {
-    badge.message = fmt::format("{} of {} better than the baseline", counts.won, counts.contests);
+    badge.message = fmt::format("better than the baseline in {} of {}", counts.won, counts.contests);
     if (counts.lost > 0) badge.message += fmt::format(", {} worse", counts.lost);
     if (counts.lost > 0) badge.colour = Badge::Colour::bad;
     if (counts.won == counts.contests) badge.colour = Badge::Colour::good;

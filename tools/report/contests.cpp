@@ -120,38 +120,39 @@ Tally tally(const std::vector<ContestResult>& results) {
 }
 
 std::string tally_text(const Tally& tally) {
-  if (tally.contests == 0) return "Scores of single methods: there is nothing to compare them with";
+  if (tally.contests == 0) return "The results contain no method to compare with a baseline";
   if (tally.leader.empty() && tally.lost == tally.contests)
     return fmt::format("The baseline is better in all of {}", contests_text(tally.contests));
   if (tally.leader.empty() && tally.ahead > 0)
-    return fmt::format("{} ahead of the baseline in {} of {}, on too few draws to be sure",
+    return fmt::format("{} ahead of the baseline in {} of {}, but there are too few draws for certainty",
                        tally.ahead_by.empty() ? "The best methods are" : tally.ahead_by + " is", tally.ahead,
                        contests_text(tally.contests));
   if (tally.leader.empty())
-    return fmt::format("No method is shown to be better than the baseline in {}", contests_text(tally.contests));
+    return fmt::format("No method is significantly better than the baseline in {}", contests_text(tally.contests));
   if (tally.leader_won == tally.contests)
     return fmt::format("{} is better than the baseline in {}", tally.leader,
                        tally.contests == 1 ? "the one contest" : fmt::format("all {} contests", tally.contests));
-  std::string out = fmt::format("{} is best, and better than the baseline, in {} of {}", tally.leader, tally.leader_won,
-                                contests_text(tally.contests));
-  if (tally.won > tally.leader_won) out += fmt::format("; others in {}", tally.won - tally.leader_won);
+  std::string out = fmt::format("{} is best, and significantly better than the baseline, in {} of {}", tally.leader,
+                                tally.leader_won, contests_text(tally.contests));
+  if (tally.won > tally.leader_won) out += fmt::format("; other methods in {}", tally.won - tally.leader_won);
   return out;
 }
 
 std::string certainty_text(const ContestResult& result, std::size_t comparisons) {
   switch (result.certainty) {
     case Certainty::corrected:
-      return fmt::format("{} than chance explains, also after correction for {} comparisons",
+      return fmt::format("{} than chance explains, after correction for {} comparisons",
                          result.better ? "more" : "fewer", comparisons);
     case Certainty::interval:
-      return fmt::format("{} by its own interval; too few draws to stand among {} comparisons",
+      return fmt::format("{} by its own interval, but not significant after correction for {} comparisons",
                          result.better ? "better" : "worse", comparisons);
     case Certainty::open:
       break;
   }
   const double more = result.row.pairs_needed - static_cast<double>(result.row.pairs);
-  if (more >= 1.0 && more < 1e6) return fmt::format("not told apart; some {:.0f} more draws might", std::ceil(more));
-  return "not told apart";
+  if (more >= 1.0 && more < 1e6)
+    return fmt::format("not significant; about {:.0f} more draws could decide", std::ceil(more));
+  return "not significant";
 }
 
 }  // namespace tumble::tools

@@ -141,11 +141,11 @@ std::string caption_of(const Curve& curve) {
   const std::string axis = curve.axis + (doc.empty() ? "" : " (" + doc + ")");
   switch (curve.source) {
     case Curve::Source::set:
-      return what + curve.metric + " against " + axis + ", set to each value in every draw.";
+      return what + curve.metric + " against " + axis + ", with each value applied to every draw.";
     case Curve::Source::samples:
       return what + curve.metric + " over the clipped samples of a draw that lie in each bin of " + axis + ".";
     case Curve::Source::draws:
-      return what + curve.metric + " against " + axis + " of the draw, in bins of equally many draws.";
+      return what + curve.metric + " against " + axis + " of the draw, in bins with equal numbers of draws.";
   }
   return what;
 }
@@ -192,9 +192,10 @@ Figure curve_figure(const Curve& curve) {
 std::string curves_html(std::span<const Curve> curves, std::vector<Figure>& figures) {
   if (curves.empty()) return "";
   std::string out =
-      "<h3>Curves</h3>\n<p>Line: median over the draws; band: between the quartiles; dotted: the worst "
-      "5 %. A run that failed ranks as the worst of all, so a line ends where half of the runs fail. Below: the share "
-      "of runs that did not end <i>ok</i> or whose map failed, with its 95 % Clopper–Pearson interval.</p>\n";
+      "<h3>Curves</h3>\n<p>The line is the median over the draws, the band lies between the quartiles, and the dotted "
+      "line is the worst 5 %. A failed run ranks as the worst of all, so a line ends where half of the runs fail. The "
+      "lower plot is the share of failed runs (status other than <i>ok</i>, or a failed map) with its 95 % "
+      "Clopper–Pearson interval.</p>\n";
   for (auto curve = curves.begin(); curve != curves.end();) {
     const Curve& first = *curve;
     out += fmt::format("<details{}><summary>{} · {}</summary><div class=\"pair\">",

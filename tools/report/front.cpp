@@ -50,19 +50,18 @@ std::string draws_text(const Summary& summary) {
 /// Describes the input data of the methods and the source of the truth.
 std::string data_text(const PageContent& content) {
   if (!content.recorded)
-    return draws_text(content.summary) +
-           ", simulated, so that the truth is known; each method was given the very same recordings.";
-  return "Each was given the very same recordings (" + names_text(content.summary.scenarios, "of them") +
-         "), and is judged by the truth or the reference that a recording holds.";
+    return draws_text(content.summary) + " from simulation with known truth; all methods received the same recordings.";
+  return "All methods received the same recordings (" + names_text(content.summary.scenarios, "of them") +
+         ") and are scored against the truth or the reference that each recording contains.";
 }
 
 /// Describes the tasks of the contests.
 std::string tasks_text(const std::vector<ContestResult>& results) {
   using scenarios::Kind;
-  const std::pair<Kind, const char*> tasks[] = {{Kind::rate, "rate, how fast it turns"},
-                                                {Kind::attitude, "attitude, how it is turned"},
-                                                {Kind::position, "position, where it goes"},
-                                                {Kind::slam, "slam, where it goes and what is around it"}};
+  const std::pair<Kind, const char*> tasks[] = {{Kind::rate, "rate (angular velocity)"},
+                                                {Kind::attitude, "attitude (orientation)"},
+                                                {Kind::position, "position (trajectory)"},
+                                                {Kind::slam, "slam (trajectory and map)"}};
   std::string out;
   for (const auto& [kind, text] : tasks) {
     const auto of_kind = [kind = kind](const ContestResult& result) { return result.row.contest.kind == kind; };
@@ -99,9 +98,9 @@ std::string difference_text(const ContestResult& result) {
   const Interval& own = result.row.difference;
   if (!std::isfinite(own.value)) {
     const scenarios::MetricComparison& row = result.row;
-    if (!std::isfinite(row.median)) return row.contest.method + " failed on half of the draws or more";
-    if (!std::isfinite(row.against_median)) return row.contest.against + " failed on half of the draws or more";
-    return "one of the two failed on half of the draws or more";
+    if (!std::isfinite(row.median)) return row.contest.method + " failed on at least half of the draws";
+    if (!std::isfinite(row.against_median)) return row.contest.against + " failed on at least half of the draws";
+    return "one of the two failed on at least half of the draws";
   }
   const std::string value = styled_value(result.row.metric, own.value, true);
   const std::string sign = own.value > 0.0 ? "+" : "";
@@ -135,7 +134,7 @@ std::string contest_html(const ContestResult& result, std::size_t comparisons) {
 /// Folded descriptions of the methods.
 std::string methods_html(const std::vector<Fact>& methods) {
   if (methods.empty()) return "";
-  std::string out = "<details class=\"methods\"><summary>What the methods are</summary><dl class=\"facts\">";
+  std::string out = "<details class=\"methods\"><summary>Descriptions of the methods</summary><dl class=\"facts\">";
   for (const auto& [name, what] : methods) out += "<dt>" + escaped(name) + "</dt><dd>" + escaped(what) + "</dd>";
   return out + "</dl></details>\n";
 }
@@ -146,9 +145,9 @@ std::string contests_html(const std::vector<ContestResult>& results, std::size_t
   for (std::size_t i = 0; i < results.size(); ++i)
     (i < kShownContests ? shown : folded) += contest_html(results[i], comparisons);
   std::string out =
-      "<section class=\"contests\" id=\"contests\"><p class=\"key\">Of each contest the best method above the "
-      "baseline: medians over the draws, then the median difference of the pairs with its 95 % interval (BCa); the bar "
-      "is the same as a share of the baseline’s median, from −100 % to +100 %.</p>\n<ul>" +
+      "<section class=\"contests\" id=\"contests\"><p class=\"key\">Each row compares the best method with the "
+      "baseline: the medians over the draws, then the median of the paired differences with its 95 % interval (BCa). "
+      "The bar shows the same interval as a percentage of the baseline’s median, from −100 % to +100 %.</p>\n<ul>" +
       shown + "</ul>\n";
   if (!folded.empty())
     out += fmt::format("<details><summary>{} more contests</summary><ul>{}</ul></details>\n",
@@ -182,12 +181,12 @@ std::string front_html(const PageContent& content) {
     out += "<h1>" + escaped(tally_text(tally(results))) + "</h1>\n";
     const std::size_t methods = method_count(content.summary);
     out += fmt::format(
-        "<p class=\"lead\">Compared: {} from its sensors alone how a robot moved while it tumbles or rolls. {}",
-        methods == 1 ? "1 method that tells" : fmt::format("{} methods that tell", methods),
+        "<p class=\"lead\">This page compares {} the motion of a tumbling or rolling robot from its sensors. {}",
+        methods == 1 ? "1 method that estimates" : fmt::format("{} methods that estimate", methods),
         escaped(data_text(content)));
     if (!results.empty())
-      out += fmt::format(" A contest is one task on one {}: {}.", content.recorded ? "recording" : "scenario",
-                         tasks_text(results));
+      out += fmt::format(" A contest compares methods for one task on one {}: {}.",
+                         content.recorded ? "recording" : "scenario", tasks_text(results));
     out += "</p>\n";
   }
   out += "</div>\n";

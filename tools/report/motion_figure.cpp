@@ -92,14 +92,14 @@ std::string caption_of(const MotionMap& map) {
     shown += cloud.points.size();
   }
   std::string out = fmt::format(
-      "Each draw by the largest rate of its body and the largest specific force that its IMU would have read without a "
-      "rail; shaded the density of "
-      "all {} draws{}. Outlines: the largest that published campaigns report",
-      draws, shown < draws ? fmt::format(", of which {} stand as points", shown) : "");
+      "Each point is one draw: the largest rate of its body and the largest specific force that an IMU without "
+      "saturation would have measured. The shaded area is the density of all {} draws{}. The outlines are the largest "
+      "values in published campaigns",
+      draws, shown < draws ? fmt::format(", of which {} are drawn as points", shown) : "");
   for (const PublishedExtreme& extreme : map.extremes) out += "; " + extreme.source;
   return out +
-         ". The two maxima of a draw need not fall on one instant; what it was like between them is not in the "
-         "results.";
+         ". The two maxima of a draw may occur at different instants; the results do not contain the values between "
+         "them.";
 }
 
 }  // namespace

@@ -196,7 +196,8 @@ Figure box_figure(const Summary& summary, Kind kind, const std::string& metric, 
   figure.id = std::string(to_string(kind)) + "-" + metric;
   figure.caption = caption;
   if (holds_more_than_shown(summary, kind, metric))
-    figure.caption += fmt::format(" Of a box with more draws {} points, at equal steps of their rank.", kBoxPoints);
+    figure.caption +=
+        fmt::format(" For a box with more draws, {} points are drawn, at equal steps of rank.", kBoxPoints);
   Boxes boxes(metric);
   for (const Section& section : summary.sections) {
     if (section.kind == kind) boxes.add(section, "");
@@ -208,8 +209,8 @@ Figure box_figure(const Summary& summary, Kind kind, const std::string& metric, 
 Figure cost_figure(const Summary& summary) {
   Figure figure;
   figure.id = "cost";
-  figure.caption = "CPU time of one estimate. One point per draw, of a box with more than " +
-                   std::to_string(kBoxPoints) + " so many.";
+  figure.caption =
+      "CPU time of one estimate. Each draw is one point; a box has at most " + std::to_string(kBoxPoints) + " points.";
   Boxes boxes(scenarios::estimate_cost().name);
   for (const Section& section : summary.sections) boxes.add(section, std::string(to_string(section.kind)) + "/");
   boxes.put_into(figure, false);

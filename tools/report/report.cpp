@@ -50,7 +50,7 @@ std::vector<Fact> methods_told(const Summary& summary) {
   for (const scenarios::Section& section : summary.sections) {
     for (const scenarios::MethodSummary& method : section.methods) {
       Fact fact(full_name(section.kind, method.method) + (method.method == section.baseline ? " (baseline)" : ""),
-                method.what.empty() ? "Described by a file." : method.what);
+                method.what.empty() ? "The method is described by a file." : method.what);
       if (std::ranges::find(out, fact) == out.end()) out.push_back(std::move(fact));
     }
   }
@@ -77,8 +77,8 @@ std::vector<Fact> commands(const scenarios::Results& results, const ReportOption
   }
   if (!options.page.empty())
     out.emplace_back("This page", "tumble report " + database + " -o " + scenarios::shell_word(options.page.string()));
-  out.emplace_back("Paired differences, as tables (with --metric NAME of other metrics)", "tumble compare " + database);
-  out.emplace_back("What breaks a method, every number", "tumble sensitivity " + database + " --all");
+  out.emplace_back("Paired differences as tables (--metric NAME for other metrics)", "tumble compare " + database);
+  out.emplace_back("Influence of every number on each method", "tumble sensitivity " + database + " --all");
   return out;
 }
 
@@ -112,27 +112,28 @@ bool is_of(const scenarios::Results& results, const Example& example) {
 /// its own build and data.
 std::string how_to_get_pictures(const scenarios::Results& results, const ReportOptions& options) {
   const std::string none =
-      fmt::format("No pictures of single draws: there are none in {}", examples_folder(options.database).string());
+      fmt::format("There are no pictures of single draws in {}", examples_folder(options.database).string());
   const std::string made_by = results.note("build"), made_of = results.note("data");
   if (made_by == scenarios::kMixedBuilds)
-    return fmt::format("{}. The results are of several builds, and a sweep adds to those of its own alone.", none);
+    return fmt::format(
+        "{}. The results come from several builds, and a sweep can only extend results of its own build.", none);
   if (!made_by.empty() && made_by != scenarios::build_id())
-    return fmt::format("{}. A sweep by the build that made these results ({}) makes them; this one ({}) is refused.",
-                       none, made_by, scenarios::build_id());
+    return fmt::format(
+        "{}. Only a sweep by the build of these results ({}) can create them; this build ({}) is refused.", none,
+        made_by, scenarios::build_id());
   if (!made_of.empty() && !options.data.empty() && made_of != options.data)
     return fmt::format(
-        "{}. A sweep over the models and scenarios that these results were made of (digest {}) makes them; over those "
-        "that are found here (digest {}) it is refused.",
+        "{}. Only a sweep with the models and scenarios of these results (digest {}) can create them; those found on "
+        "this machine (digest {}) are refused.",
         none, made_of, options.data);
   const std::vector<std::string> commands = scenarios::commands_of(results.note(scenarios::kCommandNote));
   const std::string suite = results.note("suite");
-  return fmt::format(
-      "{}. They are made, and nothing that the results hold is run again, by: tumble sweep {} --db {} --examples 3",
-      none,
-      !commands.empty() ? commands.front()
-      : suite.empty()   ? "SUITE"
-                        : suite,
-      scenarios::shell_word(options.database.string()));
+  return fmt::format("{}. This command creates them and repeats no stored run: tumble sweep {} --db {} --examples 3",
+                     none,
+                     !commands.empty() ? commands.front()
+                     : suite.empty()   ? "SUITE"
+                                       : suite,
+                     scenarios::shell_word(options.database.string()));
 }
 
 /// Returns the URL, relative to the page, of a replay next to the database.
@@ -184,7 +185,7 @@ PageContent report_content(ReportInput input, const ReportOptions& options) {
   content.commands = commands(results, options);
   content.certificates = results.certificates();
   if (content.certificates.empty() && !content.recorded)
-    content.warnings.push_back("These results hold no certificate of their build.");
+    content.warnings.push_back("These results contain no certificate of their build.");
   for (const scenarios::Certificate& certificate : content.certificates) {
     content.versions.emplace_back("certificate", certificate_summary(certificate));
     if (!certificate.passes()) content.warnings.push_back("The certificate of build " + certificate.build + " fails.");
