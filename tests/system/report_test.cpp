@@ -220,7 +220,7 @@ TEST(Sweep, StoppedAtItsPicturesSaysSoAndLeavesNone) {
   const Ended stopped = running.wait();
   EXPECT_EQ(stopped.status, 1) << stopped.err;
   EXPECT_EQ(json_of(stopped)["draws_done"], 2);
-  EXPECT_THAT(stopped.err, HasSubstr("stopped: all draws are stored, their pictures are not made"));
+  EXPECT_THAT(stopped.err, HasSubstr("stopped: all draws are stored, but their pictures are missing"));
   EXPECT_FALSE(fs::exists(files)) << "nothing came into it";
 }
 

@@ -27,7 +27,8 @@ Table::Table(std::string title, std::vector<std::string> header)
     : title_(std::move(title)), header_(std::move(header)), right_from_(header_.size()) {}
 
 void Table::add_row(std::vector<std::string> cells) {
-  if (cells.size() > header_.size()) throw std::logic_error("table '" + title_ + "': a row is longer than the header");
+  if (cells.size() > header_.size())
+    throw std::logic_error("table '" + title_ + "': a row has more cells than the header");
   cells.resize(header_.size());
   rows_.push_back(std::move(cells));
 }

@@ -47,15 +47,17 @@ std::vector<scenarios::MethodPointer> methods_of(const BenchOptions& options) {
   std::vector<scenarios::MethodPointer> methods = scenarios::find_methods(options.methods);
   for (const scenarios::MethodPointer& each : methods)
     if (each->info.kind != methods.front()->info.kind)
-      throw BadInput(fmt::format("{}/{} and {}/{} are of two kinds: a bench is of one", to_string(each->info.kind),
-                                 each->info.name, to_string(methods.front()->info.kind), methods.front()->info.name));
+      throw BadInput(
+          fmt::format("{}/{} and {}/{} are methods of two kinds; all methods of a bench must have the same kind",
+                      to_string(each->info.kind), each->info.name, to_string(methods.front()->info.kind),
+                      methods.front()->info.name));
   return methods;
 }
 
 scenarios::Suite suite_of(const scenarios::DataRoot& data, const BenchOptions& options, scenarios::Kind kind) {
   scenarios::Suite suite =
       scenarios::load_suite(data, options.suite.empty() ? scenarios::bench_suite_name(kind) : options.suite);
-  if (suite.classes.empty()) throw BadInput("suite " + suite.name + " has no classes of draws (key 'draws')");
+  if (suite.classes.empty()) throw BadInput("suite " + suite.name + " has no classes of draws; add the key 'draws'");
   suite.methods = options.methods;
   return suite;
 }
@@ -80,7 +82,7 @@ std::vector<BenchResult> stored_results(const scenarios::DataRoot& data, const B
   std::vector<BenchResult> all = scenarios::read_bench_results(scenarios::bench_results_file(data, suite.name));
   for (const fs::path& file : options.beside) {
     const std::vector<BenchResult> more = scenarios::read_bench_results(file);
-    if (more.empty()) throw BadInput(file.string() + ": holds no result of a bench");
+    if (more.empty()) throw BadInput(file.string() + ": contains no bench results");
     all.insert(all.end(), more.begin(), more.end());
   }
   for (const BenchResult& each : all) scenarios::require_of_suite(each, suite);
@@ -113,7 +115,7 @@ BenchPage page_of(const scenarios::Results& results, const scenarios::Suite& sui
       page.stored.push_back(std::move(each));
     else
       page.left_out.push_back(
-          fmt::format("{}: its recording of {} is another, of another simulation", each.method, draw));
+          fmt::format("{}: its recording of {} differs, because another build simulated it", each.method, draw));
   }
   return page;
 }
@@ -135,8 +137,8 @@ int bench(const Session& session, const BenchOptions& options) {
   if (!options.lines.empty()) prepare_file(options.lines, {});
   const fs::path database = database_of(data, options, suite, methods);
   if (database.has_parent_path()) make_folder(database.parent_path());
-  session.note(fmt::format("{}, {} draws; results in {}, where a run that is stopped goes on", suite.name,
-                           suite.draw_count(), database.string()));
+  session.note(fmt::format("{}, {} draws; results in {}; a stopped run continues there", suite.name, suite.draw_count(),
+                           database.string()));
   const scenarios::DatabaseOwner owner(database);
   const InterruptFlag interrupt;
   scenarios::SweepOptions how;
@@ -166,14 +168,15 @@ int bench(const Session& session, const BenchOptions& options) {
 
 Action declare_bench(VerbOptions& verb, const Session& session) {
   auto options = std::make_shared<BenchOptions>();
-  verb.add("METHOD", options->methods, "NAME.yaml or NAME.py of yours, or a name; several of one kind").required();
-  verb.add("--suite", options->suite, "another suite whose draws are named [the standard one of the kind]");
-  verb.add("--beside", options->beside, "FILE.jsonl of results that others have published, compared too")
-      .one_at_a_time();
-  verb.add("--jobs", options->jobs, "processes at a time [the processors]").whole(1, 1024).shows_default();
-  verb.add("-o,--output", options->lines, "the lines of JSON besides, FILE.jsonl");
-  verb.add("--db", options->database, "the results database [named after suite, method and its version, here]");
-  verb.add_flag("--store", options->store, "keep the lines with the results that the tree holds");
+  verb.add("METHOD", options->methods,
+           "NAME.yaml or NAME.py of an external method, or the name of a method; several must have the same kind")
+      .required();
+  verb.add("--suite", options->suite, "suite with named draws [the standard suite of the kind]");
+  verb.add("--beside", options->beside, "FILE.jsonl with published results to compare").one_at_a_time();
+  verb.add("--jobs", options->jobs, "number of parallel processes [all processors]").whole(1, 1024).shows_default();
+  verb.add("-o,--output", options->lines, "FILE.jsonl for the lines of JSON");
+  verb.add("--db", options->database, "results database [in this folder, named after suite, method and version]");
+  verb.add_flag("--store", options->store, "store the lines with the results in the source tree");
   return [&session, options] { return bench(session, *options); };
 }
 

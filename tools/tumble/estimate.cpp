@@ -36,7 +36,7 @@ struct EstimateOptions {
 /// Returns why a run failed; sensors are named if the recording lacks them.
 std::string reason(const Status& status, const sim::Sensors& sensors) {
   const std::string field = status.field;
-  if (status.trouble == Trouble::empty && field == "imus") return "it needs an IMU, and the recording has none";
+  if (status.trouble == Trouble::empty && field == "imus") return "the method needs an IMU, and the recording has none";
   const std::string place = trouble_place(status, sensors);
   return status.message() + (place.empty() ? "" : ": " + place);
 }
@@ -47,8 +47,8 @@ scenarios::MethodPointer choose(const std::string& name, const scenarios::Subjec
   std::string refused;
   for (const scenarios::MethodPointer& method : scenarios::find_methods(name)) {
     if (method->info.needs_truth) {
-      refused =
-          "method '" + full_name(method->info) + "' needs the truth, which this verb never opens; use 'tumble run'";
+      refused = "method '" + full_name(method->info) +
+                "' needs the truth, which this verb never reads; use 'tumble run' instead";
     } else if (const std::string why = method->info.why_not(subject); !why.empty()) {
       refused = "method '" + full_name(method->info) + "': it " + why;
     } else {
@@ -57,7 +57,7 @@ scenarios::MethodPointer choose(const std::string& name, const scenarios::Subjec
   }
   if (fitting.empty()) throw BadInput(refused);
   if (fitting.size() > 1) {
-    std::string line = "--method " + name + " names several methods; say which:";
+    std::string line = "--method " + name + " names several methods; choose one of:";
     for (const scenarios::MethodPointer& method : fitting) line += " " + full_name(method->info);
     throw BadInput(line);
   }
@@ -96,7 +96,7 @@ int run_estimate(const Session& session, const EstimateOptions& options) {
   const scenarios::Method& method = *chosen;
   if (!options.learnt.empty() && !method.info.learns_rig) {
     throw BadInput("--learnt is for " + LearntFile::learning_methods() + "; '" + full_name(method.info) +
-                   "' learns nothing of the rig");
+                   "' does not calibrate the rig");
   }
   LearntFile learnt(options.learnt);
   const scenarios::Method learning = learnt.wrap(method);
@@ -131,15 +131,16 @@ int run_estimate(const Session& session, const EstimateOptions& options) {
 
 Action declare_estimate(VerbOptions& verb, const Session& session) {
   auto options = std::make_shared<EstimateOptions>();
-  verb.add("RECORDING", options->recording, "a recording, FILE.h5").required().check(a_recording);
-  verb.add("--method", options->method, "a method, as 'saave' or 'rate/saave'").required();
+  verb.add("RECORDING", options->recording, "recording, FILE.h5").required().check(a_recording);
+  verb.add("--method", options->method, "method, for example 'saave' or 'rate/saave'").required();
   verb.add("--set", options->parameters,
-           "METHOD.PARAMETER=NUMBER, as rate/tumble_lag.lag_s=0.5; repeat for more ('tumble list methods NAME')")
+           "METHOD.PARAMETER=NUMBER, for example rate/tumble_lag.lag_s=0.5; repeat for more ('tumble list methods "
+           "NAME')")
       .one_at_a_time();
   verb.add("-o,--output", options->folder, "folder for the estimate").required();
   verb.add("--learnt", options->learnt,
-           "FILE.json: what an earlier run of 'rate/tumble' or 'rate/tumble_lag' has learnt of the rig, if it "
-           "exists; written anew");
+           "FILE.json with the calibration of the rig from an earlier run of 'rate/tumble' or 'rate/tumble_lag', if it "
+           "exists; receives the calibration of this run");
   return [&session, options] { return run_estimate(session, *options); };
 }
 

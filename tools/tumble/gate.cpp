@@ -53,8 +53,8 @@ std::vector<scenarios::MethodPointer> given_methods(const GateOptions& options) 
   for (const std::string& name : options.methods) {
     if (!options.accept && !scenarios::is_method_file(name))
       throw scenarios::BadInput("--method " + name +
-                                ": must be a FILE.yaml that describes a method; of this build's, those that were "
-                                "accepted are held, and --accept takes in more");
+                                ": must be a FILE.yaml that describes a method; the accepted results determine which "
+                                "methods of this build run, and --accept adds methods");
   }
   return scenarios::find_methods(options.methods);
 }
@@ -77,7 +77,7 @@ void keep_accepted(const scenarios::Gate& gate, const GateOptions& options,
   for (const scenarios::MethodPointer& method : given) {
     if (std::none_of(accepted.begin(), accepted.end(), [&](const auto& run) { return is_of(run, method); }))
       throw scenarios::BadInput(full_name(method->info) + ": the gate of suite " + suite.name +
-                                " has no accepted run of it; --accept takes it in");
+                                " has no accepted run of this method; --accept adds it");
   }
   for (const std::string& name : names) require_known("scenario of suite " + suite.name, name, suite.scenarios);
   suite.scenarios = names;
@@ -174,13 +174,13 @@ std::string certificate_text(const Session& session, const scenarios::DataRoot& 
   scenarios::Results results(database, scenarios::Results::Mode::create_or_append);
   const auto certificate = scenarios::known_certificate(results, scenarios::CertificateStore(session.cache(), data));
   return certificate ? certificate_summary(*certificate)
-                     : "not measured of this build on this machine ('tumble certify' and 'tumble sweep' do)";
+                     : "not measured for this build on this machine; run 'tumble certify' or 'tumble sweep'";
 }
 
 /// Runs named cases, which define their own expectations.
 int run_case_gate(const Session& session, const scenarios::DataRoot& data, const GateOptions& options) {
   if (!options.accepted.empty() || !options.methods.empty())
-    throw scenarios::BadInput("--against, --method: a named case says itself what is held");
+    throw scenarios::BadInput("--against, --method: do not apply to a named case, which defines its own expectations");
   return hold_cases(session, data, {options.suite, options.jobs, options.database, options.accept});
 }
 
@@ -189,9 +189,9 @@ int run_gate(const Session& session, const GateOptions& options) {
   if (names_cases(data, options.suite)) return run_case_gate(session, data, options);
   scenarios::Suite suite = scenarios::load_suite(data, options.suite);
   if (!suite.recordings.empty())
-    throw scenarios::BadInput("suite '" + suite.name + "' is of recordings; a gate holds draws of scenarios");
+    throw scenarios::BadInput("suite '" + suite.name + "' contains recordings; a gate needs draws of scenarios");
   if (!suite.classes.empty())
-    throw scenarios::BadInput("suite '" + suite.name + "' names its draws; a gate holds seeds in a row");
+    throw scenarios::BadInput("suite '" + suite.name + "' names its draws; a gate needs a range of seeds");
   if (!options.accepted.empty() && options.accepted.extension() != ".yaml")
     throw scenarios::BadInput("--against " + options.accepted.string() + ": must be a FILE.yaml");
   suite.curves.clear();  // a gate covers scenarios at their stated settings only
@@ -239,18 +239,18 @@ int run_gate(const Session& session, const GateOptions& options) {
 Action declare_gate(VerbOptions& verb, const Session& session) {
   auto options = std::make_shared<GateOptions>();
   verb.add("SUITE", options->suite,
-           "a suite, a suite file, or a scenario: its fixed seeds are swept; 'regressions', or one of the named cases")
+           "suite, suite file or scenario, whose fixed seeds are run; or 'regressions', or a named case")
       .required()
       .check(a_suite_or_cases(session));
   verb.add("--against", options->accepted,
-           "the gate, FILE.yaml, with the accepted run beside it in FILE.csv [scenarios/gates/SUITE.yaml]");
+           "accepted results: FILE.yaml with FILE.csv in the same folder [scenarios/gates/SUITE.yaml]");
   verb.add("--method", options->methods,
-           "FILE.yaml: the method that it describes is held too, or accepted; with --accept also one of this build, "
-           "held from then on; repeat for more")
+           "FILE.yaml of an external method to check too; with --accept also a method of this build, which is checked "
+           "from then on; repeat for more")
       .one_at_a_time();
-  verb.add("--jobs", options->jobs, "processes at a time [the processors]").whole(1, 1024).shows_default();
-  verb.add("--db", options->database, "keep the results here, and do not run again what it holds [a temporary file]");
-  verb.add_flag("--accept", options->accept, "write this run as the accepted one instead of being held to it");
+  verb.add("--jobs", options->jobs, "number of parallel processes [all processors]").whole(1, 1024).shows_default();
+  verb.add("--db", options->database, "results database to keep; stored runs are not repeated [a temporary file]");
+  verb.add_flag("--accept", options->accept, "stores this run as the accepted results instead of checking it");
   return [&session, options] { return run_gate(session, *options); };
 }
 

@@ -51,7 +51,9 @@ Reached reached(const scenarios::Results& results, const scenarios::Scenario& na
     }
   }
   if (out.size() != named.named_case->expected.size())
-    throw scenarios::BadInput("case " + named.name + " cannot be simulated any more");
+    throw scenarios::BadInput(
+        "case " + named.name +
+        " has missing outcomes, because its draw can no longer be simulated; correct or delete its file");
   return out;
 }
 
@@ -93,7 +95,9 @@ void accept(const Session& session, const scenarios::DataRoot& data, scenarios::
   for (auto& [expected, outcome] : outcomes) {
     if (outcome.status == scenarios::OutcomeStatus::killed)
       throw scenarios::BadInput(named.name + ", " + expected.method +
-                                ": the machine ended the run, which cannot be accepted: " + outcome.message);
+                                ": the operating system killed the run, so its outcome cannot be accepted; run again "
+                                "with more free memory: " +
+                                outcome.message);
     expected = scenarios::accepted(expected, outcome);
     named.named_case->expected.push_back(expected);
   }
@@ -110,7 +114,7 @@ std::vector<scenarios::Scenario> cases_of(const scenarios::DataRoot& data, const
     out.push_back(scenarios::load_scenario(data, name));
     scenarios::require_known(out.back());
   }
-  if (out.empty()) throw scenarios::BadInput(data.regressions().string() + ": holds no named case");
+  if (out.empty()) throw scenarios::BadInput(data.regressions().string() + ": contains no named case");
   return out;
 }
 

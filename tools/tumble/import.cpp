@@ -93,7 +93,8 @@ Table table_of(const Imported& imported) {
 void say_what_is_assumed(const ImportOptions& options, const std::string& format, std::vector<std::string>& notes) {
   if (options.lever_arm_m.empty() && (format == "csv" || !options.imu.empty())) {
     notes.push_back(
-        "no --lever-arm: the IMU is taken to be at the robot's centre of mass; rates beyond a rail rest on it");
+        "no --lever-arm: the IMU is assumed at the robot's centre of mass; rates beyond saturation depend on the lever "
+        "arm");
   }
 }
 
@@ -110,7 +111,7 @@ int import_from(const Session& session, const ImportOptions& options) {
   if (const std::filesystem::path file = reference_file(options, format); !file.empty()) {
     scenarios::attach_reference(imported, reference_source(options, file, !imported.sensors.lidars.empty()));
     if (options.reference.empty())
-      imported.notes.push_back("the reference is " + file.filename().string() + ", which lies beside the sweeps");
+      imported.notes.push_back("the reference is " + file.filename().string() + ", found in the folder of the sweeps");
   }
   for (std::string& note : scenarios::lidar_rotation_notes(options.path.string(), imported, gyro_unit(options)))
     imported.notes.push_back(std::move(note));

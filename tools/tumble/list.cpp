@@ -253,7 +253,7 @@ Listing list_suites(const scenarios::DataRoot& data, const std::string& only) {
   Listing out;
   const std::vector<std::string> names = scenarios::suite_names(data);
   if (!only.empty()) require_known("suite", only, names);
-  Table table("", {"suite", "scenarios", "seeds", "methods", "varies", "time-out of a method", "meaning"});
+  Table table("", {"suite", "scenarios", "seeds", "methods", "varies", "time limit per method", "meaning"});
   const std::size_t all = scenarios::methods().size();
   const auto joined = [](const std::vector<std::string>& words) {
     std::string text;
@@ -303,7 +303,7 @@ const char* place_text(scenarios::Place place) {
 
 Listing list_metrics(const std::string& only) {
   Listing out;
-  Table table("", {"metric", "kind", "unit", "sense", "shown first, held", "meaning"});
+  Table table("", {"metric", "kind", "unit", "sense", "headline or gate", "meaning"});
   std::vector<std::string> names;
   for (const scenarios::Metric& metric : scenarios::metrics()) names.push_back(metric.info.name);
   if (!only.empty()) require_known("metric", only, names);
@@ -340,7 +340,7 @@ Action declare_list(VerbOptions& verb, const Session& session) {
   auto what = std::make_shared<std::string>();
   auto only = std::make_shared<std::string>();
   verb.add("WHAT", *what, "scenarios, methods, metrics, sensors or suites").required();
-  verb.add("NAME", *only, "one of them, with all of its numbers");
+  verb.add("NAME", *only, "name of one of them, to list all its parameters");
   return [&session, what, only] {
     const Listing out = listing(session, *what, *only);
     session.print(out.tables, out.document);

@@ -63,13 +63,13 @@ std::string usage_line(const CLI::App& app, const CLI::ParseError& error) {
     const std::vector<std::string> extras = app.remaining(true);
     const auto option =
         std::find_if(extras.begin(), extras.end(), [](const std::string& e) { return e.rfind('-', 0) == 0; });
-    if (option == extras.end()) return place + "'" + extras.front() + "' is one argument too many";
+    if (option == extras.end()) return place + "'" + extras.front() + "' is a superfluous argument";
     std::vector<std::string> known;
     for (const CLI::Option* each : verb.get_options()) {
       for (const std::string& name : each->get_lnames()) known.push_back("--" + name);
     }
     const std::string near = sim::nearest_name(*option, known);
-    if (near == *option) return place + "'" + near + "' goes behind the verb: tumble " + verb.get_name() + " " + near;
+    if (near == *option) return place + "'" + near + "' must follow the verb: tumble " + verb.get_name() + " " + near;
     return place + "unknown option '" + *option + "'" + (near.empty() ? "" : "; did you mean '" + near + "'?");
   }
   std::string reason = error.what();
@@ -92,16 +92,12 @@ int say(const char* prefix, const std::string& line, int status) {
 /// Shown when `tumble` is called without arguments.
 int show_the_way() {
   std::string text =
-      "tumble: a physics-simulated test harness and an estimator for robots that tumble and roll\n\n"
-      "first\n"
-      "  tumble run hill                a rig tumbles down a hill: ours beside the baseline, scores, pictures\n"
-      "  tumble run slip                a sphere rolls and slips\n"
-      "  tumble list scenarios          what can be simulated; also: methods, sensors, suites\n\n"
-      "your own recording\n"
-      "  tumble import FILE -o r.h5     a bag, a table of IMU readings, a folder of sweeps, a trajectory\n"
-      "  tumble estimate r.h5 --method rate/tumble -o DIR\n"
-      "  tumble score YOURS.tum r.h5    somebody else's trajectory against the truth of a recording\n\n"
-      "verbs (tumble VERB --help)\n";
+      "tumble: a physics-simulated test harness and an estimator for robots that tumble and roll\n\nfirst steps\n  "
+      "tumble run hill                a rig tumbles down a hill: our methods and baselines, scores, pictures\n  tumble "
+      "run slip                a sphere rolls and slips\n  tumble list scenarios          lists the scenarios; also: "
+      "methods, sensors, suites\n\nyour own recording\n  tumble import FILE -o r.h5     imports a bag, IMU readings, "
+      "lidar sweeps or a trajectory\n  tumble estimate r.h5 --method rate/tumble -o DIR\n  tumble score YOURS.tum r.h5 "
+      "   scores an external trajectory against the truth of a recording\n\nverbs (tumble VERB --help)\n";
   for (const Verb& verb : verbs()) text += fmt::format("  {:<11}  {}\n", verb.name, verb.doc);
   std::fputs(text.c_str(), stdout);
   return kDone;
@@ -116,7 +112,7 @@ void add_table_format(CLI::App& options, Session& session) {
     require_known("format of tables", name, known);
     session.format = names.at(name);
   };
-  options.add_option_function<std::string>("--format", choose, "tables as text, md, csv or tex [text]")
+  options.add_option_function<std::string>("--format", choose, "format of tables: text, md, csv or tex [text]")
       ->type_name("TEXT");
 }
 
@@ -131,8 +127,8 @@ int dispatch(int argc, const char* const* argv) {
   Action chosen;
   for (const Verb& verb : verbs()) {
     CLI::App* options = app.add_subcommand(verb.name, verb.doc);
-    options->add_flag("--json", session.json, "tables as JSON on standard output");
-    options->add_flag("--quiet", session.quiet, "no notes and no progress on standard error");
+    options->add_flag("--json", session.json, "prints tables as JSON on standard output");
+    options->add_flag("--quiet", session.quiet, "prints no notes and no progress on standard error");
     VerbOptions declared(*options);
     options->callback([action = verb.declare(declared, session), &chosen] { chosen = action; });
     // for some verbs --format is the format of a recording
@@ -167,7 +163,7 @@ int run_program(int argc, const char* const* argv) {
   } catch (const sim::SimulationFailure& error) {
     return say("the draw is rejected: ", error.what(), kCheckFailed);
   } catch (const std::bad_alloc&) {
-    return say("", "no memory is left", kBadInput);
+    return say("", "out of memory", kBadInput);
   } catch (const std::exception& error) {
     return say("defect: ", error.what(), kDefect);
   } catch (...) {

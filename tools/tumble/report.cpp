@@ -136,9 +136,8 @@ void add_sensitivity(const Session& session, const std::string& data_found, Repo
   } else {
     numbers = numbers_of_motions(input.draws, some);
     input.sensitivity_note =
-        "What the draws were cannot be told here: the results were made of other models and scenarios. Instead, "
-        "against "
-        "what the motions were like. ";
+        "The page lists the influence of the motions instead of the drawn numbers, because these results come from "
+        "other models and scenarios. ";
   }
   scenarios::SensitivityOptions options;
   for (const Section& section : input.summary->sections) {
@@ -151,11 +150,11 @@ void add_sensitivity(const Session& session, const std::string& data_found, Repo
   const std::string needed = draws_needed_text(input.summary->draws);
   input.sensitivity_note += needed;
   if (input.sensitivity.empty() && needed.empty())
-    input.sensitivity_note += "No number is known in which the draws of a scenario differ. ";
+    input.sensitivity_note += "The draws of a scenario differ in no known number. ";
   for (const auto& [scenario, draws] : input.summary->draws) {
     if (draws <= static_cast<std::int64_t>(kSensitivityDraws)) continue;
-    input.sensitivity_note +=
-        fmt::format("Of a scenario with more draws {}, at equal steps of their seeds.", kSensitivityDraws);
+    input.sensitivity_note += fmt::format(
+        "For scenarios with more draws, only {} are used, at equal steps of their seeds.", kSensitivityDraws);
     break;
   }
 }
@@ -186,13 +185,13 @@ int report(const Session& session, const ReportVerbOptions& options) {
     if (!output.empty()) prepare_file(output, std::vector<std::filesystem::path>{options.database});
   }
   if (!options.badge.empty() && options.badge == options.page)
-    throw scenarios::BadInput("--badge and --output are one file, " + options.page.string());
+    throw scenarios::BadInput("--badge and --output name the same file, " + options.page.string());
   const scenarios::Results results(options.database, scenarios::Results::Mode::read_only);
   const std::vector<scenarios::DrawValues> draws = results.draws();
   Summary summary;
   std::vector<Curve> curves = scenarios::find_curves(results, draws, summary);
   if (summary.scenarios.empty() && curves.empty())
-    throw scenarios::BadInput(options.database.string() + ": holds no outcomes to report");
+    throw scenarios::BadInput(options.database.string() + ": contains no outcomes to report");
   std::vector<Table> tables;
   for (const Section& section : summary.sections) {
     Table table = score_table(section, options.all);
@@ -222,11 +221,10 @@ int report(const Session& session, const ReportVerbOptions& options) {
 
 Action declare_report(VerbOptions& verb, const Session& session) {
   auto options = std::make_shared<ReportVerbOptions>();
-  verb.add("DATABASE", options->database, "a results database, FILE.db").required();
-  verb.add("-o,--output", options->page, "the page, FILE.html [tables alone]");
-  verb.add("--badge", options->badge, "a badge, FILE.svg: the suite and how many contests are won");
-  verb.add_flag("--all", options->all,
-                "all metrics in the printed tables, not the headline ones alone, and the curves over bins");
+  verb.add("DATABASE", options->database, "results database, FILE.db").required();
+  verb.add("-o,--output", options->page, "page to write, FILE.html [prints only tables]");
+  verb.add("--badge", options->badge, "badge to write, FILE.svg: the suite and the number of contests won");
+  verb.add_flag("--all", options->all, "prints all metrics and the curves over bins, not only the headline metrics");
   return [&session, options] { return report(session, *options); };
 }
 

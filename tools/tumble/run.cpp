@@ -85,7 +85,7 @@ RunOptions first_run(RunOptions options, const scenarios::Scenario& scenario) {
 
 void say_what_next(const Session& session, const RunOptions& options, const scenarios::RunResult& result) {
   const std::string folder = options.folder.string();
-  session.note("left in " + folder +
+  session.note("results written to " + folder +
                "/: recording.h5, situation.yaml, estimates/, snapshots/scene.png and film.png, replay.html");
   session.note("next:");
   const auto say = [&](const std::string& command, const char* what) {
@@ -94,12 +94,12 @@ void say_what_next(const Session& session, const RunOptions& options, const scen
   if (std::any_of(result.methods.begin(), result.methods.end(),
                   [](const auto& method) { return method->info.kind == scenarios::Kind::slam; })) {
     say(fmt::format("tumble render {0}/recording.h5 {0}/estimates/slam-* --map -o {0}/maps.png", folder),
-        "the maps, coloured by error");
+        "maps, coloured by error");
   }
-  say(fmt::format("tumble run {} --seed 2 -o {}_seed_2", options.scenario, folder), "another draw, every method");
-  say(fmt::format("tumble sweep {} --seeds 1..8 --db {}.db", options.scenario, folder), "eight draws of it");
-  say(fmt::format("tumble report {0}.db -o {0}.html", folder), "the tables and one page of them");
-  say("tumble list methods", "what else there is");
+  say(fmt::format("tumble run {} --seed 2 -o {}_seed_2", options.scenario, folder), "another draw with every method");
+  say(fmt::format("tumble sweep {} --seeds 1..8 --db {}.db", options.scenario, folder), "eight draws");
+  say(fmt::format("tumble report {0}.db -o {0}.html", folder), "tables and one page with them");
+  say("tumble list methods", "all methods");
 }
 
 /// Writes the recording, the situation and every estimate under the names that other verbs expect.
@@ -170,7 +170,7 @@ std::vector<scenarios::Method> asked_methods(const RunOptions& options, const sc
   const auto selected = select_methods(options.methods);
   if (!options.learnt.empty() &&
       std::none_of(selected.begin(), selected.end(), [](const auto& method) { return method->info.learns_rig; })) {
-    throw scenarios::BadInput("--learnt is for " + LearntFile::learning_methods() + ", of which none is to run");
+    throw scenarios::BadInput("--learnt is for " + LearntFile::learning_methods() + ", but no such method runs");
   }
   if (!options.methods.empty() && scenarios::applicable(selected, scenarios::subject_of(scenario)).empty())
     scenarios::require_applies(*selected.front(), scenario);
@@ -229,25 +229,29 @@ int run(const Session& session, const RunOptions& given) {
 
 Action declare_run(VerbOptions& verb, const Session& session) {
   auto options = std::make_shared<RunOptions>();
-  verb.add("SCENARIO", options->scenario, "a scenario of the catalogue, or a scenario file")
+  verb.add("SCENARIO", options->scenario, "scenario of the catalogue, or a scenario file")
       .required()
       .check(a_scenario(session));
-  verb.add("--seed", options->seed, "which draw of it [1, of a named case its own]");
-  verb.add("--method", options->methods, "a method, as 'saave' or 'rate/saave'; repeat for more [all that apply]")
+  verb.add("--seed", options->seed, "seed of the draw [1; for a named case: its own]");
+  verb.add("--method", options->methods,
+           "method, for example 'saave' or 'rate/saave'; repeat for more [all that apply]")
       .one_at_a_time();  // each --method takes exactly one word
   verb.add("--set", options->parameters,
-           "METHOD.PARAMETER=NUMBER, as rate/tumble_lag.lag_s=0.5; repeat for more ('tumble list methods NAME')")
+           "METHOD.PARAMETER=NUMBER, for example rate/tumble_lag.lag_s=0.5; repeat for more ('tumble list methods "
+           "NAME')")
       .one_at_a_time();
   verb.add("--vary", options->vary,
-           "KEY=NUMBER, a point of a suite's curve: world.rock_count=10, given.lever_arm_error_m=0.03");
-  verb.add("--threads", options->threads, "threads for the lidar; the result does not depend on them")
+           "KEY=NUMBER, a point of a suite's curve, for example world.rock_count=10 or given.lever_arm_error_m=0.03");
+  verb.add("--threads", options->threads, "number of threads for the lidar; the result does not depend on it")
       .whole(1, 1024)
       .shows_default();
-  verb.add("-o,--output", options->folder, "folder for recording, estimates, pictures and replay [none are left]");
+  verb.add("-o,--output", options->folder, "folder for recording, estimates, pictures and replay [nothing is written]");
   verb.add("--learnt", options->learnt,
-           "FILE.json: what 'rate/tumble' and 'rate/tumble_lag' start from, if it exists; written anew with what "
-           "the run has learnt of the rig");
-  verb.footer("The scenario alone runs ours beside the baseline and leaves everything in a folder named after it.");
+           "FILE.json with the calibration of the rig from which 'rate/tumble' and 'rate/tumble_lag' start, if it "
+           "exists; receives the calibration of this run");
+  verb.footer(
+      "With a scenario only, the program runs our methods and the baselines and writes everything to a folder with the "
+      "scenario's name.");
   return [&session, options] { return run(session, *options); };
 }
 

@@ -53,15 +53,15 @@ void order(ScoreOptions& options) {
 /// Checks that the truth has poses and that the estimate overlaps with the truth in time.
 void require_common_time(const ScoreOptions& options, const scenarios::Estimate& estimate, const sim::Truth& truth) {
   const bool known = std::any_of(truth.p_WB_m.begin(), truth.p_WB_m.end(), [](const auto& p) { return p.allFinite(); });
-  if (!known) throw scenarios::BadInput(options.recording.string() + ": its truth holds no known place");
+  if (!known) throw scenarios::BadInput(options.recording.string() + ": its truth contains no known position");
   if (estimate.poses.empty()) return;
   const double end_s = 1e-9 * static_cast<double>(truth.period_ns) * static_cast<double>(truth.p_WB_m.size() - 1);
   const double first_s = 1e-9 * static_cast<double>(estimate.poses.front().time_ns);
   const double last_s = 1e-9 * static_cast<double>(estimate.poses.back().time_ns);
   if (first_s <= end_s && last_s >= 0.0) return;
-  throw scenarios::BadInput(
-      fmt::format("{}: poses from {:.3f} s to {:.3f} s, but the truth of {} goes from 0 to {:.3f} s: another clock?",
-                  options.estimate.string(), first_s, last_s, options.recording.string(), end_s));
+  throw scenarios::BadInput(fmt::format(
+      "{}: the poses cover {:.3f} s to {:.3f} s, but the truth of {} covers 0 to {:.3f} s; the clocks may differ",
+      options.estimate.string(), first_s, last_s, options.recording.string(), end_s));
 }
 
 constexpr double kHoleShare = 0.2;  // share of the recording; a longer gap counts as a divergence (scenarios::verdict)
@@ -110,8 +110,8 @@ void require_seconds(const ScoreOptions& options, const scenarios::Estimate& est
   for (const auto& [unit, of_second] : {std::pair("ms", 1e3), std::pair("us", 1e6), std::pair("ns", 1e9)}) {
     if (factor > kNear * of_second || kNear * factor < of_second) continue;
     throw scenarios::BadInput(
-        fmt::format("{}: {} of its {} poses lie within {}, which is of {:.3f} s; they go on for {:.3f} s, {:.0f} times "
-                    "as long: another unit of time, {}? must be seconds",
+        fmt::format("{}: only {} of its {} poses are within the time of {}, {:.3f} s, but its poses cover {:.3f} s, "
+                    "{:.0f} times as long. The time unit may be {}; must be seconds",
                     options.estimate.string(), standing.compared, standing.poses, options.recording.string(),
                     standing.end_s, length_s, factor, unit));
   }
@@ -121,8 +121,8 @@ void require_seconds(const ScoreOptions& options, const scenarios::Estimate& est
 void require_compared(const ScoreOptions& options, const Standing& standing) {
   if (standing.compared >= kComparedMin && standing.spanned() >= kSpannedShareMin) return;
   throw scenarios::BadInput(
-      fmt::format("{}: {} of its {} poses lie within {}, and cover {:.1f} % of its {:.3f} s; must be at least {} poses "
-                  "and {:.0f} %: another unit of time, or another clock?",
+      fmt::format("{}: only {} of its {} poses are within the time of {}. They cover {:.1f} % of its {:.3f} s; must be "
+                  "at least {} poses and {:.0f} %. The time unit or the clock may differ",
                   options.estimate.string(), standing.compared, standing.poses, options.recording.string(),
                   100.0 * standing.spanned(), standing.end_s, kComparedMin, 100.0 * kSpannedShareMin));
 }
@@ -130,8 +130,8 @@ void require_compared(const ScoreOptions& options, const Standing& standing) {
 std::string alignment_text(const Standing& standing) {
   const Eigen::Vector3d& t = standing.alignment.translation_m;
   return fmt::format(
-      "position and yaw at the first pose that the truth knows, {:.3f} s: yaw {:.6g} rad, ({:.6g}, {:.6g}, "
-      "{:.6g}) m; scale and tilt are not aligned",
+      "position and yaw at the first common pose, {:.3f} s: yaw {:.6g} rad, ({:.6g}, {:.6g}, {:.6g}) m; scale and tilt "
+      "are not aligned",
       standing.first_s, standing.alignment.yaw_rad, t.x(), t.y(), t.z());
 }
 
@@ -211,10 +211,10 @@ Claim read_claim(const Session& session, const ScoreOptions& options) {
   Claim claim;
   claim.info = scenarios::read_info(options.recording);
   if (!claim.info.has_truth)
-    throw scenarios::BadInput(options.recording.string() + ": holds no truth to score against");
+    throw scenarios::BadInput(options.recording.string() + ": contains no truth to score against");
   claim.sensors = scenarios::read_sensors(options.recording);
   if (!scenarios::states_digest(options.recording))
-    session.note(options.recording.string() + ": states no digest of its data, so that damage would not show");
+    session.note(options.recording.string() + ": contains no digest of its data, so damage cannot be detected");
   claim.truth = scenarios::read_truth(options.recording);
   claim.estimate = scenarios::read_estimate(options.estimate, claim.kind, claim.method,
                                             frame_of(options.frame, !claim.truth.imus.empty()));
@@ -222,9 +222,10 @@ Claim read_claim(const Session& session, const ScoreOptions& options) {
   claim.foreign = !std::filesystem::is_directory(options.estimate);
   if (!claim.foreign && scenarios::estimated_sensors(options.estimate).empty())
     session.note("caution: " + options.estimate.string() +
-                 " does not say which recording it was made from, so that one of another would not show");
+                 " does not state its recording, so an estimate of another recording cannot be detected");
   if (!claim.foreign && !options.kind.empty())
-    throw scenarios::BadInput("--kind is for a TUM file; " + options.estimate.string() + " says what it is");
+    throw scenarios::BadInput("--kind applies to a TUM file only; " + options.estimate.string() +
+                              " already states its kind");
   if (claim.foreign) complete_foreign(session, options, claim);
   if (claim.kind == scenarios::Kind::position || claim.kind == scenarios::Kind::slam)
     require_common_time(options, claim.estimate, claim.truth);
@@ -288,12 +289,12 @@ int score_estimate(const Session& session, const ScoreOptions& options) {
 Action declare_score(VerbOptions& verb, const Session& session) {
   auto options = std::make_shared<ScoreOptions>();
   verb.add("ESTIMATE", options->estimate, "folder of an estimate, or a TUM file (t x y z qx qy qz qw)").required();
-  verb.add("RECORDING", options->recording, "the recording with its truth, FILE.h5; may stand first").required();
+  verb.add("RECORDING", options->recording, "recording with truth, FILE.h5; may also be the first argument").required();
   verb.add("--frame", options->frame,
-           "whose poses a TUM file holds: imu, lidar, body or centre [imu; body where the recording has none]");
+           "frame of the poses in a TUM file: imu, lidar, body or centre [imu; body if the recording has no IMU]");
   verb.add("--kind", options->kind,
-           "what a TUM file is scored as: position or slam, which adds the rotation at the end [slam where the "
-           "recording has a lidar and no rolling sphere]");
+           "kind of a TUM file: position or slam, which also scores the rotation at the end [slam if the recording has "
+           "a lidar and no rolling sphere]");
   return [&session, options] {
     order(*options);
     return score_estimate(session, *options);

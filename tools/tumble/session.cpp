@@ -51,10 +51,10 @@ scenarios::DataRoot Session::data() const {
     if (fs::is_directory(data.models(), error)) return data;
     // if the user names a folder, no other folder is tried: it might hold other models
     if (given != nullptr && *given != '\0')
-      throw scenarios::BadInput("TUMBLE_DATA: no folder " + data.models().string());
+      throw scenarios::BadInput("TUMBLE_DATA: there is no folder " + data.models().string());
   }
   throw scenarios::BadInput(
-      "the models are not found; set TUMBLE_DATA to the folder that holds models/ and scenarios/");
+      "the models are not found; set TUMBLE_DATA to the folder that contains models/ and scenarios/");
 }
 
 fs::path Session::plotly() const {
@@ -64,7 +64,7 @@ fs::path Session::plotly() const {
     if (fs::is_regular_file(bundle, error)) return bundle;
   }
   throw scenarios::BadInput(
-      "plotly.min.js is not found, and the report needs it; run tools/setup, then configure and build again");
+      "plotly.min.js is not found, but the report needs it; run tools/setup, then configure and build again");
 }
 
 fs::path Session::program() const {
