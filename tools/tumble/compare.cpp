@@ -227,7 +227,7 @@ Action declare_compare(VerbOptions& verb, const Session& session) {
   verb.add("--against", options->against, "method to compare with [the last --method, or the baseline]");
   verb.add("--metric", options->metrics, "metric; repeat for more [headline metrics of the kind]").one_at_a_time();
   verb.add("--margin", options->margin,
-           "largest loss that counts as " no worse ": in the metric's unit, or as 10% of the other method's value");
+           "largest loss that still counts as not worse: in the metric's unit, or as 10% of the other method's value");
   verb.add("--risk", options->risk, "accepted probability of any false finding in a table")
       .within(1e-6, 0.5)
       .shows_default();
