@@ -142,7 +142,7 @@ constexpr std::array kParameters = {
 
 constexpr double kSlowestUpdate_hz = 0.1;
 
-/// One triad's rail.
+/// Checks the saturation parameters of one triad.
 void check_rail(const Values& values, const std::string& place, const std::string& prefix, const std::string& unit) {
   const std::string rail_name = prefix + "_rail_" + unit;
   const std::string axis_name = prefix + "_plateau_axis_spread_" + unit;
@@ -172,7 +172,7 @@ void check_rail(const Values& values, const std::string& place, const std::strin
   }
 }
 
-/// The readings of a triad's every update are held until the next one: a rate that is hardly any would fill the memory.
+/// Readings between two updates are buffered, so a very low update rate would exhaust the memory.
 void check_update(const Values& values, const std::string& place, const std::string& prefix) {
   const std::string name = prefix + "_update_hz";
   const double update_hz = values.at(name);

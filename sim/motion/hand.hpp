@@ -10,12 +10,12 @@
 
 namespace tumble::sim {
 
-/// Where a hand wants the geometric centre of a sphere to be.
+/// Target of the hand for the geometric centre of a sphere.
 struct Reference {
   Eigen::Vector3d p_m = Eigen::Vector3d::Zero(), v_m_s = Eigen::Vector3d::Zero(), a_m_s2 = Eigen::Vector3d::Zero();
 };
 
-/// Numbers that every motion by hand takes.
+/// Parameters that every hand motion has.
 inline constexpr std::array kHandParameters = {
     Parameter{"stiffness_n_m", 400.0, 1.0, 5000.0, "N/m", "of the hand about its path, level; assumed"},
     Parameter{"damping_n_s_m", 90.0, 0.0, 1000.0, "N s/m", "of the hand, level; assumed"},
@@ -39,7 +39,7 @@ inline constexpr std::array kHandParameters = {
 };
 inline constexpr std::size_t kHandPatches = 3;
 
-/// The hand's numbers and a motion's own, as one table.
+/// Combines the hand's parameters with those of a motion in one table.
 template <std::size_t N>
 constexpr std::array<Parameter, kHandParameters.size() + N> with_hand(const std::array<Parameter, N>& own) {
   std::array<Parameter, kHandParameters.size() + N> all{};
@@ -48,18 +48,19 @@ constexpr std::array<Parameter, kHandParameters.size() + N> with_hand(const std:
   return all;
 }
 
-/// A hand on a sphere: a level force at its centre that follows a reference (spring, damper, and the force that rolling
-/// takes), unsteady as hands are, and bursts of torque on patches of other friction. It neither lifts nor presses.
-/// The hand is no body: nothing of it touches the sphere.
+/// A hand on a sphere: a horizontal force at its centre that follows a reference (spring, damper, and the feed-forward
+/// force of rolling), with tremor, and bursts of torque on patches of other friction. The hand applies no vertical
+/// force and has no body in the simulation.
 class Hand {
  public:
-  /// `motion` begins messages. Throws InvalidSituation when the robot is not a sphere. `world` outlives the hand.
+  /// Messages start with `motion`. Throws InvalidSituation if the robot is not a sphere. `world` must outlive the hand.
   Hand(const std::string& motion, const Values& values, const engine::World& world);
 
   double radius_m() const { return radius_m_; }
-  /// At rest with the centre at `p_G_m`; the heavy side points down, so that gravity holds the sphere.
+  /// Returns the state at rest with the centre at `p_G_m`; the heavy side points down, so that the sphere is in
+  /// equilibrium.
   BodyState at_rest(const Eigen::Vector3d& p_G_m) const;
-  /// Remembers when a burst began; call it with rising times.
+  /// Returns the current wrench. It stores when a burst began, so times must increase between calls.
   Wrench wrench(const BodyState& state, const Reference& reference);
 
  private:

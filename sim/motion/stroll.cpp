@@ -32,7 +32,8 @@ constexpr std::array kStrollParameters = {
 
 constexpr double kSwayLow_hz = 0.2, kSwayHigh_hz = 1.2;
 
-/// Carried by a walker along a level eight, looking ahead, unsteady as hands are; from rest to rest.
+/// A walker carries the robot along a horizontal figure of eight, from rest to rest. The robot faces along the path,
+/// with the tremor of a hand.
 class Stroll : public Motion {
  public:
   Stroll(const Values& values, const engine::World& world)
@@ -56,7 +57,7 @@ class Stroll : public Motion {
   }
 
  private:
-  /// How far along the eight [rad]: the integral of a rate that is eased in and out, in closed form.
+  /// Phase along the eight [rad]: the integral of an eased rate in closed form.
   double phase_rad(double walked_s) const {
     const auto begun_s = [this](double t_s) {  // integral of `eased` over the first `ease_s`
       const double u = std::clamp(t_s / ease_s_, 0.0, 1.0);
@@ -68,7 +69,7 @@ class Stroll : public Motion {
     return phase_rate_rad_s_ * (walk_s_ - ease_s_ - begun_s(walk_s_ - t_s));
   }
 
-  /// Along the path at a phase.
+  /// Attitude along the path at a phase.
   Eigen::Quaterniond heading(double phase_rad) const {
     const double yaw_rad =
         std::atan2(2.0 * half_width_m_ * std::cos(2.0 * phase_rad), half_length_m_ * std::cos(phase_rad));
@@ -77,7 +78,7 @@ class Stroll : public Motion {
 
   CarriedPose path(double time_s) const {
     const double walked_s = time_s - values_.at("rest_s"), phase = phase_rad(walked_s);
-    // the unsteadiness sets in and ends within a second, without a jump of acceleration
+    // the tremor starts and ends within a second, with continuous acceleration
     const double share = eased(walked_s) * eased(walk_s_ - walked_s);
     const double step_rad = 2.0 * std::numbers::pi * values_.at("step_hz") * walked_s;
     const Eigen::Vector3d eight_m(half_length_m_ * std::sin(phase), half_width_m_ * std::sin(2.0 * phase),

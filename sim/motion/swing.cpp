@@ -30,7 +30,7 @@ constexpr std::array kSwingParameters = {
 
 constexpr double kSwingLongest_s = 3600.0;
 
-/// One swing: taken hold of, led away, held, let go.
+/// One swing: grip, lead aside, hold, release.
 struct Lift {
   double start_s;
   Eigen::Vector3d lift_W_m;
@@ -54,14 +54,14 @@ std::vector<Lift> plan_lifts(const Values& values, Stream& stream) {
   return lifts;
 }
 
-/// From 0 to 1 with neither velocity nor acceleration at its ends.
+/// Smooth step from 0 to 1 with zero velocity and acceleration at its ends.
 double smooth(double share) {
   const double u = std::clamp(share, 0.0, 1.0);
   return u * u * u * (10.0 + u * (-15.0 + 6.0 * u));
 }
 
-/// A hand that takes the lowest segment by its centre of mass: a spring and a damper to a place that moves. It turns
-/// nothing, and is no body.
+/// A hand that grips the lowest segment at its centre of mass: a spring and a damper to a moving target. It applies no
+/// torque and has no body in the simulation.
 class Swing : public Motion {
  public:
   Swing(const Values& values, const engine::World& world)
@@ -83,8 +83,9 @@ class Swing : public Motion {
     if (after == lifts_.begin()) return {};
     const Lift& lift = *std::prev(after);
     const double since_s = state.time_s - lift.start_s;
-    constexpr double kGrip_s = 0.3;            // in which the fingers close
-    constexpr double kFrequency_rad_s = 15.0;  // of the spring with all that hangs: an arm's
+    constexpr double kGrip_s = 0.3;            // time in which the fingers close
+    constexpr double kFrequency_rad_s = 15.0;  // natural frequency of the spring with the hanging mass, typical of an
+                                               // arm
     const double grip = smooth(since_s / kGrip_s) * (1.0 - smooth((since_s - lift_s_ - hold_s_) / release_s_));
     if (grip <= 0.0) return {};
 
@@ -102,7 +103,7 @@ class Swing : public Motion {
 
  private:
   double lift_s_, hold_s_, release_s_;
-  double mass_kg_;  ///< of all segments
+  double mass_kg_;  ///< mass of all segments
   BodyState start_;
   std::vector<Lift> lifts_;
 };

@@ -37,12 +37,12 @@ constexpr std::array kTwirlParameters = {
 constexpr double kTwirlSwayLow_hz = 0.3, kTwirlSwayHigh_hz = 4.0;
 constexpr double kTwirlLongest_s = 120.0;
 
-/// One twist of the wrist or the fingers: its rate rises and falls as sin^2, from rest to rest.
+/// One twist of the wrist or the fingers, from rest to rest; its rate is a sin^2 pulse.
 struct Stroke {
   static constexpr double kRise = 1.0 / 3.0;
   double start_s, length_s, peak_rad_s;
 
-  /// Turned so far, in closed form.
+  /// Angle turned so far, in closed form.
   double angle_rad(double time_s) const {
     constexpr double kFall = 1.0 - kRise;
     const double u = std::clamp((time_s - start_s) / length_s, 0.0, 1.0);
@@ -66,8 +66,8 @@ std::vector<Stroke> plan_strokes(const Values& values, Stream& stream) {
   return strokes;
 }
 
-/// Carried by a point of it and twirled about x, stroke by stroke: a spring and a damper hold it to a path that the
-/// hand means to go, the forces that this takes added beforehand. The hand is no body.
+/// A hand carries the robot by one of its points and twirls it about x, stroke by stroke. A spring and a damper keep
+/// the robot on the intended path, with the path's feed-forward forces. The hand has no body in the simulation.
 class Twirl : public Motion {
  public:
   Twirl(const Values& values, const engine::World& world)
@@ -93,14 +93,14 @@ class Twirl : public Motion {
   }
 
  private:
-  /// Where the hand means the robot to be.
+  /// Intended pose of the robot.
   CarriedPose path(double time_s) const {
     double spun_rad = 0.0;
     for (const Stroke& stroke : strokes_) {
       if (time_s <= stroke.start_s) break;
       spun_rad += stroke.angle_rad(time_s);
     }
-    // the unsteadiness sets in within a second, without a jump of acceleration
+    // the tremor starts within a second, with continuous acceleration
     const double share = eased(time_s - rest_s_);
     const Eigen::Vector3d sway_m(positions_[0].at(time_s), positions_[1].at(time_s), positions_[2].at(time_s));
     const BodyState start = hand_.start();

@@ -20,14 +20,15 @@ constexpr std::array kPendulumParameters = {
     Parameter{"play_damping_nm_s", 0.1, 0.0, 10.0, "N m s", "of the same; assumed"},
 };
 
-constexpr double kBarHalfThickness_m = 0.02;  // of the bars with what they carry, for the moment about their length
+constexpr double kBarHalfThickness_m = 0.02;  // half thickness of a bar with its load, for the moment of inertia about
+                                              // its length
 constexpr int kSegments = 3;
 
 mjsJoint* joint(mjSpec* spec, const std::string& name) {
   return mjs_asJoint(mjs_findElement(spec, mjOBJ_JOINT, name.c_str()));
 }
 
-/// A slim bar whose origin is its middle, hung by its upper end.
+/// Shapes a slim bar whose origin is its middle, attached at its upper end.
 void shape_segment(mjSpec* spec, const Values& values, int number) {
   const std::string name = "segment_" + std::to_string(number);
   const double length_m = values.at("segment_m"), mass_kg = values.at("segment_mass_kg");

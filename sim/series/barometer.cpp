@@ -23,7 +23,7 @@ constexpr auto kBarometerParameters = joined(
         Parameter{"air_temperature_k", 288.15, 150.0, 400.0, "K", "of the air, the same at every height"},
     });
 
-/// What it does not model: wind, the pressure of the robot's own way through the air, lag of the housing.
+/// Not modelled: wind, pressure caused by the robot's own motion, lag of the housing.
 void add_barometer(const SensorContext& context, Recording& recording) {
   const Values& values = context.sensor.values;
   const auto pressure_pa = [&truth = recording.truth, &context, ground_pa = values.at("ground_pressure_pa"),

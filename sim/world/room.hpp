@@ -8,7 +8,7 @@
 
 namespace tumble::sim {
 
-/// Numbers of the square room around a level floor: something for the lidar to see.
+/// Parameters of the square room around a level floor, which gives the lidar features.
 inline constexpr std::array kRoomParameters = {
     Parameter{"room_half_m", 5.0, 2.5, 30.0, "m", "half width of the square room"},
     Parameter{"wall_height_m", 2.5, 0.2, 10.0, "m", "height of the four walls"},
@@ -19,10 +19,10 @@ inline constexpr std::array kRoomParameters = {
     Parameter{"clear_radius_m", 2.4, 0.5, 20.0, "m", "neither pillar nor box comes closer to the middle than this"},
 };
 
-/// Walls, ceiling, pillars, boxes and cupboards; sets the world's extent. What is random comes from `stream`.
+/// Adds walls, ceiling, pillars, boxes and cupboards, and sets the world's extent. Random numbers come from `stream`.
 void add_room(mjSpec* spec, engine::World& world, const Values& values, Stream& stream);
 
-/// Adds a ceiling at `height_m` that pictures look through.
+/// Adds a ceiling at `height_m` that is transparent in pictures.
 void add_ceiling(mjSpec* spec, engine::World& world, double half_x_m, double half_y_m, double height_m);
 
 /// Group of geoms that a lidar sees and pictures do not show.
