@@ -10,6 +10,7 @@
 #include "sim/recording.hpp"
 #include "tumble/angular_velocity/rate_state.hpp"
 #include "tumble/common/imu.hpp"
+#include "tumble/common/outlier_filter.hpp"
 #include "tumble/common/status.hpp"
 #include "tumble/mapping/lidar.hpp"
 
@@ -31,15 +32,20 @@ inline constexpr double kGapMaxS = 1.0;
 
 /// Readings up to so many stated ranges are taken for measurements: rails lie beyond what a sheet states (of the MTi-30
 /// at 1.4 times), and tilted ones in each axis anew. What reads further was never measured.
-inline constexpr double kStatedRangesMax = 2.0;
+inline constexpr double kStatedRangesMax = OutlierFilter::kRangesMax;
 
 /// `out_of_range` for the first axis of a reading, in its own axes, beyond kStatedRangesMax times the range that the
 /// record states, with value and bound; a stated range of 0 says nothing.
 Status check_range(const sim::ImuRecord& record, const Eigen::Vector3d& gyro_rad_s, const Eigen::Vector3d& accel_m_s2);
 
-/// Samples of an IMU, in order. Trouble: `empty`, `non_finite`, `time_order`, `gap` (more than kGapMaxS),
-/// `out_of_range` (check_range; a median step 20 times off the stated period); then `out` is empty. Throws BadInput
-/// when the record's arrays differ in length. O(N).
+/// Judges the samples of an IMU with the library's OutlierFilter. Element k is true if sample k passes. All pass if a
+/// reading is not finite, if a stamp does not rise, or if the record's arrays differ in length. O(N).
+std::vector<bool> find_inliers(const sim::ImuRecord& record);
+
+/// Samples of an IMU, in order, without single wild readings beyond kStatedRangesMax (find_inliers). Trouble: `empty`,
+/// `non_finite`, `time_order`, `gap` (more than kGapMaxS), `out_of_range` (check_range of other readings; a median step
+/// 20 times off the stated period); then `out` is empty. Throws BadInput when the record's arrays differ in length.
+/// O(N).
 Status imu_samples(const sim::ImuRecord& record, std::vector<ImuSample>& out);
 
 /// The primary IMU's samples; `empty` when the recording has no IMU.

@@ -14,11 +14,19 @@ namespace tumble::scenarios {
 /// themselves, else a copy, points included.
 Estimate with_sample_times(const sim::Sensors& sensors, const std::function<Estimate(const sim::Sensors&)>& run);
 
-/// A RunCore that does so, for the methods of ours that are not the door's, which has a clock itself, and for oracles.
-/// Published methods take stamps for times, as published.
+/// What `run` makes of sensors without the samples that OutlierFilter rejects. `rejected_readings` of the health is
+/// their number, where there are any. Where there are none `run` is given `sensors` themselves, else a copy, points
+/// included.
+Estimate without_outliers(const sim::Sensors& sensors, const std::function<Estimate(const sim::Sensors&)>& run);
+
+/// Both, for the methods of ours that are not the door's, which has a clock itself, and for oracles.
+/// Published methods take stamps for times, as published. An oracle keeps each sample: the truth has one for each.
 template <RunCore run>
 Estimate at_sample_times(const sim::Sensors& sensors, const sim::Values& parameters, const OracleInput& oracle) {
-  return with_sample_times(sensors, [&](const sim::Sensors& timed) { return run(timed, parameters, oracle); });
+  const auto timed = [&](const sim::Sensors& kept) {
+    return with_sample_times(kept, [&](const sim::Sensors& given) { return run(given, parameters, oracle); });
+  };
+  return oracle.truth == nullptr ? without_outliers(sensors, timed) : timed(sensors);
 }
 
 }  // namespace tumble::scenarios

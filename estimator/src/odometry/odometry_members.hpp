@@ -4,6 +4,7 @@
 #include <array>
 #include <string_view>
 
+#include "../common/outlier_filter_members.hpp"
 #include "../common/sample_clock_members.hpp"
 #include "../common/state_params.hpp"
 #include "pass_members.hpp"
@@ -73,7 +74,9 @@ void members(Self& s, Visitor& visit) {
 template <class Self, class Visitor>
 void TumblingOdometry::members(Self& s, Visitor& visit) {
   visit.scratch(s.params_);  // held to those that are saved
-  visit.scratch(s.clock_);   // made of them
+  visit.scratch(s.filter_);  // these two are made of them
+  visit("outliers", s.outliers_);
+  visit.scratch(s.clock_);
   visit("stamps", s.stamps_);
   visit("pass", s.pass_);
   visit("again", s.again_);

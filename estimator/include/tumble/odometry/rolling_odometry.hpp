@@ -11,6 +11,7 @@
 
 #include "tumble/angular_velocity/detail/frozen_axes.hpp"
 #include "tumble/attitude/imu_merge.hpp"
+#include "tumble/common/outlier_filter.hpp"
 #include "tumble/common/pose.hpp"
 #include "tumble/common/sample_clock.hpp"
 #include "tumble/odometry/detail/unit_rails.hpp"
@@ -85,6 +86,8 @@ class RollingOdometry {
   /// trouble the state is as it was: `too_few` (units, or one that has something to say), `time_order`, `degenerate`
   /// (no gravity in the first sample), `gap` (more than a second: the way is not known any more, and the run is over
   /// until reset()), `out_of_range` after finish() and where the only unit that is heard has a frozen axis.
+  /// OutlierFilter rejects single wild readings of each unit. It may hold the samples of all units until the next ones
+  /// come: newest() is then one sample older.
   Status add_imus(std::span<const ImuSample> samples);
   /// The same of a sphere with one.
   Status add_imu(const ImuSample& sample) { return add_imus({&sample, 1}); }
@@ -109,6 +112,9 @@ class RollingOdometry {
   /// What the IMUs say of each other: frozen, disagreeing, late ones.
   const ImuMerge::State& units() const { return *merge_state_; }
 
+  /// Number of readings that OutlierFilter rejected, over all units.
+  std::size_t rejected_readings() const;
+
   /// As TumblingOdometry::mended_jitter_s: of the stamps [s].
   std::optional<double> mended_jitter_s() const;
 
@@ -123,9 +129,12 @@ class RollingOdometry {
 
  private:
   using Frozen = std::array<FrozenAxes::State, ImuMerge::kImus>;
+  using Outliers = std::array<OutlierFilter::State, ImuMerge::kImus>;
 
   RollingOdometry(const Params& params, const ImuMerge::Params& merged);
 
+  Status add_held(std::span<const ImuSample> next);
+  Status add_inliers(std::span<const ImuSample> samples);
   Status take_in(const ImuSample& merged);
   Status leave_out_frozen(const Frozen& frozen, std::span<ImuSample> samples) const;
   Status doubt(const Frozen& frozen) const;
@@ -140,7 +149,10 @@ class RollingOdometry {
   std::unique_ptr<ImuMerge::State> merged_state_;  ///< memory for the next one
   std::unique_ptr<RollingSmoother::State> state_;
   UnitRails::State rails_state_;
-  std::vector<FrozenAxes> watches_;  ///< of the units
+  std::vector<OutlierFilter> filters_;  ///< of the units
+  Outliers outliers_{};
+  std::optional<UnitRails::Samples> held_;  ///< of all units, while OutlierFilter holds one of them
+  std::vector<FrozenAxes> watches_;         ///< of the units
   Frozen frozen_{};
   std::vector<RollingEstimate> done_;
   std::size_t taken_ = 0;

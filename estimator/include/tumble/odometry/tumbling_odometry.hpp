@@ -7,6 +7,7 @@
 #include <span>
 #include <vector>
 
+#include "tumble/common/outlier_filter.hpp"
 #include "tumble/common/sample_clock.hpp"
 #include "tumble/mapping/lidar_inertial_odometry.hpp"
 #include "tumble/odometry/detail/odometry_pass.hpp"
@@ -53,11 +54,14 @@ class TumblingOdometry {
   /// (`non_finite`, `time_order`, `gap`) the state is as it was, but that the sample after a gap beyond the stream's
   /// bound, a second, is held back: when the next one bears it out the rates begin anew with what is known of the rig
   /// (gaps() counts), and the mapper bridges the gap by inertia; one stamp that is wrong costs one sample.
+  /// OutlierFilter rejects single wild readings. It may hold a sample until the next one comes: newest() is then one
+  /// sample older.
   Status add_imu(const ImuSample& sample);
   /// Takes a sweep of points fired in [start_ns, end_ns], at any time after its last point; they are copied. Those from
   /// before the last sweep's end are left out: stamps jitter. Trouble that leaves the state as it was: `time_order` (an
   /// end before its start, or more than half of it before that end), `out_of_range` (the offset of a point beyond the
-  /// sweep; an end more than a second after the newest sample; too many that wait). What the mapper makes: take().
+  /// sweep; an end more than a second after the newest sample; a stamp beyond 100 years; too many that wait). What the
+  /// mapper makes: take().
   Status add_sweep(TimeNs start_ns, TimeNs end_ns, std::span<const LidarPoint> points);
   /// What an odometer of the robot's says, if it has one (detail/odometer_reading.hpp), before its sweep is registered,
   /// which is lag_s after the sweep's end: of each sweep, from the end of the one before, the last reading counts.
@@ -95,6 +99,8 @@ class TumblingOdometry {
   const KnownRails& rails() const { return pass_.rate_state().rate.rails.known; }
   /// Gaps of the IMU after which the rates began anew.
   std::size_t gaps() const { return gaps_; }
+  /// Number of samples that OutlierFilter rejected, because their readings or stamps are wild.
+  std::size_t rejected_readings() const { return outliers_.rejected; }
   /// Whether the map and the pose are those of the second pass (SecondPass).
   bool passed_again() const { return again_.taken(); }
   /// Samples that the mapper refused with their rates, sweeps that nobody took in time, an odometer's readings that
@@ -124,6 +130,7 @@ class TumblingOdometry {
  private:
   Status check_state() const;
   Status add_reading(const OdometerReading& reading);
+  Status add_inlier(const ImuSample& sample);
   Status take_in(const ImuSample& sample);
   void register_sweep(TimeNs start_ns, TimeNs end_ns, std::vector<LidarPoint> points);
   bool is_due(TimeNs end_ns) const;
@@ -133,6 +140,8 @@ class TumblingOdometry {
   void begin_rates();
 
   Params params_;
+  OutlierFilter filter_;
+  OutlierFilter::State outliers_;
   SampleClock clock_;
   SampleClock::State stamps_;  ///< of the samples taken in
   OdometryPass pass_;
