@@ -211,7 +211,7 @@ TEST(Outliers, AHeldReadingIsSaved) {
 double rolling_error_m(const std::vector<std::vector<ImuSample>>& units, std::size_t& rejected) {
   const std::vector<Eigen::Vector3d> positions_m(test::kPositions.begin(),
                                                  test::kPositions.begin() + std::ptrdiff_t(units.size()));
-  RollingOdometry odometry(params_of(positions_m));
+  RollingOdometry odometry(test::params_of(positions_m));
   std::size_t poses = 0;
   for (std::size_t k = 0; k < units[0].size(); ++k) {
     std::vector<ImuSample> now;
