@@ -54,10 +54,11 @@ bool in_range(const sim::ImuRecord& record, const ImuSample& sample) {
   return check_range(record, sample.angular_velocity_rad_s, sample.specific_force_m_s2).ok();
 }
 
-// Single ones that no device of that range reads; those that last stay, to be refused.
+// Single ones that no device of that range reads. Those that last and those that are many stay, to be refused.
 void leave_out_wild(const sim::ImuRecord& record, std::vector<ImuSample>& samples) {
   const auto beyond = [&](const ImuSample& sample) { return !in_range(record, sample); };
-  if (std::none_of(samples.begin(), samples.end(), beyond)) return;
+  const auto count = std::count_if(samples.begin(), samples.end(), beyond);
+  if (count == 0 || static_cast<double>(count) > kWildShareMax * static_cast<double>(samples.size())) return;
   const std::vector<bool> inlier = find_inliers(record);
   std::size_t kept = 0;
   for (std::size_t k = 0; k < samples.size(); ++k) {

@@ -34,6 +34,9 @@ inline constexpr double kGapMaxS = 1.0;
 /// at 1.4 times), and tilted ones in each axis anew. What reads further was never measured.
 inline constexpr double kStatedRangesMax = OutlierFilter::kRangesMax;
 
+/// A recording of which a larger share lies further is refused: that is another unit, or another device.
+inline constexpr double kWildShareMax = 0.01;
+
 /// `out_of_range` for the first axis of a reading, in its own axes, beyond kStatedRangesMax times the range that the
 /// record states, with value and bound; a stated range of 0 says nothing.
 Status check_range(const sim::ImuRecord& record, const Eigen::Vector3d& gyro_rad_s, const Eigen::Vector3d& accel_m_s2);
@@ -42,10 +45,10 @@ Status check_range(const sim::ImuRecord& record, const Eigen::Vector3d& gyro_rad
 /// reading is not finite, if a stamp does not rise, or if the record's arrays differ in length. O(N).
 std::vector<bool> find_inliers(const sim::ImuRecord& record);
 
-/// Samples of an IMU, in order, without single wild readings beyond kStatedRangesMax (find_inliers). Trouble: `empty`,
-/// `non_finite`, `time_order`, `gap` (more than kGapMaxS), `out_of_range` (check_range of other readings; a median step
-/// 20 times off the stated period); then `out` is empty. Throws BadInput when the record's arrays differ in length.
-/// O(N).
+/// Samples of an IMU, in order, without single wild readings beyond kStatedRangesMax (find_inliers), if these are few.
+/// Trouble: `empty`, `non_finite`, `time_order`, `gap` (more than kGapMaxS), `out_of_range` (check_range of other
+/// readings; a median step 20 times off the stated period); then `out` is empty. Throws BadInput when the record's
+/// arrays differ in length. O(N).
 Status imu_samples(const sim::ImuRecord& record, std::vector<ImuSample>& out);
 
 /// The primary IMU's samples; `empty` when the recording has no IMU.
