@@ -14,13 +14,15 @@ namespace {
 using Eigen::Vector3d;
 
 // Thresholds, and the readings that they were measured on: docs/maths/outliers.md, "Thresholds".
-constexpr double kRateMin_rad_s = 1.0;   // smallest outlier of a gyro
-constexpr double kForceMin_m_s2 = 30.0;  // smallest outlier of an accelerometer
-constexpr double kAgreement = 3.0;       // an outlier is larger than this multiple of the neighbours' difference
-constexpr double kTurn_rad_m = 40.0;     // largest angular acceleration per force
-constexpr double kLever_m = 10.0;        // largest force per angular acceleration
-constexpr double kNear_s = 0.1;          // neighbours further away than this are not compared
-constexpr double kPeriodsAhead = 4.0;    // a longer step of the stamps is held
+constexpr double kRateMin_rad_s = 1.0;    // smallest outlier of a gyro
+constexpr double kForceMin_m_s2 = 30.0;   // smallest outlier of an accelerometer
+constexpr double kAgreement = 3.0;        // an outlier is larger than this multiple of the neighbours' difference
+constexpr double kTurn_rad_m = 40.0;      // largest angular acceleration per force
+constexpr double kLever_m = 10.0;         // largest force per angular acceleration
+constexpr double kTurnMost_rad_s = 50.0;  // no impact turns a robot so much faster for a single sample
+constexpr double kHitMost_m_s = 20.0;     // nor changes its velocity by so much within one
+constexpr double kNear_s = 0.1;           // neighbours further away than this are not compared
+constexpr double kPeriodsAhead = 4.0;     // a longer step of the stamps is held
 
 // A reading may hide more than it shows from this share of the stated range on; so may a repeated large reading.
 constexpr double kAtRange = 0.95;
@@ -124,13 +126,15 @@ double distance(const ImuSample& sample, const OutlierFilter::State& state, cons
 double gyro_threshold(const OutlierFilter::Params& params, const Sequence& sequence, const ImuSample& judged,
                       double step) {
   if (gyro_of(params).beyond_range(judged)) return kRateMin_rad_s;
-  return std::max(kRateMin_rad_s, kTurn_rad_m * step * largest_step(sequence, accel_of(params)));
+  const double caused = kTurn_rad_m * step * largest_step(sequence, accel_of(params));
+  return std::clamp(caused, kRateMin_rad_s, kTurnMost_rad_s);
 }
 
 double accel_threshold(const OutlierFilter::Params& params, const Sequence& sequence, const ImuSample& judged,
                        double step) {
   if (accel_of(params).beyond_range(judged)) return kForceMin_m_s2;
-  return std::max(kForceMin_m_s2, kLever_m / step * largest_bend(sequence, gyro_of(params)));
+  const double caused = kLever_m / step * largest_bend(sequence, gyro_of(params));
+  return std::clamp(caused, kForceMin_m_s2, std::max(kForceMin_m_s2, kHitMost_m_s / step));
 }
 
 }  // namespace
