@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "scenarios/methods/bridge.hpp"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 #include <string>
 #include <utility>
 
@@ -37,6 +39,35 @@ Status check_period(const sim::ImuRecord& record, std::span<const ImuSample> sam
           step_s, step_s < stated_s ? stated_s / kPeriodsMax : stated_s * kPeriodsMax};
 }
 
+std::vector<ImuSample> samples_of(const sim::ImuRecord& record) {
+  std::vector<ImuSample> samples(record.time_ns.size());
+  for (std::size_t k = 0; k < samples.size(); ++k) {
+    samples[k].time_ns = record.time_ns[k];
+    samples[k].angular_velocity_rad_s = record.gyro_rad_s[k];
+    samples[k].specific_force_m_s2 = record.accel_m_s2[k];
+    samples[k].device_clip_flags = record.clip_flags.empty() ? std::uint8_t{0} : clip_flags(record.clip_flags[k]);
+  }
+  return samples;
+}
+
+bool in_range(const sim::ImuRecord& record, const ImuSample& sample) {
+  return check_range(record, sample.angular_velocity_rad_s, sample.specific_force_m_s2).ok();
+}
+
+// Removes single readings beyond what the device can measure. Lasting or frequent ones stay, so that the recording is
+// refused.
+void leave_out_wild(const sim::ImuRecord& record, std::vector<ImuSample>& samples) {
+  const auto beyond = [&](const ImuSample& sample) { return !in_range(record, sample); };
+  const auto count = std::count_if(samples.begin(), samples.end(), beyond);
+  if (count == 0 || static_cast<double>(count) > kWildShareMax * static_cast<double>(samples.size())) return;
+  const std::vector<bool> inlier = find_inliers(record);
+  std::size_t kept = 0;
+  for (std::size_t k = 0; k < samples.size(); ++k) {
+    if (inlier[k] || in_range(record, samples[k])) samples[kept++] = samples[k];
+  }
+  samples.resize(kept);
+}
+
 // Checks what every method assumes: finite readings within the device's range, increasing stamps at the stated period,
 // no gaps.
 Status check_stream(const sim::ImuRecord& record, std::span<const ImuSample> samples) {
@@ -63,6 +94,20 @@ Status check_range(const sim::ImuRecord& record, const Eigen::Vector3d& gyro_rad
   return beyond(accel_m_s2, record.stated_accel_range_m_s2, "specific_force_m_s2, held to twice its stated range,");
 }
 
+std::vector<bool> find_inliers(const sim::ImuRecord& record) {
+  const std::size_t count = record.time_ns.size();
+  std::vector<bool> all(count, true);
+  const bool whole = record.gyro_rad_s.size() == count && record.accel_m_s2.size() == count &&
+                     (record.clip_flags.empty() || record.clip_flags.size() == count);
+  if (!whole) return all;
+  const std::vector<ImuSample> samples = samples_of(record);
+  if (!check_samples(samples, std::numeric_limits<double>::infinity()).ok()) return all;
+  return tumble::find_inliers(OutlierFilter({.gyro_range_rad_s = record.stated_gyro_range_rad_s,
+                                             .accel_range_m_s2 = record.stated_accel_range_m_s2,
+                                             .period_s = seconds(record.period_ns)}),
+                              samples);
+}
+
 Status imu_samples(const sim::ImuRecord& record, std::vector<ImuSample>& out) {
   out.clear();
   const std::size_t count = record.time_ns.size();
@@ -70,13 +115,8 @@ Status imu_samples(const sim::ImuRecord& record, std::vector<ImuSample>& out) {
   require_length(place, "gyro_rad_s", record.gyro_rad_s.size(), count);
   require_length(place, "accel_m_s2", record.accel_m_s2.size(), count);
   if (!record.clip_flags.empty()) require_length(place, "clip_flags", record.clip_flags.size(), count);
-  std::vector<ImuSample> samples(count);
-  for (std::size_t k = 0; k < count; ++k) {
-    samples[k].time_ns = record.time_ns[k];
-    samples[k].angular_velocity_rad_s = record.gyro_rad_s[k];
-    samples[k].specific_force_m_s2 = record.accel_m_s2[k];
-    samples[k].device_clip_flags = record.clip_flags.empty() ? std::uint8_t{0} : clip_flags(record.clip_flags[k]);
-  }
+  std::vector<ImuSample> samples = samples_of(record);
+  leave_out_wild(record, samples);
   const Status status = check_stream(record, samples);
   if (status.ok()) out = std::move(samples);
   return status;

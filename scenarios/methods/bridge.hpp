@@ -10,6 +10,7 @@
 #include "sim/recording.hpp"
 #include "tumble/angular_velocity/rate_state.hpp"
 #include "tumble/common/imu.hpp"
+#include "tumble/common/outlier_filter.hpp"
 #include "tumble/common/status.hpp"
 #include "tumble/mapping/lidar.hpp"
 
@@ -31,15 +32,23 @@ inline constexpr double kGapMaxS = 1.0;
 
 /// Readings up to this multiple of the stated range are accepted as measurements. Real saturation limits exceed the
 /// stated range (MTi-30: 1.4 times), and tilted limits more so. Larger readings cannot be measurements.
-inline constexpr double kStatedRangesMax = 2.0;
+inline constexpr double kStatedRangesMax = OutlierFilter::kRangesMax;
+
+/// A recording with a larger share of such readings is refused: its unit or its device must be another one.
+inline constexpr double kWildShareMax = 0.01;
 
 /// Returns `out_of_range`, with value and bound, for the first axis whose reading exceeds kStatedRangesMax times the
 /// range in the record. A stated range of 0 disables the check.
 Status check_range(const sim::ImuRecord& record, const Eigen::Vector3d& gyro_rad_s, const Eigen::Vector3d& accel_m_s2);
 
-/// Converts the samples of an IMU, in order. Errors: `empty`, `non_finite`, `time_order`, `gap` (more than kGapMaxS),
-/// `out_of_range` (check_range, or a median step that differs 20-fold from the stated period); `out` is then empty.
-/// Throws BadInput if the record's arrays differ in length. O(N).
+/// Judges the samples of an IMU with the library's OutlierFilter. Element k is true if sample k passes. All pass if a
+/// reading is not finite, if a stamp does not rise, or if the record's arrays differ in length. O(N).
+std::vector<bool> find_inliers(const sim::ImuRecord& record);
+
+/// Converts the samples of an IMU, in order, without a few single readings beyond kStatedRangesMax (find_inliers).
+/// Errors: `empty`, `non_finite`, `time_order`, `gap` (more than kGapMaxS), `out_of_range` (check_range, or a median
+/// step that differs 20-fold from the stated period); `out` is then empty. Throws BadInput if the record's arrays
+/// differ in length. O(N).
 Status imu_samples(const sim::ImuRecord& record, std::vector<ImuSample>& out);
 
 /// Converts the primary IMU's samples; returns `empty` if the recording has no IMU.

@@ -268,8 +268,10 @@ Estimate rates_of_batch(const sim::Sensors& sensors, const sim::Values& paramete
 
 Estimate run_rate_tumble(const sim::Sensors& sensors, const sim::Values& parameters, const LearntRig* given,
                          std::optional<LearntRig>* found) {
-  return with_sample_times(sensors,
-                           [&](const sim::Sensors& timed) { return rates_of_batch(timed, parameters, given, found); });
+  return without_outliers(sensors, [&](const sim::Sensors& kept) {
+    return with_sample_times(
+        kept, [&](const sim::Sensors& timed) { return rates_of_batch(timed, parameters, given, found); });
+  });
 }
 
 Method rate_tumble() {

@@ -165,8 +165,10 @@ Estimate rates_of_stream(const sim::Sensors& sensors, const sim::Values& paramet
 
 Estimate run_rate_tumble_lag(const sim::Sensors& sensors, const sim::Values& parameters, const LearntRig* given,
                              std::optional<LearntRig>* found) {
-  return with_sample_times(sensors,
-                           [&](const sim::Sensors& timed) { return rates_of_stream(timed, parameters, given, found); });
+  return without_outliers(sensors, [&](const sim::Sensors& kept) {
+    return with_sample_times(
+        kept, [&](const sim::Sensors& timed) { return rates_of_stream(timed, parameters, given, found); });
+  });
 }
 
 Method rate_tumble_lag() {

@@ -13,11 +13,19 @@ namespace tumble::scenarios {
 /// `stamps_mended_s` [s]. If no stamp needs correction, `run` receives `sensors` unchanged, else a full copy.
 Estimate with_sample_times(const sim::Sensors& sensors, const std::function<Estimate(const sim::Sensors&)>& run);
 
-/// Wraps a RunCore with this correction, for our methods other than the public API classes (which correct stamps
-/// themselves) and for oracles. Published methods use the stamps unchanged.
+/// Runs `run` on the sensors without the samples that OutlierFilter rejects. The health counts them in
+/// `rejected_readings` if there are any. Without outliers `run` gets `sensors` themselves, else a copy.
+Estimate without_outliers(const sim::Sensors& sensors, const std::function<Estimate(const sim::Sensors&)>& run);
+
+/// Wraps a RunCore with both corrections, for our methods other than the public API classes (which correct stamps
+/// themselves) and for oracles. Published methods use the stamps unchanged. An oracle keeps each sample, because the
+/// truth has one value per sample.
 template <RunCore run>
 Estimate at_sample_times(const sim::Sensors& sensors, const sim::Values& parameters, const OracleInput& oracle) {
-  return with_sample_times(sensors, [&](const sim::Sensors& timed) { return run(timed, parameters, oracle); });
+  const auto timed = [&](const sim::Sensors& kept) {
+    return with_sample_times(kept, [&](const sim::Sensors& given) { return run(given, parameters, oracle); });
+  };
+  return oracle.truth == nullptr ? without_outliers(sensors, timed) : timed(sensors);
 }
 
 }  // namespace tumble::scenarios

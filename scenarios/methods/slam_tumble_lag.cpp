@@ -77,7 +77,9 @@ class Listener {
   /// Called after each processed sample.
   void heard(const TumblingOdometry& odometry) {
     PoseState pose;
-    if (word_ == Word::live && odometry.newest(pose).ok()) live_.push_back(pose);
+    if (word_ != Word::live || !odometry.newest(pose).ok()) return;
+    // while a sample is held the newest pose stays that of the sample before
+    if (live_.empty() || pose.time_ns > live_.back().time_ns) live_.push_back(pose);
   }
   void take(TumblingOdometry& odometry) {
     while (std::optional<TumblingOdometry::Sweep> sweep = odometry.take()) {
@@ -170,6 +172,8 @@ Estimate run_slam_tumble_lag(const sim::Sensors& sensors, const sim::Values& par
   estimate.status = live_through(sensors, samples, odometry, listener);
   if (!estimate.status.ok()) return estimate;
   tell_rails(odometry.rails(), estimate.health);
+  const std::size_t left_out = sensors.imus.front().time_ns.size() - samples.size();
+  estimate.health["rejected_readings"] = static_cast<double>(left_out + odometry.rejected_readings());
   estimate.health["gaps"] = static_cast<double>(odometry.gaps());
   estimate.health["passed_again"] = odometry.passed_again() ? 1.0 : 0.0;
   listener.conclude(odometry);

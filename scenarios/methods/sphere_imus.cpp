@@ -40,7 +40,10 @@ ImuSample absent(TimeNs time_ns) {
 std::vector<ImuSample> readings_of(const sim::ImuRecord& record, Status& status, int& beyond_range) {
   std::vector<ImuSample> samples;
   status = bridge::imu_samples(record, samples);
-  if (status.ok()) return samples;
+  if (status.ok()) {
+    beyond_range += static_cast<int>(record.time_ns.size() - samples.size());
+    return samples;
+  }
   for (std::size_t k = 0; k < record.time_ns.size(); ++k) {
     const TimeNs time_ns = record.time_ns[k];
     if (!record.gyro_rad_s[k].allFinite() || !record.accel_m_s2[k].allFinite()) continue;

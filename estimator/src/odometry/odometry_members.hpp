@@ -4,6 +4,7 @@
 #include <array>
 #include <string_view>
 
+#include "../common/outlier_filter_members.hpp"
 #include "../common/sample_clock_members.hpp"
 #include "../common/state_params.hpp"
 #include "pass_members.hpp"
@@ -72,6 +73,8 @@ void members(Self& s, Visitor& visit) {
 template <class Self, class Visitor>
 void TumblingOdometry::members(Self& s, Visitor& visit) {
   visit.scratch(s.params_);  // must equal the saved ones
+  visit.scratch(s.filter_);  // derived from the parameters
+  visit("outliers", s.outliers_);
   visit.scratch(s.clock_);
   visit("stamps", s.stamps_);
   visit("pass", s.pass_);

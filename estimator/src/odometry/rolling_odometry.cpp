@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <limits>
+#include <utility>
 
 namespace tumble {
 
@@ -87,6 +88,30 @@ std::vector<FrozenAxes> watches_of(const RollingOdometry::Params& params) {
   return out;
 }
 
+std::vector<OutlierFilter> filters_of(const RollingOdometry::Params& params) {
+  std::vector<OutlierFilter> out;
+  for (const RollingOdometry::Unit& unit : params.units) {
+    out.emplace_back(OutlierFilter::Params{.gyro_range_rad_s = unit.sheet.gyro_range_rad_s,
+                                           .accel_range_m_s2 = unit.sheet.accel_range_m_s2,
+                                           .period_s = 1.0 / unit.sheet.rate_hz});
+  }
+  return out;
+}
+
+ImuSample at_time(TimeNs time_ns, ImuSample sample) {
+  sample.time_ns = time_ns;
+  return sample;
+}
+
+/// Makes a sample that of a unit which has nothing to say.
+void leave_out(ImuSample& sample) {
+  sample.angular_velocity_rad_s.setConstant(std::numeric_limits<double>::quiet_NaN());
+}
+
+bool any_reading(std::span<const ImuSample> samples) {
+  return std::any_of(samples.begin(), samples.end(), [](const ImuSample& sample) { return check_sample(sample).ok(); });
+}
+
 RollingOdometry::Pose as_pose(const RollingEstimate& estimate) {
   RollingOdometry::Pose out;
   out.pose = {estimate.time_ns, estimate.p_WG_m, estimate.q_WI, estimate.v_WG_m_s, estimate.covariance};
@@ -110,6 +135,7 @@ RollingOdometry::RollingOdometry(const Params& params, const ImuMerge::Params& m
       merged_state_(std::make_unique<ImuMerge::State>()),
       state_(std::make_unique<RollingSmoother::State>()),
       rails_state_(rails_.start()),
+      filters_(filters_of(params)),
       watches_(watches_of(params)),
       live_(params.lag_s <= 0.0) {}
 
@@ -124,6 +150,9 @@ RollingOdometry::RollingOdometry(const RollingOdometry& other)
       merged_state_(std::make_unique<ImuMerge::State>()),
       state_(std::make_unique<RollingSmoother::State>(*other.state_)),
       rails_state_(other.rails_state_),
+      filters_(other.filters_),
+      outliers_(other.outliers_),
+      held_(other.held_),
       watches_(other.watches_),
       frozen_(other.frozen_),
       done_(other.done_),
@@ -137,9 +166,46 @@ RollingOdometry& RollingOdometry::operator=(const RollingOdometry& other) {
 
 Status RollingOdometry::add_imus(std::span<const ImuSample> samples) {
   if (finished_) return {Trouble::out_of_range, "samples after finish()", 1.0, 0.0};
-  std::optional<ImuSample> merged;
   if (samples.size() != params_.units.size())
     return {Trouble::too_few, "samples", double(samples.size()), double(params_.units.size())};
+  // a time that does not rise, and units without any reading: add_inliers() returns what is wrong
+  if (!any_reading(samples) || (stamps_.stamp_ns && samples.front().time_ns <= *stamps_.stamp_ns))
+    return add_inliers(samples);
+  if (const Status status = add_held(samples); !status.ok()) return status;
+  UnitRails::Samples judged;
+  std::copy(samples.begin(), samples.end(), judged.begin());
+  bool holds = false;
+  for (std::size_t k = 0; k < samples.size(); ++k) {
+    if (!check_sample(samples[k]).ok()) continue;
+    if (!filters_[k].keeps_back(at_time(samples.front().time_ns, samples[k]), outliers_[k])) continue;
+    if (outliers_[k].held) {
+      holds = true;
+    } else {
+      leave_out(judged[k]);
+    }
+  }
+  if (holds) held_ = judged;
+  const std::span<const ImuSample> inliers = std::span(judged).first(samples.size());
+  return holds || !any_reading(inliers) ? Status{} : add_inliers(inliers);
+}
+
+/// Adds the samples that are held, but for readings that the next samples do not confirm.
+Status RollingOdometry::add_held(std::span<const ImuSample> next) {
+  if (!held_) return {};
+  for (std::size_t k = 0; k < next.size(); ++k) {
+    if (!outliers_[k].held) continue;
+    const bool follows = check_sample(next[k]).ok();
+    const bool confirmed = follows && filters_[k].settle(at_time(next.front().time_ns, next[k]), outliers_[k]);
+    if (!follows) OutlierFilter::finish(outliers_[k]);
+    if (!confirmed) leave_out((*held_)[k]);
+  }
+  const UnitRails::Samples held = *std::exchange(held_, std::nullopt);
+  const std::span<const ImuSample> inliers = std::span(held).first(next.size());
+  return any_reading(inliers) ? add_inliers(inliers) : Status{};
+}
+
+Status RollingOdometry::add_inliers(std::span<const ImuSample> samples) {
+  std::optional<ImuSample> merged;
   SampleClock::State stamps = stamps_;
   TimeNs time_ns = 0;
   if (Status status = clock_.push(samples.front().time_ns, stamps, time_ns); !status.ok()) return status;
@@ -160,7 +226,16 @@ Status RollingOdometry::add_imus(std::span<const ImuSample> samples) {
   stamps_ = stamps;
   frozen_ = frozen;
   rails_.observe(samples, rails_state_);
+  for (std::size_t k = 0; k < samples.size(); ++k) {
+    if (check_sample(samples[k]).ok()) OutlierFilter::pass(at_time(samples.front().time_ns, samples[k]), outliers_[k]);
+  }
   return {};
+}
+
+std::size_t RollingOdometry::rejected_readings() const {
+  std::size_t out = 0;
+  for (const OutlierFilter::State& unit : outliers_) out += unit.rejected;
+  return out;
 }
 
 /// Sets the readings of frozen units to NaN. Returns an error if no unit remains.
@@ -169,7 +244,7 @@ Status RollingOdometry::leave_out_frozen(const Frozen& states, std::span<ImuSamp
   for (std::size_t k = 0; k < samples.size(); ++k) {
     const bool finite = check_sample(samples[k]).ok();
     const bool frozen = finite && !watches_[k].verdict(states[k]).ok();
-    if (frozen) samples[k].angular_velocity_rad_s.setConstant(std::numeric_limits<double>::quiet_NaN());
+    if (frozen) leave_out(samples[k]);
     any = any || frozen;
     heard = heard || (finite && !frozen);
   }
@@ -208,6 +283,8 @@ std::optional<RollingOdometry::Pose> RollingOdometry::take() {
 }
 
 void RollingOdometry::finish() {
+  for (OutlierFilter::State& unit : outliers_) OutlierFilter::finish(unit);
+  held_.reset();
   if (!live_ && !finished_) smoother_.finish(*state_, done_);
   finished_ = true;
 }
@@ -218,6 +295,8 @@ void RollingOdometry::reset() {
   state_ = std::make_unique<RollingSmoother::State>();
   rails_state_ = rails_.start();
   frozen_ = {};
+  outliers_ = {};
+  held_.reset();
   finished_ = false;
 }
 

@@ -2,6 +2,7 @@
 // Serialisation of RollingOdometry.
 #include "../angular_velocity/frozen_members.hpp"
 #include "../attitude/imu_merge_members.hpp"
+#include "../common/outlier_filter_members.hpp"
 #include "../common/sample_clock_members.hpp"
 #include "../common/state_params.hpp"
 #include "../rolling/rolling_members.hpp"
@@ -41,6 +42,9 @@ void RollingOdometry::members(Self& s, Visitor& visit) {
   visit.scratch(s.merged_state_);
   visit("rolling", *s.state_);
   visit("rails", s.rails_state_);
+  visit.scratch(s.filters_);  // derived from the parameters
+  visit("outliers", s.outliers_);
+  visit.with_nan("held", s.held_);
   visit.scratch(s.watches_);
   visit("frozen", s.frozen_);
   if constexpr (std::is_const_v<Self>) {

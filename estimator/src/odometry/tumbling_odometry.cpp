@@ -44,6 +44,13 @@ RegimeStream::Params rate_params(const TumblingOdometry::Params& params) {
   return out;
 }
 
+OutlierFilter::Params outlier_params(const TumblingOdometry::Params& params) {
+  return {.gyro_range_rad_s = params.imu.gyro_range_rad_s,
+          .accel_range_m_s2 = params.imu.accel_range_m_s2,
+          .period_s = 1.0 / params.imu.rate_hz,
+          .gap_max_s = params.expert.rate.rate.gap_max_s};
+}
+
 LidarInertialOdometry::Params mapper_params(const TumblingOdometry::Params& params) {
   LidarInertialOdometry::Params out = params.expert.mapping;
   out.T_IL = params.T_IL;
@@ -58,6 +65,8 @@ LidarInertialOdometry::Params mapper_params(const TumblingOdometry::Params& para
   return out;
 }
 
+// Largest stamp of a sweep, 100 years: differences of stamps then fit into 64 bits.
+constexpr TimeNs kStampMax_ns = 3'155'760'000'000'000'000;
 constexpr double kSilent_s = 1.0;       // silence of the lidar after which empty sweeps are inserted
 constexpr double kAhead_s = 1.0;        // maximum time by which a sweep may end after the newest sample
 constexpr double kSweepsMax_hz = 20.0;  // highest sweep rate of lidars: determines how many sweeps wait for the lag
@@ -79,11 +88,23 @@ OdometryParams TumblingExpertParams::mapping_defaults() {
 
 TumblingOdometry::TumblingOdometry(const Params& params)
     : params_(params),
+      filter_(outlier_params(params)),
       clock_(params.expert.stamps),
       pass_(rate_params(params), mapper_params(params)),
       again_(params.expert.again, rate_params(params), mapper_params(params)) {}
 
 Status TumblingOdometry::add_imu(const ImuSample& sample) {
+  if (sample.time_ns < -kStampMax_ns || sample.time_ns > kStampMax_ns)
+    return {Trouble::out_of_range, "time_ns", double(sample.time_ns), double(kStampMax_ns)};
+  const bool in_order = outliers_.count == 0 || sample.time_ns > outliers_.passed.back().time_ns;
+  if (!in_order || !check_sample(sample).ok()) return take_in(sample);  // which returns what is wrong
+  if (const std::optional<ImuSample> confirmed = filter_.settle(sample, outliers_)) {
+    if (const Status status = add_inlier(*confirmed); !status.ok()) return status;
+  }
+  return filter_.keeps_back(sample, outliers_) ? Status{} : add_inlier(sample);
+}
+
+Status TumblingOdometry::add_inlier(const ImuSample& sample) {
   const Status status = take_in(sample);
   if (status.trouble != Trouble::gap) return status;
   const double gap_max_s = params_.expert.rate.rate.gap_max_s;
@@ -104,6 +125,7 @@ Status TumblingOdometry::take_in(const ImuSample& sample) {
   if (const Status status = clock_.push(sample.time_ns, stamps, timed.time_ns); !status.ok()) return status;
   if (const Status status = pass_.add_imu(timed); !status.ok()) return status;
   stamps_ = stamps;
+  OutlierFilter::pass(sample, outliers_);
   again_.remember(timed);
   newest_ns_ = timed.time_ns;
   after_gap_.reset();
@@ -114,6 +136,8 @@ Status TumblingOdometry::take_in(const ImuSample& sample) {
 
 Status TumblingOdometry::add_sweep(TimeNs start_ns, TimeNs end_ns, std::span<const LidarPoint> points) {
   if (end_ns < start_ns) return {Trouble::time_order, "end_ns", double(end_ns), double(start_ns)};
+  if (start_ns < -kStampMax_ns) return {Trouble::out_of_range, "start_ns", double(start_ns), double(-kStampMax_ns)};
+  if (end_ns > kStampMax_ns) return {Trouble::out_of_range, "end_ns", double(end_ns), double(kStampMax_ns)};
   const TimeNs from_ns = std::max(start_ns, sweep_end_ns_.value_or(start_ns));
   if (from_ns > start_ns && from_ns - start_ns > (end_ns - start_ns) / 2)
     return {Trouble::time_order, "start_ns", double(start_ns), double(from_ns)};
@@ -167,6 +191,7 @@ Status TumblingOdometry::doubt() const {
 }
 
 void TumblingOdometry::finish() {
+  OutlierFilter::finish(outliers_);
   if (!newest_rate()) return;  // no samples since the last call
   flush_all();
   again_.complete(pass_);

@@ -11,6 +11,7 @@
 
 #include "tumble/angular_velocity/detail/frozen_axes.hpp"
 #include "tumble/attitude/imu_merge.hpp"
+#include "tumble/common/outlier_filter.hpp"
 #include "tumble/common/pose.hpp"
 #include "tumble/common/sample_clock.hpp"
 #include "tumble/odometry/detail/unit_rails.hpp"
@@ -81,9 +82,11 @@ class RollingOdometry {
   ~RollingOdometry() = default;
 
   /// Processes simultaneous readings of all units. The stamp of the first counts, corrected by SampleClock if a host's
-  /// stamps jitter. A unit without a reading is passed as NaN. On error the state is unchanged: `too_few` (wrong number
-  /// of units, or no reading), `time_order`, `degenerate` (no gravity in the first sample), `gap` (more than a second:
-  /// the run ends until reset()), `out_of_range` (after finish(), or the only unit with readings has a frozen axis).
+  /// stamps jitter. A unit without a reading is passed as NaN. OutlierFilter rejects single wild readings of each unit.
+  /// It may delay the samples of all units by one; newest() is then one sample older. On error the state is unchanged:
+  /// `too_few` (wrong number of units, or no reading), `time_order`, `degenerate` (no gravity in the first sample),
+  /// `gap` (more than a second: the run ends until reset()), `out_of_range` (after finish(), or the only unit with
+  /// readings has a frozen axis).
   Status add_imus(std::span<const ImuSample> samples);
   /// Same for a sphere with one IMU.
   Status add_imu(const ImuSample& sample) { return add_imus({&sample, 1}); }
@@ -108,6 +111,8 @@ class RollingOdometry {
   /// Returns the state of the IMU fusion: frozen, disagreeing and delayed units.
   const ImuMerge::State& units() const { return *merge_state_; }
 
+  /// Returns the number of readings that OutlierFilter rejected, over all units.
+  std::size_t rejected_readings() const;
   /// Returns the jitter of the stamps [s]; see TumblingOdometry::mended_jitter_s.
   std::optional<double> mended_jitter_s() const;
 
@@ -123,9 +128,12 @@ class RollingOdometry {
 
  private:
   using Frozen = std::array<FrozenAxes::State, ImuMerge::kImus>;
+  using Outliers = std::array<OutlierFilter::State, ImuMerge::kImus>;
 
   RollingOdometry(const Params& params, const ImuMerge::Params& merged);
 
+  Status add_held(std::span<const ImuSample> next);
+  Status add_inliers(std::span<const ImuSample> samples);
   Status take_in(const ImuSample& merged);
   Status leave_out_frozen(const Frozen& frozen, std::span<ImuSample> samples) const;
   Status doubt(const Frozen& frozen) const;
@@ -140,7 +148,10 @@ class RollingOdometry {
   std::unique_ptr<ImuMerge::State> merged_state_;  ///< buffer for the next state
   std::unique_ptr<RollingSmoother::State> state_;
   UnitRails::State rails_state_;
-  std::vector<FrozenAxes> watches_;  ///< one per unit
+  std::vector<OutlierFilter> filters_;  ///< one per unit
+  Outliers outliers_{};
+  std::optional<UnitRails::Samples> held_;  ///< samples of all units while OutlierFilter delays one of them
+  std::vector<FrozenAxes> watches_;         ///< one per unit
   Frozen frozen_{};
   std::vector<RollingEstimate> done_;
   std::size_t taken_ = 0;

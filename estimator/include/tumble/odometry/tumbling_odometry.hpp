@@ -7,6 +7,7 @@
 #include <span>
 #include <vector>
 
+#include "tumble/common/outlier_filter.hpp"
 #include "tumble/common/sample_clock.hpp"
 #include "tumble/mapping/lidar_inertial_odometry.hpp"
 #include "tumble/odometry/detail/odometry_pass.hpp"
@@ -54,11 +55,13 @@ class TumblingOdometry {
   /// `time_order` or `gap` the state is unchanged, with one exception. The sample after a gap of more than a second
   /// waits for confirmation by the next one. The rates then restart with the current calibration (gaps() counts them),
   /// and the mapper bridges the gap by inertial integration. A single wrong stamp thus costs one sample.
+  /// OutlierFilter rejects single wild readings. It may delay a sample by one; newest() is then one sample older.
   Status add_imu(const ImuSample& sample);
   /// Processes a sweep of points fired in [start_ns, end_ns], at any time after its last point. The points are copied.
   /// Points from before the end of the last sweep are dropped because stamps jitter. On error the state is unchanged.
   /// `time_order`: the end is before the start, or half of the sweep is before the end of the last sweep.
-  /// `out_of_range`: a point is beyond the sweep, the end is a second after the newest sample, or too many sweeps wait.
+  /// `out_of_range`: a point is beyond the sweep, the end is a second after the newest sample, a stamp is beyond 100
+  /// years, or too many sweeps wait.
   Status add_sweep(TimeNs start_ns, TimeNs end_ns, std::span<const LidarPoint> points);
   /// Processes an odometer reading (detail/odometer_reading.hpp). The reading must arrive before its sweep is
   /// registered, which is lag_s after the sweep's end. The last reading of a sweep counts. On error the state is
@@ -95,6 +98,8 @@ class TumblingOdometry {
   const KnownRails& rails() const { return pass_.rate_state().rate.rails.known; }
   /// Returns the number of IMU gaps after which the rates restarted.
   std::size_t gaps() const { return gaps_; }
+  /// Returns the number of samples that OutlierFilter rejected because of wild readings or stamps.
+  std::size_t rejected_readings() const { return outliers_.rejected; }
   /// Returns whether map and pose are those of the second pass (SecondPass).
   bool passed_again() const { return again_.taken(); }
   /// Return the numbers of samples that the mapper rejected, of sweeps not fetched in time, and of odometer readings
@@ -124,6 +129,7 @@ class TumblingOdometry {
  private:
   Status check_state() const;
   Status add_reading(const OdometerReading& reading);
+  Status add_inlier(const ImuSample& sample);
   Status take_in(const ImuSample& sample);
   void register_sweep(TimeNs start_ns, TimeNs end_ns, std::vector<LidarPoint> points);
   bool is_due(TimeNs end_ns) const;
@@ -133,6 +139,8 @@ class TumblingOdometry {
   void begin_rates();
 
   Params params_;
+  OutlierFilter filter_;
+  OutlierFilter::State outliers_;
   SampleClock clock_;
   SampleClock::State stamps_;  ///< of accepted samples
   OdometryPass pass_;
