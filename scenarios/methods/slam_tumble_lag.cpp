@@ -170,6 +170,7 @@ Estimate run_slam_tumble_lag(const sim::Sensors& sensors, const sim::Values& par
   estimate.status = live_through(sensors, samples, odometry, listener);
   if (!estimate.status.ok()) return estimate;
   tell_rails(odometry.rails(), estimate.health);
+  if (odometry.early_sweeps() > 0) estimate.health["sweeps_before_imu"] = static_cast<double>(odometry.early_sweeps());
   estimate.health["gaps"] = static_cast<double>(odometry.gaps());
   estimate.health["passed_again"] = odometry.passed_again() ? 1.0 : 0.0;
   listener.conclude(odometry);

@@ -25,6 +25,10 @@ void append_poses(std::span<const PoseState> trajectory, Estimate& estimate);
 /// One that the IMU does not cover is counted, and left out.
 void leave_out_unfinished(Estimate& estimate);
 
+/// Counts the trouble of a sweep that has no pose because it came before the IMU or had too few points to start the
+/// map. False for any other sweep.
+bool leave_out_before_map(const Status& status, const SweepReport& report, Estimate& estimate);
+
 /// A mapper as the loop over sweeps knows it.
 struct SweepMapper {
   /// Whether the IMU covers the sweep. Trouble on the way is the estimate's, and ends the run.

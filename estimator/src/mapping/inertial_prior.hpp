@@ -26,6 +26,9 @@ Eigen::Matrix3d railed_velocity_variance(const LidarInertialOdometry::Params& pa
 /// samples within `rest_s`, yaw 0. `degenerate` when that force is shorter than 1 m/s^2.
 Status start_at_rest(const LidarInertialOdometry::Params& params, std::span<const MotionSample> samples,
                      MotionState& state);
+/// The same by that force, without a time.
+Status level_at_rest(const LidarInertialOdometry::Params& params, const Eigen::Vector3d& force_I_m_s2,
+                     MotionState& state);
 
 /// Uncertainty of a rate method's angular velocity, per IMU axis, as the mapper believes it.
 Eigen::Vector3d believed_rate_sigma(const LidarInertialOdometry::Params& params, const RateState& rate);

@@ -25,10 +25,19 @@ class InertialTrack {
 
   /// From the window that holds the last sweep's end on.
   std::span<const MotionSample> samples() const { return samples_; }
+  /// Of them, those that end after this.
+  std::span<const MotionSample> samples_from(TimeNs from_ns) const;
+  /// End of the last sweep; nothing before the first.
+  std::optional<TimeNs> border_ns() const { return border_ns_; }
+  /// Mean specific force of the rest that the newest sample belongs to, if that had lasted for so long by `time_ns`.
+  std::optional<Eigen::Vector3d> resting_force(TimeNs time_ns, double lasted_s) const;
+  /// Whether the rest at the start goes on.
+  bool has_not_moved() const { return initial_.lasts; }
   /// The newest of them, or the last sweep's end.
   std::optional<TimeNs> last_ns() const;
   /// Whether the IMU has nothing to say but gravity up to `end_ns`.
   bool rests_until(TimeNs end_ns) const;
+  bool rests_between(TimeNs from_ns, TimeNs end_ns) const;
   /// What the accelerometer read before then is left out, as if it had been a gap's; the rates count.
   void leave_out_force(TimeNs end_ns);
   /// Forgets what ended by then, the end of a sweep.

@@ -4,6 +4,7 @@
 #include <array>
 #include <string_view>
 
+#include "../attitude/rest_gravity_members.hpp"
 #include "../common/sample_clock_members.hpp"
 #include "../common/state_params.hpp"
 #include "pass_members.hpp"
@@ -77,11 +78,14 @@ void TumblingOdometry::members(Self& s, Visitor& visit) {
   visit("stamps", s.stamps_);
   visit("pass", s.pass_);
   visit("again", s.again_);
+  visit.scratch(s.gravity_);  // of the parameters
+  visit("gravity", s.gravity_state_);
   visit("newest_ns", s.newest_ns_);
   visit("after_gap", s.after_gap_);
   visit("registered_ns", s.registered_ns_);
   visit("gaps", s.gaps_);
   visit("dropped_sweeps", s.dropped_sweeps_);
+  visit("early_sweeps", s.early_sweeps_);
   visit("waiting", s.waiting_);
   visit("readings", s.readings_);
   visit("done", s.done_);

@@ -111,6 +111,7 @@ RollingOdometry::RollingOdometry(const Params& params, const ImuMerge::Params& m
       state_(std::make_unique<RollingSmoother::State>()),
       rails_state_(rails_.start()),
       watches_(watches_of(params)),
+      gravity_({.gravity_m_s2 = params.gravity_m_s2}),
       live_(params.lag_s <= 0.0) {}
 
 RollingOdometry::RollingOdometry(const RollingOdometry& other)
@@ -126,6 +127,8 @@ RollingOdometry::RollingOdometry(const RollingOdometry& other)
       rails_state_(other.rails_state_),
       watches_(other.watches_),
       frozen_(other.frozen_),
+      gravity_(other.gravity_),
+      gravity_state_(other.gravity_state_),
       done_(other.done_),
       taken_(other.taken_),
       live_(other.live_),
@@ -150,7 +153,10 @@ Status RollingOdometry::add_imus(std::span<const ImuSample> samples) {
   Frozen frozen = frozen_;
   for (std::size_t k = 0; k < samples.size(); ++k) watches_[k].step(samples[k], frozen[k]);
   const std::span<ImuSample> judged = std::span(flagged).first(samples.size());
-  if (Status status = leave_out_frozen(frozen, judged); !status.ok()) return status;
+  if (Status status = leave_out_frozen(frozen, judged); !status.ok()) {
+    frozen_ = frozen;  // for doubt()
+    return status;
+  }
   if (Status status = merge_.step(judged, *merged_state_, merged); !status.ok()) return status;
   if (Status status = merge_.verdict(*merged_state_); !status.ok()) return status;
   if (merged) {
@@ -159,6 +165,7 @@ Status RollingOdometry::add_imus(std::span<const ImuSample> samples) {
   merge_state_.swap(merged_state_);
   stamps_ = stamps;
   frozen_ = frozen;
+  for (std::size_t k = 0; k < samples.size(); ++k) gravity_.step(samples[k], gravity_state_[k]);
   rails_.observe(samples, rails_state_);
   return {};
 }
@@ -173,14 +180,21 @@ Status RollingOdometry::leave_out_frozen(const Frozen& states, std::span<ImuSamp
     any = any || frozen;
     heard = heard || (finite && !frozen);
   }
-  return any && !heard ? doubt(states) : Status{};
+  return any && !heard ? frozen_axis(states) : Status{};
 }
 
 std::optional<double> RollingOdometry::mended_jitter_s() const {
   return clock_.mends(stamps_) ? SampleClock::jitter_s(stamps_) : std::nullopt;
 }
 
-Status RollingOdometry::doubt(const Frozen& frozen) const {
+Status RollingOdometry::doubt() const {
+  Status status = frozen_axis(frozen_);
+  for (std::size_t unit = 0; unit < watches_.size() && status.ok(); ++unit)
+    status = gravity_.size_verdict(gravity_state_[unit]);
+  return status;
+}
+
+Status RollingOdometry::frozen_axis(const Frozen& frozen) const {
   for (std::size_t unit = 0; unit < watches_.size(); ++unit) {
     Status status = watches_[unit].verdict(frozen[unit]);
     if (status.ok()) continue;
@@ -218,6 +232,7 @@ void RollingOdometry::reset() {
   state_ = std::make_unique<RollingSmoother::State>();
   rails_state_ = rails_.start();
   frozen_ = {};
+  gravity_state_ = {};
   finished_ = false;
 }
 

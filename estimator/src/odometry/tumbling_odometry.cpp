@@ -58,6 +58,7 @@ LidarInertialOdometry::Params mapper_params(const TumblingOdometry::Params& para
   return out;
 }
 
+constexpr double kLeastGravity_m_s2 = 1e-3;
 constexpr double kSilent_s = 1.0;       // a lidar that says nothing for so long is made up for
 constexpr double kAhead_s = 1.0;        // a sweep that ends so much after the newest sample has a stamp that is wrong
 constexpr double kSweepsMax_hz = 20.0;  // of the lidars that there are: so many a second wait for the lag
@@ -81,7 +82,8 @@ TumblingOdometry::TumblingOdometry(const Params& params)
     : params_(params),
       clock_(params.expert.stamps),
       pass_(rate_params(params), mapper_params(params)),
-      again_(params.expert.again, rate_params(params), mapper_params(params)) {}
+      again_(params.expert.again, rate_params(params), mapper_params(params)),
+      gravity_({.gravity_m_s2 = std::max(params.expert.gravity_m_s2, kLeastGravity_m_s2)}) {}
 
 Status TumblingOdometry::add_imu(const ImuSample& sample) {
   const Status status = take_in(sample);
@@ -105,9 +107,13 @@ Status TumblingOdometry::take_in(const ImuSample& sample) {
   if (const Status status = pass_.add_imu(timed); !status.ok()) return status;
   stamps_ = stamps;
   again_.remember(timed);
+  gravity_.step(timed, gravity_state_);
   newest_ns_ = timed.time_ns;
   after_gap_.reset();
-  if (!registered_ns_) registered_ns_ = timed.time_ns;
+  if (!registered_ns_) {
+    registered_ns_ = timed.time_ns;
+    leave_out_early(timed.time_ns);
+  }
   register_covered();
   return {};
 }
@@ -119,7 +125,12 @@ Status TumblingOdometry::add_sweep(TimeNs start_ns, TimeNs end_ns, std::span<con
     return {Trouble::time_order, "start_ns", double(start_ns), double(from_ns)};
   const TimeNs latest_ns = newest_ns_.value_or(end_ns) + static_cast<TimeNs>(1e9 * kAhead_s);
   if (end_ns > latest_ns) return {Trouble::out_of_range, "end_ns", double(end_ns), double(latest_ns)};
+  if (registered_ns_ && end_ns <= *registered_ns_) {
+    ++early_sweeps_;
+    return {};
+  }
   const std::size_t most = params_.expert.sweeps_max + static_cast<std::size_t>(kSweepsMax_hz * params_.lag_s);
+  if (waiting_.size() >= most && !newest_ns_) leave_out_early(waiting_.front().end_ns);
   if (waiting_.size() >= most)
     return {Trouble::out_of_range, "sweeps waiting", double(waiting_.size() + 1), double(most)};
   if (const Status status = mapping::check_offsets(end_ns - start_ns, points); !status.ok()) return status;
@@ -127,6 +138,10 @@ Status TumblingOdometry::add_sweep(TimeNs start_ns, TimeNs end_ns, std::span<con
   waiting_.push_back({from_ns, end_ns, points_from(from_ns, start_ns, points)});
   register_covered();
   return {};
+}
+
+void TumblingOdometry::leave_out_early(TimeNs until_ns) {
+  for (; !waiting_.empty() && waiting_.front().end_ns <= until_ns; waiting_.pop_front()) ++early_sweeps_;
 }
 
 Status TumblingOdometry::add_velocity(const VelocityReading& velocity) {
@@ -160,6 +175,7 @@ std::optional<double> TumblingOdometry::mended_jitter_s() const {
 Status TumblingOdometry::doubt() const {
   const Status of_imu = pass_.rates().rate().doubt(pass_.rate_state().rate);
   if (!of_imu.ok()) return of_imu;
+  if (const Status of_force = gravity_.size_verdict(gravity_state_); !of_force.ok()) return of_force;
   const Status of_ranges = pass_.sweep_scale().verdict();
   if (!of_ranges.ok()) return of_ranges;
   const Status of_localisation = pass_.localisation().verdict();
@@ -183,6 +199,7 @@ void TumblingOdometry::register_sweep(TimeNs start_ns, TimeNs end_ns, std::vecto
       readings_.take(pass_.needed_ns(*registered_ns_), pass_.needed_ns(end_ns));
   out.status = pass_.add_sweep(start_ns, end_ns, points, reading, out.report);
   registered_ns_ = end_ns;
+  if (out.report.trajectory.empty()) return;
   again_.remember(start_ns, end_ns, std::move(points), reading, out.report.verdict);
   again_.advance(pass_);
 }
@@ -211,6 +228,7 @@ void TumblingOdometry::register_covered() {
   if (!waiting_.empty() || !covered_ns) return;
   if (seconds(*covered_ns - *registered_ns_) > kSilent_s) {
     register_sweep(*covered_ns, *covered_ns, {});
+    if (done_.back().report.trajectory.empty()) done_.pop_back();  // no sweep has started the map
     sweep_end_ns_ = *covered_ns;
   }
 }

@@ -27,7 +27,9 @@ class StateLayout;
 /// its own time, registers the sweep to a voxel map by k-nearest-neighbour point-to-plane, and extends the map.
 /// Position, attitude and velocity at the start of a sweep are refined together, so that the deskewing is refined too.
 ///
-/// World: z up, origin and yaw at the IMU at the first sample, levelled by the specific force at rest.
+/// World: z up, levelled by the specific force at rest. The first sweep with `matches_min` points starts the map. If it
+/// starts within half a second of the IMU, origin and yaw are at the IMU at the first sample. Otherwise they are at the
+/// IMU at the start of that sweep, whose velocity and tilt come from dead reckoning.
 /// Feed IMU samples in time order, then each sweep once IMU samples reach its end. No threads of its own, no files, no
 /// printing. Where their standard deviation is not 0, the lidar's mounting, its clock and gravity are estimated with
 /// the motion, as one state with one covariance: an iterated error-state filter over sweeps, whose last window_sweeps
@@ -77,7 +79,8 @@ class LidarInertialOdometry {
   /// `too_few` (IMU samples do not cover the sweep), `out_of_range` (an offset beyond the sweep).
   /// Trouble after which the pose is the inertial prior and the verdict `rejected`: `empty` (no points), `non_finite`
   /// (no finite point), `too_few` (none in range), `degenerate` (all points bear one time stamp though the sweep
-  /// lasts).
+  /// lasts). Before the map starts, a sweep with such trouble or with too few points (`too_few`) has no pose: the
+  /// trajectory of its report is empty.
   Status add_sweep(TimeNs start_ns, TimeNs end_ns, std::span<const LidarPoint> points, SweepReport& report);
 
   /// Pose and velocity at the last of further samples, which are not added: from the last sweep's end by inertia alone,

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "tumble/angular_velocity/detail/frozen_axes.hpp"
+#include "tumble/attitude/detail/rest_gravity.hpp"
 #include "tumble/attitude/imu_merge.hpp"
 #include "tumble/common/pose.hpp"
 #include "tumble/common/sample_clock.hpp"
@@ -103,8 +104,9 @@ class RollingOdometry {
 
   /// Whether the units can be believed just now: `ok`, or `out_of_range` with unit and axis by name that has frozen
   /// (FrozenAxes), for how long and the bound. What that unit reads is left out meanwhile; where it is the only one
-  /// that is heard, add_imus() says so and takes nothing in.
-  Status doubt() const { return doubt(frozen_); }
+  /// that is heard, add_imus() says so and takes nothing in. Also `out_of_range` with the force at rest of a unit where
+  /// gravity contradicts it, as in another unit of measurement (RestGravity).
+  Status doubt() const;
 
   /// What the IMUs say of each other: frozen, disagreeing, late ones.
   const ImuMerge::State& units() const { return *merge_state_; }
@@ -123,12 +125,13 @@ class RollingOdometry {
 
  private:
   using Frozen = std::array<FrozenAxes::State, ImuMerge::kImus>;
+  using Gravity = std::array<RestGravity::Size, ImuMerge::kImus>;
 
   RollingOdometry(const Params& params, const ImuMerge::Params& merged);
 
   Status take_in(const ImuSample& merged);
   Status leave_out_frozen(const Frozen& frozen, std::span<ImuSample> samples) const;
-  Status doubt(const Frozen& frozen) const;
+  Status frozen_axis(const Frozen& frozen) const;
 
   Params params_;
   SampleClock clock_;
@@ -142,6 +145,8 @@ class RollingOdometry {
   UnitRails::State rails_state_;
   std::vector<FrozenAxes> watches_;  ///< of the units
   Frozen frozen_{};
+  RestGravity gravity_;
+  Gravity gravity_state_{};  ///< of the units
   std::vector<RollingEstimate> done_;
   std::size_t taken_ = 0;
   bool live_ = true, finished_ = false;

@@ -61,21 +61,25 @@ class RestGravity {
             {"accel_range_m_s2", "m/s^2", 0.0, kUnbounded, "as the device states it; 0: not stated"});
     }
   };
-  struct State {
-    RestDetector::State rest, weightless;
+  /// What the size of the force at rest needs.
+  struct Size {
+    RestDetector::State rest, weightless, heavy;
+    double rest_s = 0.0, force_sum_m = 0.0;  ///< of all rests, and of force by time
+    double weightless_s = 0.0;               ///< of what would be rest but that no force holds it
+    TimeNs last_time_ns = 0;
+    bool started = false, rests = false;
+    bool operator==(const Size&) const = default;
+  };
+  struct State : Size {
     Eigen::Vector3d from_m_s2 = Eigen::Vector3d::Zero();  ///< force at the last rest in the sensor's axes; 0: none
     Eigen::Quaterniond turned = Eigen::Quaterniond::Identity();  ///< since then
     double span_angle_rad = 0.0, variance_rad2 = 0.0;            ///< likewise
     Eigen::Vector3d velocity_sum_m_s = Eigen::Vector3d::Zero();  ///< likewise, of force in the axes of that rest
     double span_s = 0.0, hidden_m_s = 0.0;                       ///< likewise, and what the accelerometer's rail hid
     double segment_s = 0.0, segment_rad2_s = 0.0;                ///< of samples in a row that the gyro did not measure
-    double rest_s = 0.0, force_sum_m = 0.0;                      ///< of all rests, and of force by time
-    double weightless_s = 0.0;                                   ///< of what would be rest but that no force holds it
     double miss_rad = 0.0, miss_sigma_rad = 0.0;                 ///< of the worst of the spans between two rests
     double velocity_share = 0.0, velocity_allowed_share = 0.0;   ///< likewise, over what gravity gives in its time
     std::size_t spans = 0;                                       ///< that were compared
-    TimeNs last_time_ns = 0;
-    bool started = false, rests = false;
   };
 
   /// Throws InvalidParams when a parameter is outside of its bound.
@@ -84,17 +88,25 @@ class RestGravity {
   /// Takes a sample and the rate that an estimate gives for it; a sample that is not finite or out of order is passed
   /// over. O(1), no allocation.
   void step(const ImuSample& sample, const RateState& rate, State& state) const;
+  /// The same without rates, for the size alone.
+  void step(const ImuSample& sample, Size& state) const { (void)follow(sample, state); }
 
   /// Mean size of the force at rest as a share of gravity; 0 where all that rested for a second is without force, and 1
   /// where nothing rested.
-  double size_share(const State& state) const;
-  /// `out_of_range` where that is not 1.
-  Status size_verdict(const State& state) const;
+  double size_share(const Size& state) const;
+  /// `out_of_range` where that is not 1. Names the unit as suspect where it is off by a factor above three.
+  Status size_verdict(const Size& state) const;
   /// The same, and where the rates of the worst span between two rests miss gravity, or leave a velocity, by more than
   /// they may.
   Status verdict(const State& state) const;
 
  private:
+  enum class Follows { not_at_all, after_gap, directly };
+  struct Step {
+    Follows follows = Follows::not_at_all;
+    double dt_s = 0.0;
+  };
+  Step follow(const ImuSample& sample, Size& state) const;
   void turn(const ImuSample& sample, const RateState& rate, double dt_s, State& state) const;
   void end_segment(State& state) const;
   void arrive(State& state) const;
@@ -102,7 +114,7 @@ class RestGravity {
   double allowed_rad(double sigma_rad) const;
 
   Params params_;
-  RestDetector detector_, weightless_;
+  RestDetector detector_, weightless_, heavy_;
 };
 
 }  // namespace tumble
