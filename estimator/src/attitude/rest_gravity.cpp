@@ -12,8 +12,8 @@ namespace tumble {
 
 namespace {
 
-constexpr double kRested_s = 1.0;    // in all, for its size to be asked
-constexpr double kOtherUnit = 3.0;   // a factor that no scale or bias of an accelerometer reaches
+constexpr double kRested_s = 1.0;   // in all, for its size to be asked
+constexpr double kOtherUnit = 3.0;  // a factor that no scale or bias of an accelerometer reaches
 
 /// Of a body without any force that could be gravity, in whatever unit.
 RestDetector::Params without_force(RestDetector::Params rests) {

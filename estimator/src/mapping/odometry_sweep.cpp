@@ -293,8 +293,7 @@ Status LidarInertialOdometry::Impl::go_on_by_inertia(const MotionWindow& motion,
   if (Status status = trajectory.build(before.state, motion.samples, motion.end_ns, before.calibration.gravity_W_m_s2);
       !status.ok())
     return status;
-  const std::unique_ptr<Prediction> prediction(
-      new Prediction(mapping::predict(params, at, motion, trajectory, known)));
+  const std::unique_ptr<Prediction> prediction(new Prediction(mapping::predict(params, at, motion, trajectory, known)));
   if (rests) mapping::predict_rest(params, at, *prediction);
   const std::unique_ptr<const Belief> start(new Belief(mapping::posterior(*prediction)));
   const Registration::Estimate& mean = start->mean;

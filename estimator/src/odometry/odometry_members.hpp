@@ -4,7 +4,6 @@
 #include <array>
 #include <string_view>
 
-#include "../attitude/rest_gravity_members.hpp"
 #include "../common/sample_clock_members.hpp"
 #include "../common/state_params.hpp"
 #include "pass_members.hpp"
@@ -78,8 +77,6 @@ void TumblingOdometry::members(Self& s, Visitor& visit) {
   visit("stamps", s.stamps_);
   visit("pass", s.pass_);
   visit("again", s.again_);
-  visit.scratch(s.gravity_);  // of the parameters
-  visit("gravity", s.gravity_state_);
   visit("newest_ns", s.newest_ns_);
   visit("after_gap", s.after_gap_);
   visit("registered_ns", s.registered_ns_);

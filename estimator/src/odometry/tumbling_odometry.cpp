@@ -27,6 +27,13 @@ std::vector<LidarPoint> points_from(TimeNs from_ns, TimeNs start_ns, std::span<c
   return out;
 }
 
+/// Drops the sweeps that ended by then and returns how many.
+std::size_t drop_until(TimeNs time_ns, std::deque<WaitingSweep>& sweeps) {
+  std::size_t dropped = 0;
+  for (; !sweeps.empty() && sweeps.front().end_ns <= time_ns; sweeps.pop_front()) ++dropped;
+  return dropped;
+}
+
 RegimeStream::Params rate_params(const TumblingOdometry::Params& params) {
   require_fields(params);
   RegimeStream::Params out = params.expert.rate;
@@ -58,7 +65,6 @@ LidarInertialOdometry::Params mapper_params(const TumblingOdometry::Params& para
   return out;
 }
 
-constexpr double kLeastGravity_m_s2 = 1e-3;
 constexpr double kSilent_s = 1.0;       // a lidar that says nothing for so long is made up for
 constexpr double kAhead_s = 1.0;        // a sweep that ends so much after the newest sample has a stamp that is wrong
 constexpr double kSweepsMax_hz = 20.0;  // of the lidars that there are: so many a second wait for the lag
@@ -82,8 +88,7 @@ TumblingOdometry::TumblingOdometry(const Params& params)
     : params_(params),
       clock_(params.expert.stamps),
       pass_(rate_params(params), mapper_params(params)),
-      again_(params.expert.again, rate_params(params), mapper_params(params)),
-      gravity_({.gravity_m_s2 = std::max(params.expert.gravity_m_s2, kLeastGravity_m_s2)}) {}
+      again_(params.expert.again, rate_params(params), mapper_params(params)) {}
 
 Status TumblingOdometry::add_imu(const ImuSample& sample) {
   const Status status = take_in(sample);
@@ -107,12 +112,11 @@ Status TumblingOdometry::take_in(const ImuSample& sample) {
   if (const Status status = pass_.add_imu(timed); !status.ok()) return status;
   stamps_ = stamps;
   again_.remember(timed);
-  gravity_.step(timed, gravity_state_);
   newest_ns_ = timed.time_ns;
   after_gap_.reset();
   if (!registered_ns_) {
     registered_ns_ = timed.time_ns;
-    leave_out_early(timed.time_ns);
+    early_sweeps_ += drop_until(timed.time_ns, waiting_);
   }
   register_covered();
   return {};
@@ -130,7 +134,7 @@ Status TumblingOdometry::add_sweep(TimeNs start_ns, TimeNs end_ns, std::span<con
     return {};
   }
   const std::size_t most = params_.expert.sweeps_max + static_cast<std::size_t>(kSweepsMax_hz * params_.lag_s);
-  if (waiting_.size() >= most && !newest_ns_) leave_out_early(waiting_.front().end_ns);
+  if (waiting_.size() >= most && !newest_ns_) early_sweeps_ += drop_until(waiting_.front().end_ns, waiting_);
   if (waiting_.size() >= most)
     return {Trouble::out_of_range, "sweeps waiting", double(waiting_.size() + 1), double(most)};
   if (const Status status = mapping::check_offsets(end_ns - start_ns, points); !status.ok()) return status;
@@ -138,10 +142,6 @@ Status TumblingOdometry::add_sweep(TimeNs start_ns, TimeNs end_ns, std::span<con
   waiting_.push_back({from_ns, end_ns, points_from(from_ns, start_ns, points)});
   register_covered();
   return {};
-}
-
-void TumblingOdometry::leave_out_early(TimeNs until_ns) {
-  for (; !waiting_.empty() && waiting_.front().end_ns <= until_ns; waiting_.pop_front()) ++early_sweeps_;
 }
 
 Status TumblingOdometry::add_velocity(const VelocityReading& velocity) {
@@ -175,7 +175,7 @@ std::optional<double> TumblingOdometry::mended_jitter_s() const {
 Status TumblingOdometry::doubt() const {
   const Status of_imu = pass_.rates().rate().doubt(pass_.rate_state().rate);
   if (!of_imu.ok()) return of_imu;
-  if (const Status of_force = gravity_.size_verdict(gravity_state_); !of_force.ok()) return of_force;
+  if (const Status of_force = pass_.force_at_rest(); !of_force.ok()) return of_force;
   const Status of_ranges = pass_.sweep_scale().verdict();
   if (!of_ranges.ok()) return of_ranges;
   const Status of_localisation = pass_.localisation().verdict();

@@ -82,17 +82,16 @@ class RollingOdometry {
   ~RollingOdometry() = default;
 
   /// Takes what all units read at one time (the first's stamp counts, and where a host jitters what SampleClock makes
-  /// of it); one that has nothing to say gives NaN. On
-  /// trouble the state is as it was: `too_few` (units, or one that has something to say), `time_order`, `degenerate`
-  /// (no gravity in the first sample), `gap` (more than a second: the way is not known any more, and the run is over
-  /// until reset()), `out_of_range` after finish() and where the only unit that is heard has a frozen axis.
+  /// of it); one that has nothing to say gives NaN. On trouble the state is as it was: `too_few` (units, or one that
+  /// has something to say), `time_order`, `degenerate` (no gravity in the first sample), `gap` (more than a second: the
+  /// way is not known any more, and the run is over until reset()), `out_of_range` after finish() and where the only
+  /// unit that is heard has a frozen axis.
   Status add_imus(std::span<const ImuSample> samples);
   /// The same of a sphere with one.
   Status add_imu(const ImuSample& sample) { return add_imus({&sample, 1}); }
 
   /// Pose at the newest sample by what came before it. Nothing before the first.
   std::optional<Pose> newest() const;
-
   /// The next pose of those given out once each, in order of time: lag_s old, or live ones without a lag.
   std::optional<Pose> take();
 
@@ -103,14 +102,11 @@ class RollingOdometry {
   void reset();
 
   /// Whether the units can be believed just now: `ok`, or `out_of_range` with unit and axis by name that has frozen
-  /// (FrozenAxes), for how long and the bound. What that unit reads is left out meanwhile; where it is the only one
-  /// that is heard, add_imus() says so and takes nothing in. Also `out_of_range` with the force at rest of a unit where
-  /// gravity contradicts it, as in another unit of measurement (RestGravity).
+  /// (FrozenAxes), for how long and the bound, or with a force at rest of another size than gravity (RestGravity). A
+  /// frozen unit is left out meanwhile; where it is the only one, add_imus() says so and takes nothing in.
   Status doubt() const;
-
   /// What the IMUs say of each other: frozen, disagreeing, late ones.
   const ImuMerge::State& units() const { return *merge_state_; }
-
   /// As TumblingOdometry::mended_jitter_s: of the stamps [s].
   std::optional<double> mended_jitter_s() const;
 
@@ -125,7 +121,6 @@ class RollingOdometry {
 
  private:
   using Frozen = std::array<FrozenAxes::State, ImuMerge::kImus>;
-  using Gravity = std::array<RestGravity::Size, ImuMerge::kImus>;
 
   RollingOdometry(const Params& params, const ImuMerge::Params& merged);
 
@@ -146,7 +141,7 @@ class RollingOdometry {
   std::vector<FrozenAxes> watches_;  ///< of the units
   Frozen frozen_{};
   RestGravity gravity_;
-  Gravity gravity_state_{};  ///< of the units
+  std::array<RestGravity::Size, ImuMerge::kImus> gravity_state_{};
   std::vector<RollingEstimate> done_;
   std::size_t taken_ = 0;
   bool live_ = true, finished_ = false;

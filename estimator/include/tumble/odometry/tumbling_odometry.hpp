@@ -7,7 +7,6 @@
 #include <span>
 #include <vector>
 
-#include "tumble/attitude/detail/rest_gravity.hpp"
 #include "tumble/common/sample_clock.hpp"
 #include "tumble/mapping/lidar_inertial_odometry.hpp"
 #include "tumble/odometry/detail/odometry_pass.hpp"
@@ -25,10 +24,10 @@ namespace tumble {
 /// Of each sweep there are three words: newest() places the IMU at any time, by inertia from the last sweep that was
 /// registered on; take() gives the sweep at most lag_s after its end, registered (`report.pose`); and the sweep after
 /// it brings its last word (`report.smoothed`), at ten a second at most 0.3 s after its end. Poses bear times of the
-/// IMU's clock and stand in the world of LidarInertialOdometry: z up, origin and yaw at the IMU where the map starts,
-/// which has no error there. The first sweep with enough points starts the map, also where it comes seconds after the
-/// IMU; before it there are no poses. Begin at rest, half a second or more: it levels the attitude. Once, some seconds after the motion began, map and
-/// pose move to where a second pass over those seconds puts them, with the rig and the calibration that they told
+/// IMU's clock and stand in the world of LidarInertialOdometry: z up, origin and yaw at the IMU where the first sweep
+/// with enough points starts the map, which has no error there. Before that sweep there are no poses, however late it
+/// comes. Begin at rest, half a second or more: it levels the attitude. Once, some seconds after the motion began, map
+/// and pose move to where a second pass over those seconds puts them, with the rig and the calibration that they told
 /// (SecondPass); poses given out before stay. A lidar that is silent for a second is made up for by inertia, a sweep
 /// without points.
 ///
@@ -77,13 +76,11 @@ class TumblingOdometry {
   /// Pose and velocity of the IMU at its newest sample, by inertia from the last sweep that was registered, with
   /// covariance. `empty` before that. Allocates; O(samples since then).
   Status newest(PoseState& pose) const;
-
   /// Whether what it is told can be believed just now: `ok`, or `out_of_range` with the axis of the IMU by name that
-  /// has frozen and for how long, with an accelerometer of the other sense (FlightSense), with the force at rest where
-  /// gravity contradicts it, as in another unit (RestGravity, from a second of rest on), with the scale of the
-  /// lidar's ranges where the IMU contradicts it (SweepScale), with what says that it no longer knew where on its map
-  /// it was (Localisation), which is for good, or with how far the lidar's calibration moved (GivenCalibration). It
-  /// goes on either way: rates that nothing is known of have a wide deviation; a map of another scale is one.
+  /// has frozen and for how long, with an accelerometer of the other sense (FlightSense) or of another unit, after a
+  /// second of rest (RestGravity), with the scale of the lidar's ranges where the IMU contradicts it (SweepScale), with
+  /// what says that it no longer knew where on its map it was (Localisation), which is for good, or with how far the
+  /// lidar's calibration moved (GivenCalibration). It goes on either way.
   Status doubt() const;
   /// By how much the lidar's ranges are longer than the IMU has it, as far as the motion told.
   const SweepScale& sweep_scale() const { return pass_.sweep_scale(); }
@@ -100,16 +97,14 @@ class TumblingOdometry {
   std::size_t gaps() const { return gaps_; }
   /// Whether the map and the pose are those of the second pass (SecondPass).
   bool passed_again() const { return again_.taken(); }
-  /// Samples that the mapper refused with their rates, sweeps that nobody took in time, an odometer's readings that
-  /// reach from one sweep into the next, and are not used: 0 unless something is wrong.
+  /// Samples that the mapper refused with their rates, sweeps that nobody took in time, sweeps that ended before the
+  /// IMU's first sample, an odometer's readings that reach from one sweep into the next: 0 unless something is wrong.
   std::size_t refused_samples() const { return pass_.refused_samples(); }
   std::size_t dropped_sweeps() const { return dropped_sweeps_; }
-  /// Sweeps that ended before the first sample of the IMU and were left out.
   std::size_t early_sweeps() const { return early_sweeps_; }
   std::size_t unused_readings() const { return readings_.straddling(); }
   /// Standard deviation of the IMU's stamps about a regular clock [s], while that clock's times count for them.
   std::optional<double> mended_jitter_s() const;
-  /// The map, and all that the mapper tells beside.
   const LidarInertialOdometry& mapper() const { return pass_.mapper(); }
 
   /// All that it knows, map, rig, second pass and what waits for take() included, as bytes that are the same on every
@@ -131,7 +126,6 @@ class TumblingOdometry {
   Status add_reading(const OdometerReading& reading);
   Status take_in(const ImuSample& sample);
   void register_sweep(TimeNs start_ns, TimeNs end_ns, std::vector<LidarPoint> points);
-  void leave_out_early(TimeNs until_ns);
   bool is_due(TimeNs end_ns) const;
   void register_covered();
   void flush_all();
@@ -143,8 +137,6 @@ class TumblingOdometry {
   SampleClock::State stamps_;  ///< of the samples taken in
   OdometryPass pass_;
   SecondPass again_;
-  RestGravity gravity_;
-  RestGravity::Size gravity_state_;
   std::optional<TimeNs> newest_ns_;      ///< of the samples taken in
   std::optional<ImuSample> after_gap_;   ///< held back
   std::optional<TimeNs> registered_ns_;  ///< end of the last sweep that was registered; the first sample before that
