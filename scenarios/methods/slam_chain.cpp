@@ -115,6 +115,7 @@ class SweepFeed {
       leave_out_unfinished(estimate_);
       return true;
     }
+    if (leave_out_before_map(status, report, estimate_)) return true;
     const bool left_the_window = !report.smoothed.empty();
     std::vector<PoseState> smoothed = std::move(report.smoothed);
     const TimeNs end_ns = report.pose.time_ns;

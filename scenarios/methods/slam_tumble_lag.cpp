@@ -174,6 +174,7 @@ Estimate run_slam_tumble_lag(const sim::Sensors& sensors, const sim::Values& par
   tell_rails(odometry.rails(), estimate.health);
   const std::size_t left_out = sensors.imus.front().time_ns.size() - samples.size();
   estimate.health["rejected_readings"] = static_cast<double>(left_out + odometry.rejected_readings());
+  if (odometry.early_sweeps() > 0) estimate.health["sweeps_before_imu"] = static_cast<double>(odometry.early_sweeps());
   estimate.health["gaps"] = static_cast<double>(odometry.gaps());
   estimate.health["passed_again"] = odometry.passed_again() ? 1.0 : 0.0;
   listener.conclude(odometry);

@@ -26,6 +26,10 @@ void append_poses(std::span<const PoseState> trajectory, Estimate& estimate);
 /// Counts and drops a sweep that the IMU does not cover.
 void leave_out_unfinished(Estimate& estimate);
 
+/// Counts the error of a sweep that has no pose because it came before the IMU or had too few points to start the map.
+/// Returns false for any other sweep.
+bool leave_out_before_map(const Status& status, const SweepReport& report, Estimate& estimate);
+
 /// Interface of a mapper for the loop over sweeps.
 struct SweepMapper {
   /// Returns true if the IMU covers the sweep. An error is set as the estimate's status and ends the run.

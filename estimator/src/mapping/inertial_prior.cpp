@@ -84,12 +84,17 @@ Status start_at_rest(const LidarInertialOdometry::Params& params, std::span<cons
     force += sample.f_I_m_s2;
     count += 1.0;
   }
-  force /= count;
-  if (!(force.norm() >= 1.0)) return {Trouble::degenerate, "specific_force_m_s2", force.norm(), 1.0};
-
-  state = MotionState{};
+  if (Status status = level_at_rest(params, force / count, state); !status.ok()) return status;
   state.time_ns = samples.front().from_ns;
-  if (Status status = level(force, state.q_WI); !status.ok()) return status;
+  return {};
+}
+
+Status level_at_rest(const LidarInertialOdometry::Params& params, const Eigen::Vector3d& force_I_m_s2,
+                     MotionState& state) {
+  const double force_m_s2 = force_I_m_s2.norm();
+  if (!(force_m_s2 >= 1.0)) return {Trouble::degenerate, "specific_force_m_s2", force_m_s2, 1.0};
+  state = MotionState{};
+  if (Status status = level(force_I_m_s2, state.q_WI); !status.ok()) return status;
   u::variances(state.covariance, u::tilt)
       .setConstant(params.expert.start.level_sigma_rad * params.expert.start.level_sigma_rad);
   u::variances(state.covariance, u::velocity)

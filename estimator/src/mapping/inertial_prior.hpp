@@ -26,6 +26,9 @@ Eigen::Matrix3d railed_velocity_variance(const LidarInertialOdometry::Params& pa
 /// the samples within `rest_s` levels the attitude. Returns `degenerate` if this force is below 1 m/s^2.
 Status start_at_rest(const LidarInertialOdometry::Params& params, std::span<const MotionSample> samples,
                      MotionState& state);
+/// The same by that force, without a time.
+Status level_at_rest(const LidarInertialOdometry::Params& params, const Eigen::Vector3d& force_I_m_s2,
+                     MotionState& state);
 
 /// Returns the uncertainty of a rate method's angular velocity, per IMU axis, limited to the mapper's upper bound.
 Eigen::Vector3d believed_rate_sigma(const LidarInertialOdometry::Params& params, const RateState& rate);

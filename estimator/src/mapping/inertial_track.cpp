@@ -179,6 +179,23 @@ bool InertialTrack::rests_until(TimeNs end_ns) const {
   return std::all_of(samples_.begin(), samples_.end(), rests);
 }
 
+bool InertialTrack::rests_between(TimeNs from_ns, TimeNs end_ns) const {
+  const std::span<const MotionSample> samples = samples_from(from_ns);
+  const auto after = [&](const MotionSample& sample) { return sample.from_ns >= end_ns; };
+  const auto end = std::find_if(samples.begin(), samples.end(), after);
+  return std::all_of(samples.begin(), end, [](const MotionSample& sample) { return bool(sample.rests_since_ns); });
+}
+
+std::span<const MotionSample> InertialTrack::samples_from(TimeNs from_ns) const {
+  const auto ended = [&](const MotionSample& sample) { return sample.time_ns <= from_ns; };
+  return {std::partition_point(samples_.begin(), samples_.end(), ended), samples_.end()};
+}
+
+std::optional<Eigen::Vector3d> InertialTrack::resting_force(TimeNs time_ns, double lasted_s) const {
+  if (!rest_.rests || seconds(time_ns - rest_.first_ns) < lasted_s) return std::nullopt;
+  return rest_.mean_force_m_s2();
+}
+
 void InertialTrack::leave_out_force(TimeNs end_ns) {
   for (MotionSample& sample : samples_) {
     if (sample.from_ns >= end_ns) break;

@@ -25,10 +25,19 @@ class InertialTrack {
 
   /// Starts with the window that contains the last sweep's end.
   std::span<const MotionSample> samples() const { return samples_; }
+  /// Returns the samples that end after `from_ns`.
+  std::span<const MotionSample> samples_from(TimeNs from_ns) const;
+  /// Returns the end of the last sweep; nothing before the first.
+  std::optional<TimeNs> border_ns() const { return border_ns_; }
+  /// Returns the mean specific force of the current rest, if it had lasted for `lasted_s` by `time_ns`.
+  std::optional<Eigen::Vector3d> resting_force(TimeNs time_ns, double lasted_s) const;
+  /// Returns whether the rest at the start continues.
+  bool has_not_moved() const { return initial_.lasts; }
   /// Time of the newest sample, or of the last sweep's end.
   std::optional<TimeNs> last_ns() const;
   /// Returns whether the IMU measures only gravity up to `end_ns`.
   bool rests_until(TimeNs end_ns) const;
+  bool rests_between(TimeNs from_ns, TimeNs end_ns) const;
   /// Marks the forces before `end_ns` as unknown, as in a gap; the rates remain.
   void leave_out_force(TimeNs end_ns);
   /// Deletes samples that ended by `end_ns`, the end of a sweep.

@@ -49,6 +49,9 @@ struct LidarInertialOdometry::Impl {
   Status check_sweep(TimeNs start_ns, TimeNs end_ns, std::span<const LidarPoint> returns) const;
   /// Before the first sweep, initialises the state from the IMU at rest.
   Status level_at_first();
+  /// Before there is a map: ok where this sweep starts it; else the state goes on by inertia to the sweep's end.
+  Status start_map(TimeNs start_ns, TimeNs end_ns, std::span<const LidarPoint> returns, SweepReport& report);
+  Status dead_reckon(TimeNs end_ns);
   bool rests(const mapping::InertialTrack& heard, const SweepTrajectory& motion, TimeNs end_ns) const;
   /// `trajectory` is the IMU's motion from the boundary on. On return it is that of the alignment, if there is one,
   /// otherwise that of a failed attempt.
@@ -69,6 +72,8 @@ struct LidarInertialOdometry::Impl {
   void stop_at_rest(const mapping::MotionWindow& motion, const mapping::Border& from,
                     mapping::Prediction& prediction) const;
   void carry_on_other(const mapping::MotionWindow& motion, bool doubted_before);
+  Status go_on_by_inertia(const mapping::MotionWindow& motion, bool rests, mapping::Border& at,
+                          mapping::LagWindow* into) const;
   void go_back_to_inertia();
   /// After tracking failure: the state at the boundary by the contradicted relocalisation; null if there was none.
   const MotionState* by_the_place() const;

@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <algorithm>
+#include <cmath>
 #include <memory>
 #include <utility>
 #include <variant>
 
+#include "before_map.hpp"
 #include "odometry_impl.hpp"
 #include "tumble/mapping/detail/sweep_check.hpp"
 #include "unknowns.hpp"
@@ -13,12 +15,22 @@ namespace tumble {
 using mapping::Belief, mapping::InsertedPoint, mapping::MotionWindow, mapping::Placed, mapping::Prediction;
 using mapping::UpdatedSweep, mapping::WindowSweep;
 
+namespace {
+
+constexpr double kTogether_s = 0.5;       // IMU and lidar start together: what levels the attitude
+constexpr TimeNs kStep_ns = 100'000'000;  // of dead reckoning: what the inertial noise is stated for
+
+}  // namespace
+
 Status LidarInertialOdometry::Impl::add_sweep(TimeNs start_ns, TimeNs end_ns, std::span<const LidarPoint> returns,
                                               SweepReport& report) {
   if (Status status = check_sweep(start_ns, end_ns, returns); !status.ok()) return status;
   if (Status status = level_at_first(); !status.ok()) return status;
 
   if (std::holds_alternative<mapping::ConstantVelocity>(known)) track.leave_out_force(end_ns);
+  if (!mapping::has_started(tracking)) {
+    if (Status status = start_map(start_ns, end_ns, returns, report); !status.ok()) return status;
+  }
   // starts as the inertial prediction from the boundary; an alignment refines it
   SweepTrajectory& trajectory = scratch.trajectory;
   const Registration::Estimate& before = border.belief.mean;
@@ -67,7 +79,7 @@ Status LidarInertialOdometry::Impl::add_sweep(TimeNs start_ns, TimeNs end_ns, st
 
 Status LidarInertialOdometry::Impl::check_sweep(TimeNs start_ns, TimeNs end_ns,
                                                 std::span<const LidarPoint> returns) const {
-  const bool started = mapping::has_started(tracking);
+  const bool started = mapping::has_started(tracking) || track.border_ns();
   const std::span<const MotionSample> samples = track.samples();
   if (end_ns < start_ns) return {Trouble::time_order, "end_ns", double(end_ns), double(start_ns)};
   if (started && start_ns < border.time_ns())
@@ -86,11 +98,61 @@ Status LidarInertialOdometry::Impl::check_sweep(TimeNs start_ns, TimeNs end_ns,
 }
 
 Status LidarInertialOdometry::Impl::level_at_first() {
-  if (mapping::has_started(tracking)) return {};
+  if (mapping::has_started(tracking) || track.border_ns()) return {};
   MotionState levelled;
   if (Status status = mapping::start_at_rest(params, track.samples(), levelled); !status.ok()) return status;
   border.belief = mapping::belief_at_start(params, levelled);
   world = mapping::WorldCovariance(params.expert.world, levelled.q_WI, params.T_IL.translation());
+  return {};
+}
+
+/// Starts the map with the first sweep that has enough points. If the sweep begins with the IMU, its start is the
+/// levelled state; otherwise it is the result of dead reckoning (mapping.md, "Start").
+Status LidarInertialOdometry::Impl::start_map(TimeNs start_ns, TimeNs end_ns, std::span<const LidarPoint> returns,
+                                              SweepReport& report) {
+  const SweepCalibration calibration = border.belief.mean.calibration;
+  mapping::SweepPoints::Counts counts;
+  const Status selected = scratch.points.select(params, returns, end_ns - start_ns, calibration, 0.0, counts);
+  report.points_used = counts.used;
+  report.points_alone = counts.alone;
+  const std::size_t points = selected.ok() ? scratch.points.all().size() : 0;
+  const bool usable = points >= params.expert.matching.least;
+  if (usable && !track.border_ns() && seconds(start_ns - border.time_ns()) <= kTogether_s) return {};
+  if (usable) {
+    const mapping::MotionPrior of_sweep = std::exchange(known, mapping::InertialPrior{});
+    if (Status status = dead_reckon(start_ns); !status.ok()) return status;
+    known = of_sweep;
+    world = mapping::world_at_first_sweep(params, border.belief);
+    border.belief = mapping::belief_at_first_sweep(params, border.belief);
+    return {};
+  }
+  if (Status status = dead_reckon(end_ns); !status.ok()) return status;
+  known = mapping::InertialPrior{};
+  if (!selected.ok()) return selected;
+  return {Trouble::too_few, "points", double(points), double(params.expert.matching.least)};
+}
+
+/// Integrates inertially to `end_ns`, without a map. A rest levels the attitude again.
+Status LidarInertialOdometry::Impl::dead_reckon(TimeNs end_ns) {
+  if (!track.border_ns()) border.belief = mapping::belief_before_map(params, border.belief.mean.state);
+  if (const std::optional<Eigen::Vector3d> force = track.resting_force(end_ns, params.expert.rest.levels_s)) {
+    MotionState levelled;
+    if (Status status = mapping::level_at_rest(params, *force, levelled); !status.ok()) return status;
+    levelled.time_ns = end_ns;
+    if (!track.has_not_moved()) {
+      mapping::unknowns::variances(levelled.covariance, mapping::unknowns::velocity)
+          .setConstant(std::pow(params.expert.standstill.creep_max_m_s, 2));
+    }
+    border = mapping::Border{.belief = mapping::belief_before_map(params, levelled)};
+  }
+  while (border.time_ns() < end_ns) {
+    const TimeNs from_ns = border.time_ns(), to_ns = std::min(end_ns, from_ns + kStep_ns);
+    const MotionWindow motion{track.samples_from(from_ns), to_ns, 0};
+    if (Status status = go_on_by_inertia(motion, track.rests_between(from_ns, to_ns), border, nullptr); !status.ok())
+      return status;
+    border.belief = mapping::without_place(border.belief, seconds(to_ns - from_ns));
+  }
+  track.forget_until(end_ns);
   return {};
 }
 
@@ -219,21 +281,30 @@ void LidarInertialOdometry::Impl::carry_on_other(const MotionWindow& motion, boo
   }
   if (!doubted && !mapping::is_lost(tracking)) other.reset();
   if (!other) return;
-  mapping::Border& alone = other->border;
-  const Registration::Estimate& before = alone.belief.mean;
+  const bool rests = std::holds_alternative<mapping::InertialPrior>(known) && track.rests_until(motion.end_ns);
+  if (!go_on_by_inertia(motion, rests, other->border, &other->window).ok()) other.reset();
+}
+
+/// From a border to a sweep's end without its points. `rests`: the velocity is known to be 0. The sweep enters the
+/// window, if there is one.
+Status LidarInertialOdometry::Impl::go_on_by_inertia(const MotionWindow& motion, bool rests, mapping::Border& at,
+                                                     mapping::LagWindow* into) const {
+  const Registration::Estimate& before = at.belief.mean;
   SweepTrajectory trajectory;
-  Status status = trajectory.build(before.state, motion.samples, motion.end_ns, before.calibration.gravity_W_m_s2);
-  if (!status.ok()) return other.reset();
-  const std::unique_ptr<Prediction> prediction(
-      new Prediction(mapping::predict(params, alone, motion, trajectory, known)));
-  stop_at_rest(motion, alone, *prediction);
+  if (Status status = trajectory.build(before.state, motion.samples, motion.end_ns, before.calibration.gravity_W_m_s2);
+      !status.ok())
+    return status;
+  const std::unique_ptr<Prediction> prediction(new Prediction(mapping::predict(params, at, motion, trajectory, known)));
+  if (rests) mapping::predict_rest(params, at, *prediction);
   const std::unique_ptr<const Belief> start(new Belief(mapping::posterior(*prediction)));
   const Registration::Estimate& mean = start->mean;
-  status =
-      trajectory.build(mean.state, motion.samples, motion.end_ns, mean.calibration.gravity_W_m_s2, mean.deficit_rad_s);
-  if (!status.ok()) return other.reset();
-  enter_window({*prediction, *start, trajectory}, motion, alone, other->window);
-  mapping::border_after(params, *start, motion, trajectory, nullptr, alone);
+  if (Status status = trajectory.build(mean.state, motion.samples, motion.end_ns, mean.calibration.gravity_W_m_s2,
+                                       mean.deficit_rad_s);
+      !status.ok())
+    return status;
+  if (into != nullptr) enter_window({*prediction, *start, trajectory}, motion, at, *into);
+  mapping::border_after(params, *start, motion, trajectory, nullptr, at);
+  return {};
 }
 
 /// Reverts a contradicted relocalisation: removes its points from the map and returns to inertial prediction. The

@@ -84,6 +84,7 @@ void TumblingOdometry::members(Self& s, Visitor& visit) {
   visit("registered_ns", s.registered_ns_);
   visit("gaps", s.gaps_);
   visit("dropped_sweeps", s.dropped_sweeps_);
+  visit("early_sweeps", s.early_sweeps_);
   visit("waiting", s.waiting_);
   visit("readings", s.readings_);
   visit("done", s.done_);

@@ -9,6 +9,7 @@ namespace tumble {
 
 namespace {
 
+constexpr double kLeastGravity_m_s2 = 1e-3;
 constexpr double kRoom_s = 2.0;  // duration of preallocated sample memory: more than the longest gap of a lidar
 
 std::size_t samples_in(double time_s, const RegimeStream::Params& rate) {
@@ -75,7 +76,8 @@ OdometryPass::OdometryPass(const RegimeStream::Params& rate, const LidarInertial
       scale_(mapping.expert.gravity_m_s2, samples_in(kRoom_s, rate)),
       localisation_(mapping.expert.matching.distance_m),
       rate_sigma_max_rad_s_(mapping.expert.prior.rate_sigma_max_rad_s),
-      time_offset_s_(mapping.time_offset_s) {
+      time_offset_s_(mapping.time_offset_s),
+      gravity_({.gravity_m_s2 = std::max(mapping.expert.gravity_m_s2, kLeastGravity_m_s2)}) {
   pending_.samples.reserve(samples_in(std::max(rate.rate.lag_s, kRoom_s), rate));
 }
 
@@ -83,6 +85,7 @@ Status OdometryPass::add_imu(const ImuSample& sample) {
   std::optional<RateState> rate;
   if (const Status status = rates_.push(sample, rate_state_, rate); !status.ok()) return status;
   pending_.push(sample);
+  gravity_.step(sample, gravity_state_);
   if (rate && (!smoothed_ || rate->time_ns > smoothed_->time_ns)) take_rate(*rate);
   return {};
 }

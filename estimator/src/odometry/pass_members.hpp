@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "../attitude/regime_stream_members.hpp"
+#include "../attitude/rest_gravity_members.hpp"
 #include "../mapping/odometry_members.hpp"
 #include "tumble/odometry/detail/odometry_pass.hpp"
 #include "tumble/odometry/detail/second_pass.hpp"
@@ -59,6 +60,8 @@ void OdometryPass::members(Self& s, Visitor& visit) {
   visit("pass.smoothed", s.smoothed_);
   visit("pass.told_ns", s.told_ns_);
   visit("pass.refused_samples", s.refused_samples_);
+  visit.scratch(s.gravity_);  // of the parameters
+  visit("pass.gravity", s.gravity_state_);
 }
 
 template <class Self, class Visitor>

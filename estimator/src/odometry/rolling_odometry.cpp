@@ -137,6 +137,7 @@ RollingOdometry::RollingOdometry(const Params& params, const ImuMerge::Params& m
       rails_state_(rails_.start()),
       filters_(filters_of(params)),
       watches_(watches_of(params)),
+      gravity_({.gravity_m_s2 = params.gravity_m_s2}),
       live_(params.lag_s <= 0.0) {}
 
 RollingOdometry::RollingOdometry(const RollingOdometry& other)
@@ -155,6 +156,8 @@ RollingOdometry::RollingOdometry(const RollingOdometry& other)
       held_(other.held_),
       watches_(other.watches_),
       frozen_(other.frozen_),
+      gravity_(other.gravity_),
+      gravity_state_(other.gravity_state_),
       done_(other.done_),
       taken_(other.taken_),
       live_(other.live_),
@@ -216,7 +219,10 @@ Status RollingOdometry::add_inliers(std::span<const ImuSample> samples) {
   Frozen frozen = frozen_;
   for (std::size_t k = 0; k < samples.size(); ++k) watches_[k].step(samples[k], frozen[k]);
   const std::span<ImuSample> judged = std::span(flagged).first(samples.size());
-  if (Status status = leave_out_frozen(frozen, judged); !status.ok()) return status;
+  if (Status status = leave_out_frozen(frozen, judged); !status.ok()) {
+    frozen_ = frozen;  // for doubt()
+    return status;
+  }
   if (Status status = merge_.step(judged, *merged_state_, merged); !status.ok()) return status;
   if (Status status = merge_.verdict(*merged_state_); !status.ok()) return status;
   if (merged) {
@@ -225,6 +231,7 @@ Status RollingOdometry::add_inliers(std::span<const ImuSample> samples) {
   merge_state_.swap(merged_state_);
   stamps_ = stamps;
   frozen_ = frozen;
+  for (std::size_t k = 0; k < samples.size(); ++k) gravity_.step(samples[k], gravity_state_[k]);
   rails_.observe(samples, rails_state_);
   for (std::size_t k = 0; k < samples.size(); ++k) {
     if (check_sample(samples[k]).ok()) OutlierFilter::pass(at_time(samples.front().time_ns, samples[k]), outliers_[k]);
@@ -248,14 +255,21 @@ Status RollingOdometry::leave_out_frozen(const Frozen& states, std::span<ImuSamp
     any = any || frozen;
     heard = heard || (finite && !frozen);
   }
-  return any && !heard ? doubt(states) : Status{};
+  return any && !heard ? frozen_axis(states) : Status{};
 }
 
 std::optional<double> RollingOdometry::mended_jitter_s() const {
   return clock_.mends(stamps_) ? SampleClock::jitter_s(stamps_) : std::nullopt;
 }
 
-Status RollingOdometry::doubt(const Frozen& frozen) const {
+Status RollingOdometry::doubt() const {
+  Status status = frozen_axis(frozen_);
+  for (std::size_t unit = 0; unit < watches_.size() && status.ok(); ++unit)
+    status = gravity_.size_verdict(gravity_state_[unit]);
+  return status;
+}
+
+Status RollingOdometry::frozen_axis(const Frozen& frozen) const {
   for (std::size_t unit = 0; unit < watches_.size(); ++unit) {
     Status status = watches_[unit].verdict(frozen[unit]);
     if (status.ok()) continue;
@@ -297,6 +311,7 @@ void RollingOdometry::reset() {
   frozen_ = {};
   outliers_ = {};
   held_.reset();
+  gravity_state_ = {};
   finished_ = false;
 }
 

@@ -2,6 +2,7 @@
 // Serialisation of RollingOdometry.
 #include "../angular_velocity/frozen_members.hpp"
 #include "../attitude/imu_merge_members.hpp"
+#include "../attitude/rest_gravity_members.hpp"
 #include "../common/outlier_filter_members.hpp"
 #include "../common/sample_clock_members.hpp"
 #include "../common/state_params.hpp"
@@ -47,6 +48,8 @@ void RollingOdometry::members(Self& s, Visitor& visit) {
   visit.with_nan("held", s.held_);
   visit.scratch(s.watches_);
   visit("frozen", s.frozen_);
+  visit.scratch(s.gravity_);  // of the parameters
+  visit("gravity", s.gravity_state_);
   if constexpr (std::is_const_v<Self>) {
     const std::vector<RollingEstimate> waiting(s.done_.begin() + static_cast<std::ptrdiff_t>(s.taken_), s.done_.end());
     visit("done", waiting);

@@ -57,7 +57,7 @@ void SecondPass::remember(const ImuSample& sample) {
     const TimeNs from_ns = sample.time_ns - static_cast<TimeNs>(1e9 * params_.rest_s);
     while (!sweeps_.empty() && sweeps_.front().start_ns < from_ns) sweeps_.pop_front();
     samples_.drop_until(from_ns - static_cast<TimeNs>(1e9 * kBefore_s));
-  } else if (seconds(sample.time_ns - *moves_ns_) > params_.remembered_s) {
+  } else if (seconds(sample.time_ns - counts_from_ns()) > params_.remembered_s) {
     give_up();
     return;
   }
@@ -79,9 +79,13 @@ bool SecondPass::first_is_lost() const {
          seconds(sweeps_.back().end_ns - last->end_ns) >= params_.lost_s;
 }
 
+TimeNs SecondPass::counts_from_ns() const {
+  return sweeps_.empty() ? *moves_ns_ : std::max(*moves_ns_, sweeps_.front().start_ns);
+}
+
 bool SecondPass::is_due() const {
   if (!wanted_ || !moves_ns_ || sweeps_.empty()) return false;
-  return seconds(sweeps_.back().end_ns - *moves_ns_) >= params_.after_s || first_is_lost();
+  return seconds(sweeps_.back().end_ns - counts_from_ns()) >= params_.after_s || first_is_lost();
 }
 
 RegimeStream::Params SecondPass::lagging_rate() const {
@@ -121,7 +125,7 @@ bool SecondPass::begin(const OdometryPass& first) {
   }
   pass_.emplace(rate, mapping);
   next_sample_ = next_sweep_ = rejected_ = 0;
-  early_ = seconds(sweeps_.back().end_ns - *moves_ns_) < params_.after_s;
+  early_ = seconds(sweeps_.back().end_ns - counts_from_ns()) < params_.after_s;
   return true;
 }
 

@@ -27,6 +27,13 @@ std::vector<LidarPoint> points_from(TimeNs from_ns, TimeNs start_ns, std::span<c
   return out;
 }
 
+/// Drops the sweeps that ended by then and returns how many.
+std::size_t drop_until(TimeNs time_ns, std::deque<WaitingSweep>& sweeps) {
+  std::size_t dropped = 0;
+  for (; !sweeps.empty() && sweeps.front().end_ns <= time_ns; sweeps.pop_front()) ++dropped;
+  return dropped;
+}
+
 RegimeStream::Params rate_params(const TumblingOdometry::Params& params) {
   require_fields(params);
   RegimeStream::Params out = params.expert.rate;
@@ -129,7 +136,10 @@ Status TumblingOdometry::take_in(const ImuSample& sample) {
   again_.remember(timed);
   newest_ns_ = timed.time_ns;
   after_gap_.reset();
-  if (!registered_ns_) registered_ns_ = timed.time_ns;
+  if (!registered_ns_) {
+    registered_ns_ = timed.time_ns;
+    early_sweeps_ += drop_until(timed.time_ns, waiting_);
+  }
   register_covered();
   return {};
 }
@@ -143,7 +153,12 @@ Status TumblingOdometry::add_sweep(TimeNs start_ns, TimeNs end_ns, std::span<con
     return {Trouble::time_order, "start_ns", double(start_ns), double(from_ns)};
   const TimeNs latest_ns = newest_ns_.value_or(end_ns) + static_cast<TimeNs>(1e9 * kAhead_s);
   if (end_ns > latest_ns) return {Trouble::out_of_range, "end_ns", double(end_ns), double(latest_ns)};
+  if (registered_ns_ && end_ns <= *registered_ns_) {
+    ++early_sweeps_;
+    return {};
+  }
   const std::size_t most = params_.expert.sweeps_max + static_cast<std::size_t>(kSweepsMax_hz * params_.lag_s);
+  if (waiting_.size() >= most && !newest_ns_) early_sweeps_ += drop_until(waiting_.front().end_ns, waiting_);
   if (waiting_.size() >= most)
     return {Trouble::out_of_range, "sweeps waiting", double(waiting_.size() + 1), double(most)};
   if (const Status status = mapping::check_offsets(end_ns - start_ns, points); !status.ok()) return status;
@@ -184,6 +199,7 @@ std::optional<double> TumblingOdometry::mended_jitter_s() const {
 Status TumblingOdometry::doubt() const {
   const Status of_imu = pass_.rates().rate().doubt(pass_.rate_state().rate);
   if (!of_imu.ok()) return of_imu;
+  if (const Status of_force = pass_.force_at_rest(); !of_force.ok()) return of_force;
   const Status of_ranges = pass_.sweep_scale().verdict();
   if (!of_ranges.ok()) return of_ranges;
   const Status of_localisation = pass_.localisation().verdict();
@@ -208,6 +224,7 @@ void TumblingOdometry::register_sweep(TimeNs start_ns, TimeNs end_ns, std::vecto
       readings_.take(pass_.needed_ns(*registered_ns_), pass_.needed_ns(end_ns));
   out.status = pass_.add_sweep(start_ns, end_ns, points, reading, out.report);
   registered_ns_ = end_ns;
+  if (out.report.trajectory.empty()) return;
   again_.remember(start_ns, end_ns, std::move(points), reading, out.report.verdict);
   again_.advance(pass_);
 }
@@ -236,6 +253,7 @@ void TumblingOdometry::register_covered() {
   if (!waiting_.empty() || !covered_ns) return;
   if (seconds(*covered_ns - *registered_ns_) > kSilent_s) {
     register_sweep(*covered_ns, *covered_ns, {});
+    if (done_.back().report.trajectory.empty()) done_.pop_back();  // no sweep has started the map
     sweep_end_ns_ = *covered_ns;
   }
 }

@@ -28,9 +28,10 @@ class StateLayout;
 /// point-to-plane distances, and then extends the map. The registration refines position, attitude and velocity at the
 /// start of a sweep together, which also refines the deskewing.
 ///
-/// World: z up, origin and yaw at the IMU at the first sample, levelled by the specific force at rest. Pass IMU samples
-/// in time order, then each sweep once IMU samples reach its end. The class starts no threads, uses no files and prints
-/// nothing.
+/// World: z up, levelled by the specific force at rest. The first sweep with `matches_min` points starts the map. If it
+/// starts within half a second of the IMU, origin and yaw are at the IMU at the first sample. Otherwise they are at the
+/// IMU at the start of that sweep, whose velocity and tilt come from dead reckoning. Pass IMU samples in time order,
+/// then each sweep once IMU samples reach its end. The class starts no threads, uses no files and prints nothing.
 ///
 /// The lidar's mounting, its time offset and gravity are estimated if their standard deviations are not 0. All unknowns
 /// form one state with one covariance. The estimator is an iterated error-state filter over sweeps. A fixed-lag
@@ -80,7 +81,8 @@ class LidarInertialOdometry {
   /// These errors leave the state unchanged: `time_order` (end before start, or start before the last sweep's end),
   /// `too_few` (IMU samples do not cover the sweep), `out_of_range` (an offset beyond the sweep). After other errors,
   /// the pose is the inertial prediction and the verdict is `rejected`: `empty` (no points), `non_finite` (no finite
-  /// point), `too_few` (no point in range), `degenerate` (all points have one time stamp).
+  /// point), `too_few` (no point in range), `degenerate` (all points have one time stamp). Before the map starts, a
+  /// sweep with such an error or with too few points (`too_few`) has no pose: its `report.trajectory` is empty.
   Status add_sweep(TimeNs start_ns, TimeNs end_ns, std::span<const LidarPoint> points, SweepReport& report);
 
   /// Predicts pose and velocity with covariance at the last of further samples, by inertial integration from the last

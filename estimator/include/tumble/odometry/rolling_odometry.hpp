@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "tumble/angular_velocity/detail/frozen_axes.hpp"
+#include "tumble/attitude/detail/rest_gravity.hpp"
 #include "tumble/attitude/imu_merge.hpp"
 #include "tumble/common/outlier_filter.hpp"
 #include "tumble/common/pose.hpp"
@@ -103,10 +104,10 @@ class RollingOdometry {
   /// Starts a new run at the origin and at rest. Poses not yet fetched by take() remain available.
   void reset();
 
-  /// Reports whether the readings are plausible now. Returns `ok`, or `out_of_range` with the unit and axis that is
-  /// frozen (FrozenAxes), the duration and the bound. The readings of a frozen unit are ignored. If no other unit has
-  /// readings, add_imus() reports the error and rejects the sample.
-  Status doubt() const { return doubt(frozen_); }
+  /// Reports whether the readings are plausible now. Returns `ok`, or `out_of_range` with a finding: the unit and axis
+  /// that is frozen (FrozenAxes) and the duration, or a force at rest that differs from gravity (RestGravity). The
+  /// readings of a frozen unit are ignored. If no other unit has readings, add_imus() rejects the sample.
+  Status doubt() const;
 
   /// Returns the state of the IMU fusion: frozen, disagreeing and delayed units.
   const ImuMerge::State& units() const { return *merge_state_; }
@@ -136,7 +137,7 @@ class RollingOdometry {
   Status add_inliers(std::span<const ImuSample> samples);
   Status take_in(const ImuSample& merged);
   Status leave_out_frozen(const Frozen& frozen, std::span<ImuSample> samples) const;
-  Status doubt(const Frozen& frozen) const;
+  Status frozen_axis(const Frozen& frozen) const;
 
   Params params_;
   SampleClock clock_;
@@ -153,6 +154,8 @@ class RollingOdometry {
   std::optional<UnitRails::Samples> held_;  ///< samples of all units while OutlierFilter delays one of them
   std::vector<FrozenAxes> watches_;         ///< one per unit
   Frozen frozen_{};
+  RestGravity gravity_;
+  std::array<RestGravity::Size, ImuMerge::kImus> gravity_state_{};
   std::vector<RollingEstimate> done_;
   std::size_t taken_ = 0;
   bool live_ = true, finished_ = false;

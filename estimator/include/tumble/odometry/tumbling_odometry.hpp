@@ -24,8 +24,9 @@ namespace tumble {
 /// Three poses of increasing accuracy are reported. newest() predicts the IMU's pose at the newest sample by inertial
 /// integration from the last registered sweep. take() returns a sweep registered to the map (`report.pose`), at most
 /// lag_s after its end. The next sweep brings its final pose (`report.smoothed`): at most 0.3 s after its end, at ten
-/// sweeps per second. Stamps of poses are in the IMU's clock. World: z up, origin and yaw at the IMU at the first
-/// sample. Start with at least half a second at rest, which levels the attitude.
+/// sweeps per second. Stamps of poses are in the IMU's clock. World: see LidarInertialOdometry; the first sweep with
+/// enough points starts the map and has no pose error, and there are no poses before it. Start with at least half a
+/// second at rest, which levels the attitude.
 ///
 /// Some seconds after motion starts, SecondPass processes those seconds again with the calibration estimated so far.
 /// Map and pose then switch once to its result; earlier poses are not changed. If the lidar is silent for a second,
@@ -79,11 +80,11 @@ class TumblingOdometry {
   /// Predicts pose and velocity of the IMU at its newest sample, with covariance, by inertial integration from the last
   /// registered sweep. Returns `empty` before the first sweep. Allocates; O(samples since the last sweep).
   Status newest(PoseState& pose) const;
-
   /// Reports whether the inputs and the pose are plausible now. Estimation continues in either case. Returns `ok`, or
   /// `out_of_range` with a finding: a frozen IMU axis and its duration, an inverted accelerometer (FlightSense), a
-  /// wrong scale of the lidar's ranges (SweepScale), tracking failure (Localisation, permanent), or too large a change
-  /// of the lidar's calibration (GivenCalibration).
+  /// wrong unit of the accelerometer after a second of rest (RestGravity), a wrong scale of the lidar's ranges
+  /// (SweepScale), tracking failure (Localisation, permanent), or too large a change of the lidar's calibration
+  /// (GivenCalibration).
   Status doubt() const;
   /// Returns the estimated range scale of the lidar relative to the IMU, as far as the motion determines it.
   const SweepScale& sweep_scale() const { return pass_.sweep_scale(); }
@@ -102,10 +103,11 @@ class TumblingOdometry {
   std::size_t rejected_readings() const { return outliers_.rejected; }
   /// Returns whether map and pose are those of the second pass (SecondPass).
   bool passed_again() const { return again_.taken(); }
-  /// Return the numbers of samples that the mapper rejected, of sweeps not fetched in time, and of odometer readings
-  /// that span two sweeps. All are 0 in normal operation.
+  /// Return the numbers of samples that the mapper rejected, of sweeps not fetched in time, of sweeps that ended before
+  /// the IMU's first sample, and of odometer readings that span two sweeps. All are 0 in normal operation.
   std::size_t refused_samples() const { return pass_.refused_samples(); }
   std::size_t dropped_sweeps() const { return dropped_sweeps_; }
+  std::size_t early_sweeps() const { return early_sweeps_; }
   std::size_t unused_readings() const { return readings_.straddling(); }
   /// Returns the standard deviation of the IMU's stamps about a regular clock [s], while stamps are corrected.
   std::optional<double> mended_jitter_s() const;
@@ -148,7 +150,7 @@ class TumblingOdometry {
   std::optional<TimeNs> newest_ns_;      ///< of accepted samples
   std::optional<ImuSample> after_gap_;   ///< first sample after a gap, not yet confirmed
   std::optional<TimeNs> registered_ns_;  ///< end of the last registered sweep; before that, the first sample
-  std::size_t gaps_ = 0, dropped_sweeps_ = 0;
+  std::size_t gaps_ = 0, dropped_sweeps_ = 0, early_sweeps_ = 0;
   std::deque<WaitingSweep> waiting_;
   WaitingReadings readings_;
   std::deque<Sweep> done_;

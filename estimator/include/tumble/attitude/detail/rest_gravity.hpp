@@ -61,21 +61,25 @@ class RestGravity {
             {"accel_range_m_s2", "m/s^2", 0.0, kUnbounded, "as the device states it; 0: not stated"});
     }
   };
-  struct State {
-    RestDetector::State rest, weightless;
+  /// What the size of the force at rest needs.
+  struct Size {
+    RestDetector::State rest, weightless, heavy;
+    double rest_s = 0.0, force_sum_m = 0.0;  ///< of all rests, and of force by time
+    double weightless_s = 0.0;               ///< of what would be rest but that no force holds it
+    TimeNs last_time_ns = 0;
+    bool started = false, rests = false;
+    bool operator==(const Size&) const = default;
+  };
+  struct State : Size {
     Eigen::Vector3d from_m_s2 = Eigen::Vector3d::Zero();  ///< force at the last rest in the sensor's axes; 0: none
     Eigen::Quaterniond turned = Eigen::Quaterniond::Identity();  ///< rotation since then
     double span_angle_rad = 0.0, variance_rad2 = 0.0;            ///< since then
     Eigen::Vector3d velocity_sum_m_s = Eigen::Vector3d::Zero();  ///< since then, of the force in the axes of that rest
     double span_s = 0.0, hidden_m_s = 0.0;                       ///< since then; deficit of the accelerometer
     double segment_s = 0.0, segment_rad2_s = 0.0;                ///< of consecutive unmeasured samples
-    double rest_s = 0.0, force_sum_m = 0.0;                      ///< of all rests, and of force by time
-    double weightless_s = 0.0;                                   ///< duration of apparent rests without a force
     double miss_rad = 0.0, miss_sigma_rad = 0.0;                 ///< of the worst span between two rests
     double velocity_share = 0.0, velocity_allowed_share = 0.0;   ///< of the worst span, over gravity times duration
     std::size_t spans = 0;                                       ///< number of compared spans
-    TimeNs last_time_ns = 0;
-    bool started = false, rests = false;
   };
 
   /// Throws InvalidParams if a parameter is out of bounds.
@@ -84,17 +88,25 @@ class RestGravity {
   /// Processes a sample and its estimated rate. Ignores samples that are not finite or out of order. O(1), no
   /// allocation.
   void step(const ImuSample& sample, const RateState& rate, State& state) const;
+  /// The same without rates, for the size alone.
+  void step(const ImuSample& sample, Size& state) const { (void)follow(sample, state); }
 
   /// Returns the mean magnitude of the force at rest as a fraction of gravity. Returns 0 if everything that rested for
   /// a second was without force, and 1 without any rest.
-  double size_share(const State& state) const;
-  /// Returns `out_of_range` if this fraction differs from 1.
-  Status size_verdict(const State& state) const;
+  double size_share(const Size& state) const;
+  /// Returns `out_of_range` if this fraction differs from 1. Names the unit as suspect beyond a factor of three.
+  Status size_verdict(const Size& state) const;
   /// Same, and also returns `out_of_range` if the rates of the worst span between two rests miss gravity or leave a
   /// velocity beyond the bounds.
   Status verdict(const State& state) const;
 
  private:
+  enum class Follows { not_at_all, after_gap, directly };
+  struct Step {
+    Follows follows = Follows::not_at_all;
+    double dt_s = 0.0;
+  };
+  Step follow(const ImuSample& sample, Size& state) const;
   void turn(const ImuSample& sample, const RateState& rate, double dt_s, State& state) const;
   void end_segment(State& state) const;
   void arrive(State& state) const;
@@ -102,7 +114,7 @@ class RestGravity {
   double allowed_rad(double sigma_rad) const;
 
   Params params_;
-  RestDetector detector_, weightless_;
+  RestDetector detector_, weightless_, heavy_;
 };
 
 }  // namespace tumble

@@ -6,6 +6,7 @@
 #include <span>
 #include <vector>
 
+#include "tumble/attitude/detail/rest_gravity.hpp"
 #include "tumble/attitude/regime_stream.hpp"
 #include "tumble/mapping/detail/localisation.hpp"
 #include "tumble/mapping/detail/sweep_scale.hpp"
@@ -59,6 +60,8 @@ class OdometryPass {
   const RegimeStream& rates() const { return rates_; }
   const RegimeStream::State& rate_state() const { return rate_state_; }
   const LidarInertialOdometry& mapper() const { return mapper_; }
+  /// `out_of_range` where gravity contradicts the force at rest.
+  Status force_at_rest() const { return gravity_.size_verdict(gravity_state_); }
   const SweepScale& sweep_scale() const { return scale_.scale(); }
   const Localisation& localisation() const { return localisation_; }
   const std::optional<RateState>& smoothed_rate() const { return smoothed_; }
@@ -83,6 +86,8 @@ class OdometryPass {
   std::optional<RateState> smoothed_;
   std::optional<TimeNs> told_ns_;  ///< time of the last sample passed to the mapper
   std::size_t refused_samples_ = 0;
+  RestGravity gravity_;
+  RestGravity::Size gravity_state_;
 };
 
 }  // namespace tumble

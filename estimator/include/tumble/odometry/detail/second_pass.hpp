@@ -92,6 +92,8 @@ class SecondPass {
     static void members(Self& s, Visitor& visit);
   };
 
+  /// Begin of the motion, or of the sweeps where the lidar starts after that. Needs the motion to have begun.
+  TimeNs counts_from_ns() const;
   bool is_due() const;
   bool first_is_lost() const;
   bool begin(const OdometryPass& first);
