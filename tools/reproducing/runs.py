@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Runs the program and reads what it leaves: databases of scores, recordings, estimates, maps.
+"""Runs the program and reads its databases of scores.
 
-Everything lives in one work folder. What is complete there is not run again, so that a run that was stopped continues.
+All files are in one work folder. A complete estimate is not made again, so a run that was stopped continues.
 """
 from __future__ import annotations
 

@@ -59,9 +59,9 @@ def reproduce(runs: Runs, folder: pathlib.Path, check: bool) -> list[str]:
 
 
 def situation(runs: Runs, scenario: str, seed: int) -> tuple[pathlib.Path, Callable[[str], pathlib.Path]]:
-    """The recording of one draw, and what gives the folder of a method's estimate of it.
+    """The recording of one draw, and a function from a method to the folder of its estimate.
 
-    Draws of the catalogue come from the sweeps, those of the scenario files in this folder are recorded.
+    Draws of the catalogue come from the sweeps. Draws of the scenario files in this folder are recorded one by one.
     """
     own = HERE / f"{scenario}.yaml"
     kept = runs.folder / f"sphere_{scenario}" / str(seed) if own.is_file() else runs.kept(f"sphere_{scenario}", scenario, seed)
