@@ -19,6 +19,8 @@ from reproducing import figures, page, rig, runs, sphere  # noqa: E402
 
 SCHEMA = """
 CREATE TABLE scores (scenario TEXT, seed INTEGER, kind TEXT, method TEXT, status TEXT, metric TEXT, value REAL);
+CREATE TABLE curves (varied TEXT, setting REAL, scenario TEXT, seed INTEGER, kind TEXT, method TEXT, status TEXT, metric TEXT, value REAL);
+INSERT INTO curves VALUES ('slam/published.saturation_point_rad_s', 10.0, 'hill', 1, 'slam', 'published', 'ok', 'ate_m', 0.5);
 """
 
 
@@ -44,6 +46,11 @@ class ReadingScores(Case):
                              (3, "slam", "icp_raw", "ok", "ate_m", 1.0))
         self.assertEqual(scores.values("slam/icp_raw", "ate_m"), [2.0, float("inf"), 1.0])
         self.assertEqual(scores.values("slam/icp_raw", "ate_m", seeds=[2, 3], failed=9.0), [9.0, 1.0])
+
+    def test_a_method_with_a_varied_parameter_has_a_name_of_its_own(self):
+        scores = self.scores((1, "slam", "published", "ok", "ate_m", 2.0))
+        self.assertEqual(scores.of("slam/published", "ate_m"), {1: 2.0})
+        self.assertEqual(scores.of(rig.MAPS[rig.TUNED], "ate_m"), {1: 0.5})
 
 
 class Numbers(unittest.TestCase):
@@ -78,15 +85,15 @@ class StalePages(Case):
 class RigPage(Case):
     def recording(self, elements: int) -> types.SimpleNamespace:
         clipped = np.array([0, 1, elements, 0])
-        return types.SimpleNamespace(true_rate_rad_s=np.full((4, 3), 5.0), true_force_m_s2=np.full((4, 3), 20.0),
+        return types.SimpleNamespace(gyro_rad_s=np.full((4, 3), 10.5), true_rate_rad_s=np.full((4, 3), 5.0), true_force_m_s2=np.full((4, 3), 20.0),
                                      clipped=clipped > 0, clipped_elements=clipped)
 
     def text(self, overlap: float) -> str:
         """The page of two draws."""
         rows = []
         for seed in (1, 2):
-            for name, method in rig.MAPS.items():
-                ours = name not in (rig.RAW, rig.PUBLISHED)
+            for name in rig.SWEPT:
+                method, ours = rig.MAPS[name], name in (rig.BATCH, rig.LAG)
                 values = {rig.TRANSLATION: 0.1 if ours else 1.0, rig.ROTATION: 0.01, rig.OVERLAP: 0.99 if ours else overlap, rig.FAILED: 0.0}
                 rows += [(seed, "slam", method.split("/")[1], "ok", metric, value) for metric, value in values.items()]
         maps = self.scores(*rows)

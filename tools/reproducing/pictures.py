@@ -29,7 +29,7 @@ def legend(figure: object, panel: object, columns: int) -> None:
     figure.legend(*panel.get_legend_handles_labels(), loc="upper center", ncols=columns, fontsize="small")
 
 
-def save(figure: object, path: pathlib.Path, colours: int = 64) -> None:
+def save(figure: object, path: pathlib.Path, colours: int = 128) -> None:
     """Writes a PNG with a palette, which takes a third of the bytes."""
     from PIL import Image
 

@@ -67,7 +67,7 @@ def state_true_mounting(recording: pathlib.Path, copy: pathlib.Path) -> None:
 
 
 class Estimate:
-    """What a method left: `poses` or `rates`."""
+    """The folder that a method left for one recording."""
 
     def __init__(self, folder: pathlib.Path):
         self.folder = folder

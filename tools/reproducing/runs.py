@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Runs the program and reads what it leaves: databases of scores, recordings, estimates, maps.
+"""Runs the program and reads its databases of scores.
 
-Everything lives in one work folder. What is complete there is not run again, so that a run that was stopped continues.
+All files are in one work folder. A complete estimate is not made again, so a run that was stopped continues.
 """
 from __future__ import annotations
 
@@ -97,11 +97,13 @@ class Runs:
 
 
 class Scores:
-    """Scores of a results database, as the program stored them."""
+    """Scores of a results database. A method with a varied parameter is named `KIND/NAME KEY=VALUE`."""
 
     def __init__(self, path: pathlib.Path):
         with sqlite3.connect(f"file:{path.resolve()}?mode=ro", uri=True) as database:
-            self.rows = database.execute("SELECT seed, kind || '/' || method, metric, value FROM scores").fetchall()
+            plain = "SELECT seed, kind || '/' || method, metric, value FROM scores"
+            varied = "SELECT seed, kind || '/' || method || ' ' || varied || '=' || setting, metric, value FROM curves"
+            self.rows = database.execute(f"{plain} UNION ALL {varied}").fetchall()
 
     def of(self, method: str, metric: str) -> dict[int, float]:
         """Seed -> value of one method. A draw on which the method failed, or has no such score, is left out."""
