@@ -134,9 +134,12 @@ Status LidarInertialOdometry::Impl::start_map(TimeNs start_ns, TimeNs end_ns, st
 
 /// Integrates inertially to `end_ns`, without a map. A rest levels the attitude again.
 Status LidarInertialOdometry::Impl::dead_reckon(TimeNs end_ns) {
-  if (!track.border_ns()) border.belief = mapping::belief_before_map(params, border.belief.mean.state);
+  MotionState levelled;
+  if (!track.border_ns()) {
+    if (Status status = mapping::start_at_rest(params, track.samples(), levelled); !status.ok()) return status;
+    border.belief = mapping::belief_before_map(params, levelled);
+  }
   if (const std::optional<Eigen::Vector3d> force = track.resting_force(end_ns, params.expert.rest.levels_s)) {
-    MotionState levelled;
     if (Status status = mapping::level_at_rest(params, *force, levelled); !status.ok()) return status;
     levelled.time_ns = end_ns;
     if (!track.has_not_moved()) {
