@@ -25,7 +25,8 @@ Eigen::Isometry3d site_pose(const engine::World& world, const SensorSpec& sensor
                            (near.empty() ? " (known: " + known + ")" : "; did you mean '" + near + "'?"));
   }
   if (model.site_bodyid[site] != world.robot_body) {
-    throw InvalidSituation("sensors." + sensor.name + ": site '" + sensor.site + "' is not on the body of the sensors");
+    throw InvalidSituation("sensors." + sensor.name + ": site '" + sensor.site +
+                           "' is not on the body that carries the sensors");
   }
   const mjtNum* p = model.site_pos + 3 * site;
   const mjtNum* q = model.site_quat + 4 * site;

@@ -10,7 +10,7 @@ namespace {
 std::unique_ptr<BeamPattern> pattern_of(const SensorSpec& sensor) {
   if (sensor.kind == "spinning_lidar") return std::make_unique<SpinningPattern>(sensor.values);
   if (sensor.kind == "rosette_lidar") return std::make_unique<RosettePattern>(sensor.values);
-  throw InvalidSituation("sensor '" + sensor.name + "': '" + sensor.kind + "' is no kind of lidar");
+  throw InvalidSituation("sensor '" + sensor.name + "': '" + sensor.kind + "' is not a kind of lidar");
 }
 
 bool any_hit(const RayPacket& rays) {

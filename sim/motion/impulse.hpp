@@ -13,8 +13,9 @@ inline constexpr std::array kImpulseParameters = {
     Parameter{"direction_rad", 0.0, -3.2, 3.2, "rad", "direction of the impulse about z; 0: down the slope"},
     Parameter{"spin_forward_rad_s", 4.0, -30.0, 30.0, "rad/s",
               "angular impulse over inertia about the axis of forward rolling"},
-    Parameter{"spin_side_rad_s", 0.0, -30.0, 30.0, "rad/s", "the same about the direction of the impulse"},
-    Parameter{"spin_up_rad_s", 0.0, -30.0, 30.0, "rad/s", "the same about the vertical"},
+    Parameter{"spin_side_rad_s", 0.0, -30.0, 30.0, "rad/s",
+              "angular impulse over inertia about the direction of the impulse"},
+    Parameter{"spin_up_rad_s", 0.0, -30.0, 30.0, "rad/s", "angular impulse over inertia about the vertical"},
 };
 
 /// Returns the linear and angular impulse in world axes [N s, N m s] that gives a body at rest the horizontal velocity

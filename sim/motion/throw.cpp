@@ -11,12 +11,13 @@ namespace tumble::sim {
 namespace {
 
 constexpr std::array kOwnThrowParameters = {
-    Parameter{"rest_s", 1.75, 0.5, 30.0, "s", "held still before the throw"},
-    Parameter{"throw_s", 0.3, 0.05, 2.0, "s", "length of the swing; force and torque rise and fall as a raised cosine"},
-    Parameter{"height_m", 1.0, 0.1, 10.0, "m", "of the lowest point of the held robot above the ground at the start"},
+    Parameter{"rest_s", 1.75, 0.5, 30.0, "s", "time for which the robot is held still before the throw"},
+    Parameter{"throw_s", 0.3, 0.05, 2.0, "s",
+              "duration of the swing; force and torque rise and fall as a raised cosine"},
+    Parameter{"height_m", 1.0, 0.1, 10.0, "m", "height of the held robot's lowest point above the ground at the start"},
     Parameter{"yaw_rad", 0.0, -3.2, 3.2, "rad", "heading of the held robot; 0: its x axis points down the slope"},
-    Parameter{"velocity_m_s", 4.0, 0.0, 15.0, "m/s", "level velocity when it leaves the hand"},
-    Parameter{"lift_m_s", 4.0, 0.0, 15.0, "m/s", "upward velocity when it leaves the hand"},
+    Parameter{"velocity_m_s", 4.0, 0.0, 15.0, "m/s", "horizontal velocity at the release"},
+    Parameter{"lift_m_s", 4.0, 0.0, 15.0, "m/s", "upward velocity at the release"},
 };
 constexpr std::array kThrowParameters = joined(kOwnThrowParameters, kImpulseParameters);
 
@@ -54,7 +55,7 @@ std::unique_ptr<Motion> make_throw(const Values& values, const engine::World& wo
 }  // namespace
 
 const MotionType& throw_motion() {
-  static const MotionType kType{{"throw", "held still above the ground, swung and let go", kThrowParameters},
+  static const MotionType kType{{"throw", "the robot is held above the ground, swung and released", kThrowParameters},
                                 make_throw};
   return kType;
 }

@@ -11,10 +11,11 @@ namespace {
 constexpr std::array kSphereParameters = {
     Parameter{"radius_m", 0.145, 0.05, 1.0, "m", "outer radius of the shell; 29 cm across as published"},
     Parameter{"shell_mass_kg", 1.6, 0.05, 50.0, "kg", "thin shell; slip_study"},
-    Parameter{"inner_mass_kg", 2.6, 0.05, 50.0, "kg", "instruments and battery, a homogeneous ball; slip_study"},
+    Parameter{"inner_mass_kg", 2.6, 0.05, 50.0, "kg",
+              "mass of instruments and battery, a homogeneous ball; slip_study"},
     Parameter{"inner_radius_m", 0.08, 0.01, 0.9, "m", "radius of that ball; assumed"},
     Parameter{"inner_x_m", 0.0, -0.03, 0.03, "m",
-              "its centre relative to the geometric centre, B axes; up to 12 mm each in slip_study"},
+              "centre of that ball relative to the geometric centre, B axes; up to 12 mm each in slip_study"},
     Parameter{"inner_y_m", 0.0, -0.03, 0.03, "m", "the same along y"},
     Parameter{"inner_z_m", 0.0, -0.03, 0.03, "m", "the same along z; negative: the heavy side is down at the start"},
     Parameter{"contact_time_s", 0.004, 0.002, 0.1, "s",
@@ -54,7 +55,7 @@ void shape_sphere(mjSpec* spec, const Values& values, engine::World& world) {
 
 const RobotType& sphere_robot() {
   static const RobotType kType{
-      {"sphere", "sphere of 29 cm with an off-centre inside, three IMUs and a lidar", kSphereParameters},
+      {"sphere", "sphere of 29 cm with an eccentric inner mass, three IMUs and a lidar", kSphereParameters},
       "sphere.xml",
       shape_sphere};
   return kType;

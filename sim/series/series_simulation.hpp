@@ -16,12 +16,13 @@ namespace tumble::sim {
 
 /// Parameters of every series sensor: output rate, time stamps and losses.
 inline constexpr std::array kSeriesParameters = {
-    Parameter{"output_rate_hz", 50.0, 0.1, 2000.0, "Hz",
-              "samples per second; must divide the physics rate of 2000 Hz: each is the mean since the one before"},
-    Parameter{"time_offset_s", 0.0, -0.1, 0.1, "s", "stamp minus the true end of the window"},
+    Parameter{
+        "output_rate_hz", 50.0, 0.1, 2000.0, "Hz",
+        "samples per second; must divide the physics rate of 2000 Hz; each sample is the mean since the previous one"},
+    Parameter{"time_offset_s", 0.0, -0.1, 0.1, "s", "time stamp minus true end of the window"},
     Parameter{"time_jitter_s", 0.0, 0.0, 0.1, "s",
-              "standard deviation of the stamp, within 3 of them; below a sixth of the period; 0: off"},
-    Parameter{"dropout_share", 0.0, 0.0, 0.5, "1", "share of samples that never arrive; 0: off"},
+              "standard deviation of the time stamp, truncated at 3 of them; below a sixth of the period; 0: off"},
+    Parameter{"dropout_share", 0.0, 0.0, 0.5, "1", "share of lost samples; 0: off"},
     Parameter{"dropout_mean_samples", 1.0, 1.0, 1e4, "1", "mean length of a run of lost samples"},
 };
 

@@ -46,7 +46,7 @@ struct Spell {
   std::ostringstream text;
   text << "sensor '" << sensor << "' was below the ground for " << static_cast<double>(spell.steps) * period_s << " s, "
        << spell.deepest_m << " m deep (deeper than " << kDipDepth_m << " m for " << kDip_s
-       << " s at most): contacts held the robot in the ground, from " << from_s << " s";
+       << " s at most): the robot was wedged in the ground, from " << from_s << " s";
   throw SimulationFailure(text.str());
 }
 

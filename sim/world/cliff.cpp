@@ -12,9 +12,10 @@ namespace tumble::sim {
 namespace {
 
 constexpr std::array kOwnCliffParameters = {
-    Parameter{"drop_count", 2, 1, 6, "1", "drops, one below the other"},
-    Parameter{"drop_height_m", 1.2, 0.2, 5.0, "m", "height of each drop; its face is a cell of the ground deep, 0.2 m"},
-    Parameter{"ledge_length_m", 2.0, 0.3, 8.0, "m", "level length of the ledge below a drop, rounded to whole cells"},
+    Parameter{"drop_count", 2, 1, 6, "1", "number of drops, one below the other"},
+    Parameter{"drop_height_m", 1.2, 0.2, 5.0, "m", "height of each drop; its face is one ground cell wide, 0.2 m"},
+    Parameter{"ledge_length_m", 2.0, 0.3, 8.0, "m",
+              "horizontal length of the ledge below a drop, rounded to whole cells"},
     Parameter{"ledge_slope_rad", 0.35, 0.0, 1.0, "rad", "fall of a ledge along +x"},
 };
 constexpr std::array kCliffParameters = joined(kOwnCliffParameters, hillside::kCoverParameters);

@@ -13,13 +13,13 @@ namespace tumble::sim {
 namespace {
 
 constexpr std::array kOwnCorridorParameters = {
-    Parameter{"length_m", 16.0, 4.0, 60.0, "m", "of the corridor along x, its middle at the origin"},
-    Parameter{"half_width_m", 1.4, 0.6, 5.0, "m", "half distance of the walls"},
+    Parameter{"length_m", 16.0, 4.0, 60.0, "m", "length of the corridor along x, centred on the origin"},
+    Parameter{"half_width_m", 1.4, 0.6, 5.0, "m", "half distance between the walls"},
     Parameter{"wall_height_m", 2.6, 1.0, 10.0, "m", "height of walls and ceiling"},
     Parameter{"bay_shortest_m", 1.0, 0.3, 10.0, "m", "shortest bare wall between two doors, pillars or niches"},
     Parameter{"bay_longest_m", 2.4, 0.3, 10.0, "m", "longest one"},
-    Parameter{"niche_depth_m", 0.9, 0.2, 5.0, "m", "deepest niche; a door stands back a sixth of it to a half"},
-    Parameter{"beam_count", 4, 0, 50, "1", "beams across below the ceiling"},
+    Parameter{"niche_depth_m", 0.9, 0.2, 5.0, "m", "deepest niche; a door is recessed by a sixth to a half of it"},
+    Parameter{"beam_count", 4, 0, 50, "1", "number of beams below the ceiling"},
 };
 constexpr std::array kCorridorParameters = joined(kGroundParameters, kOwnCorridorParameters);
 
@@ -154,7 +154,7 @@ void build_corridor(mjSpec* spec, const Values& values, std::uint64_t seed, engi
 
 const WorldType& corridor_world() {
   static const WorldType kType{
-      {"corridor", "corridor along x with doors, niches, pillars and beams; closed at both ends", kCorridorParameters},
+      {"corridor", "corridor along x with doors, niches, pillars and beams, closed at both ends", kCorridorParameters},
       build_corridor};
   return kType;
 }

@@ -21,7 +21,8 @@ inline constexpr std::array kGroundParameters = {
     Parameter{"soft_damping_ratio", 1.0, 0.05, 1.5, "1", "damping ratio of that contact (MuJoCo solref[1])"},
     Parameter{"roughness_m", 0.0, 0.0, 0.03, "m", "root mean square of the ground's unevenness; 0: a perfect plane"},
     Parameter{"roughness_shortest_m", 0.15, 0.1, 5.0, "m", "shortest wavelength of the unevenness"},
-    Parameter{"roughness_longest_m", 1.0, 0.1, 10.0, "m", "longest one; the height goes with the wavelength"},
+    Parameter{"roughness_longest_m", 1.0, 0.1, 10.0, "m",
+              "longest wavelength of the unevenness; the height is proportional to the wavelength"},
 };
 
 /// Sets friction and softness of the ground for `geom`. MuJoCo uses the larger of two frictions, and a sphere has none.

@@ -14,10 +14,11 @@ namespace tumble::sim {
 namespace {
 
 constexpr std::array kOwnStairsParameters = {
-    Parameter{"step_count", 18, 1, 80, "1", "steps of the flight"},
+    Parameter{"step_count", 18, 1, 80, "1", "number of steps"},
     Parameter{"step_rise_m", 0.17, 0.05, 0.5, "m", "height of a step"},
     Parameter{"step_tread_m", 0.29, 0.15, 1.0, "m", "depth of a step"},
-    Parameter{"flight_half_width_m", 2.5, 0.8, 8.0, "m", "half width of the flight; a cheek wall stands at each side"},
+    Parameter{"flight_half_width_m", 2.5, 0.8, 8.0, "m",
+              "half width of the flight, which has a cheek wall on each side"},
     Parameter{"cheek_height_m", 0.4, 0.05, 2.0, "m", "height of the cheek walls above the edges of the steps"},
 };
 constexpr std::array kStairsParameters = joined(kOwnStairsParameters, hillside::kCoverParameters);

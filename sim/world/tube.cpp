@@ -16,15 +16,16 @@ namespace tumble::sim {
 namespace {
 
 constexpr std::array kOwnTubeParameters = {
-    Parameter{"length_m", 16.0, 4.0, 60.0, "m", "of the tube along x, its middle at the origin"},
+    Parameter{"length_m", 16.0, 4.0, 60.0, "m", "length of the tube along x, centred on the origin"},
     Parameter{"half_width_m", 1.9, 0.8, 10.0, "m", "half width at the ground"},
-    Parameter{"height_m", 2.2, 1.0, 10.0, "m", "from the ground to the crown"},
-    Parameter{"gutter_m", 0.1, 0.0, 1.0, "m", "by how much the ground rises from the middle to the walls"},
-    Parameter{"wall_roughness_m", 0.08, 0.0, 0.5, "m", "root mean square of the walls' unevenness, 0.3 to 3 m long"},
+    Parameter{"height_m", 2.2, 1.0, 10.0, "m", "height from the ground to the crown"},
+    Parameter{"gutter_m", 0.1, 0.0, 1.0, "m", "rise of the ground from the middle to the walls"},
+    Parameter{"wall_roughness_m", 0.08, 0.0, 0.5, "m",
+              "root mean square of the walls' unevenness, with wavelengths of 0.3 to 3 m"},
     Parameter{"bend_m", 0.3, 0.0, 3.0, "m", "amplitude with which the tube winds from side to side"},
     Parameter{"bend_length_m", 9.0, 2.0, 60.0, "m", "wavelength of the winding"},
-    Parameter{"rock_count", 24, 0, 200, "1", "rocks on the ground, out of the way"},
-    Parameter{"clear_half_width_m", 0.7, 0.2, 5.0, "m", "no rock comes closer to the x axis than this"},
+    Parameter{"rock_count", 24, 0, 200, "1", "number of rocks on the ground, away from the path"},
+    Parameter{"clear_half_width_m", 0.7, 0.2, 5.0, "m", "minimum distance of rocks from the x axis"},
 };
 constexpr std::array kTubeParameters = joined(kGroundParameters, kOwnTubeParameters);
 constexpr Colour kRock = {0.42f, 0.36f, 0.33f, 1.0f};
