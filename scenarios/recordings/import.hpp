@@ -52,6 +52,7 @@ struct SweepSource {
   std::string stem;             ///< of the files' names, before the number: "lidar"; "": all files must have the same
   std::filesystem::path times;  ///< a stamp per sweep; "": STEM_times.txt or times.txt in the folder, if it is there
   std::int64_t steady_ns = 0;   ///< sweeps follow each other by this, where nothing tells their times; 0: refused
+  std::string bin_columns;      ///< of .bin files: read_cloud
   SweepReading reading;
 };
 

@@ -145,6 +145,9 @@ void declare_lidar(VerbOptions& verb, ImportOptions& options) {
   verb.add("--sweep-period", options.sweep_period_s,
            "length of a sweep, s; where nothing tells their times, also their distance [median step]")
       .within(1e-4, 1000.0);
+  verb.add("--bin-columns", options.bin_columns,
+           "of .bin files: names of their columns in order, as x,y,z,intensity,ring; each is float32, or has its type "
+           "behind a colon (f4 f8 u1 u2 u4 u8 i1 i2 i4 i8: x:f8); _ is passed over [x,y,z,intensity]");
   verb.add("--time-field", options.time_field, "that holds the points' times [t, time, timestamp, offset_time ...]");
   verb.add("--time-unit", options.time_unit, "of that field: s, ms, us or ns [by its size]");
   verb.add_flag("--not-skewed", options.not_skewed, "the sweeps are deskewed: their points belong to one instant");
@@ -241,6 +244,8 @@ void require_fitting(const ImportOptions& options, const std::string& format) {
          "is of an IMU; of a lidar it is --lidar");
   refuse(!options.imu.empty() && !sweeps, "--imu", "is for a folder of sweeps");
   refuse(!options.stem.empty() && !sweeps, "--stem", "is for a folder of sweeps");
+  refuse(!options.bin_columns.empty() && (!sweeps || format != "kitti"), "--bin-columns",
+         "is for a folder of .bin sweeps");
   const bool lidar = !options.lidar.empty() || !options.T_body_lidar.empty() || !options.time_field.empty() ||
                      !options.time_unit.empty() || options.not_skewed;
   refuse(lidar && !sweeps && !bag, "--lidar --T-body-lidar --time-field --time-unit --not-skewed",
@@ -307,6 +312,7 @@ scenarios::SweepSource sweep_source(const Session& session, const ImportOptions&
   source.stem = options.stem;
   source.times = options.times;
   source.steady_ns = period_ns(options.sweep_period_s);
+  source.bin_columns = options.bin_columns;
   source.reading = sweep_reading(session, options);
   return source;
 }

@@ -23,10 +23,15 @@ struct Cloud {
 inline constexpr std::uint64_t kCloudPointsMax = std::uint64_t{1} << 26;
 
 /// Reads the points of a PLY or PCD file of any encoding (by PCL), of a legacy VTK file written as text (vtk_file.hpp),
-/// or of a KITTI .bin file (float32 x y z intensity); the file's ending tells which. A file without points is a cloud
-/// without points. What the header promises is held against the file's size before anything is allocated. Throws
-/// BadInput with file and place: absent, another format, a damaged header, truncated, more than 2^26 points.
-Cloud read_cloud(const std::filesystem::path& path);
+/// or of a .bin file, which has no header; the file's ending tells which. A file without points is a cloud without
+/// points. What the header promises is held against the file's size before anything is allocated.
+///
+/// @param bin_columns  Columns of a .bin file in order, "x,y,z,intensity,ring". Each is float32, or has a type of NumPy
+///                     behind a colon ("x:f8"); bytes without meaning are called "_". "": KITTI's x y z intensity; the
+///                     content must not contradict (bin_layout.hpp).
+/// Throws BadInput with file and place: absent, another format, a damaged header, truncated, more than 2^26 points,
+/// columns that cannot be, content that contradicts KITTI's columns.
+Cloud read_cloud(const std::filesystem::path& path, const std::string& bin_columns = "");
 
 /// What the header of a PLY or PCD file promises.
 struct CloudHeader {
