@@ -7,6 +7,8 @@
 #include <optional>
 #include <span>
 
+#include "tumble/common/compiled_alike.hpp"  // IWYU pragma: keep
+
 namespace tumble {
 
 /// The rail of one sensing element of a gyro, as the device's readings show it: the two planes row . y = b - r and

@@ -5,6 +5,8 @@
 #include <stdexcept>
 #include <string>
 
+#include "tumble/common/compiled_alike.hpp"  // IWYU pragma: keep
+
 namespace tumble {
 
 /// What can go wrong with input that a caller must expect. `none` is success.
