@@ -22,7 +22,7 @@ namespace tumble::scenarios {
 namespace {
 
 // The recording states the lever arm; zero is a placeholder until then.
-TumblingOdometry::Params defaults() {
+TumblingOdometry::Params lag_defaults() {
   TumblingOdometry::Params out;
   out.lever_arm_I_m.setZero();
   return out;
@@ -30,7 +30,7 @@ TumblingOdometry::Params defaults() {
 
 const Settings<TumblingOdometry::Params>& slam_tumble_lag_settings() {
   static const Settings<TumblingOdometry::Params> all(
-      defaults(),
+      lag_defaults(),
       {.stated = {"imu_*", "lever_arm_x_m", "lever_arm_y_m", "lever_arm_z_m", "gravity_m_s2",
                   "mapping_accel_rail_m_s2"},
        // replaced by parameters of TumblingOdometry

@@ -63,6 +63,7 @@ struct SweepSource {
   std::filesystem::path times;  ///< file with a stamp per sweep; "": STEM_times.txt or times.txt in the folder, if
                                 ///< present
   std::int64_t steady_ns = 0;   ///< sweep period if no times are available; 0: throws then
+  std::string bin_columns;      ///< columns of .bin files: see read_cloud
   SweepReading reading;
 };
 

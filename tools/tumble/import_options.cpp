@@ -146,6 +146,9 @@ void declare_lidar(VerbOptions& verb, ImportOptions& options) {
   verb.add("--sweep-period", options.sweep_period_s,
            "duration of a sweep, s; without time stamps also the time between sweeps [median step]")
       .within(1e-4, 1000.0);
+  verb.add("--bin-columns", options.bin_columns,
+           "columns of .bin files in order, for example x,y,z,intensity,ring; each is float32 or has its type after a "
+           "colon (f4 f8 u1 u2 u4 u8 i1 i2 i4 i8: x:f8); _ skips a column [x,y,z,intensity]");
   verb.add("--time-field", options.time_field,
            "field with the times of the points [t, time, timestamp, offset_time ...]");
   verb.add("--time-unit", options.time_unit, "unit of that field: s, ms, us or ns [detected from the values]");
@@ -246,6 +249,8 @@ void require_fitting(const ImportOptions& options, const std::string& format) {
          "applies only to an IMU; use --lidar for a lidar");
   refuse(!options.imu.empty() && !sweeps, "--imu", "applies only to a folder of sweeps");
   refuse(!options.stem.empty() && !sweeps, "--stem", "applies only to a folder of sweeps");
+  refuse(!options.bin_columns.empty() && (!sweeps || format != "kitti"), "--bin-columns",
+         "applies only to a folder of .bin sweeps");
   const bool lidar = !options.lidar.empty() || !options.T_body_lidar.empty() || !options.time_field.empty() ||
                      !options.time_unit.empty() || options.not_skewed;
   refuse(lidar && !sweeps && !bag, "--lidar --T-body-lidar --time-field --time-unit --not-skewed",
@@ -312,6 +317,7 @@ scenarios::SweepSource sweep_source(const Session& session, const ImportOptions&
   source.stem = options.stem;
   source.times = options.times;
   source.steady_ns = period_ns(options.sweep_period_s);
+  source.bin_columns = options.bin_columns;
   source.reading = sweep_reading(session, options);
   return source;
 }

@@ -23,7 +23,7 @@ struct ImportOptions {
   std::vector<double> lever_arm_m;
   std::filesystem::path imu;
   // properties of the lidar
-  std::string lidar, stem, time_field, time_unit;
+  std::string lidar, stem, bin_columns, time_field, time_unit;
   std::vector<double> T_body_lidar;
   std::filesystem::path times;
   double sweep_period_s = 0.0;

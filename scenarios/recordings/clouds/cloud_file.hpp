@@ -23,10 +23,15 @@ struct Cloud {
 inline constexpr std::uint64_t kCloudPointsMax = std::uint64_t{1} << 26;
 
 /// Reads the points of a file; the extension selects the format. Formats: PLY and PCD of any encoding (by PCL), legacy
-/// VTK text (vtk_file.hpp), and KITTI .bin (float32 x y z intensity). A file without points gives an empty cloud.
-/// Checks the header against the file size before any allocation. Throws BadInput with file and place: missing, another
-/// format, damaged header, truncated, more than 2^26 points.
-Cloud read_cloud(const std::filesystem::path& path);
+/// VTK text (vtk_file.hpp), and .bin, which has no header. A file without points gives an empty cloud. Checks the header
+/// against the file size before any allocation.
+///
+/// @param bin_columns  Columns of a .bin file in order, "x,y,z,intensity,ring". Each is float32, or has a NumPy type
+///                     after a colon ("x:f8"); "_" names bytes to skip. "": KITTI's x y z intensity; the content must
+///                     not contradict them (bin_layout.hpp).
+/// Throws BadInput with file and place: missing, another format, damaged header, truncated, more than 2^26 points,
+/// impossible columns, content that contradicts KITTI's columns.
+Cloud read_cloud(const std::filesystem::path& path, const std::string& bin_columns = "");
 
 /// Content of a PLY or PCD header.
 struct CloudHeader {

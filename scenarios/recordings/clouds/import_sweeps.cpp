@@ -61,7 +61,7 @@ Imported import_sweeps(const SweepSource& source) {
   SweepBuilder builder(std::move(reading), given_ns > 0 ? given_ns : median_step_ns(stamps));
   for (std::size_t k = 0; k < files.size(); ++k) {
     const std::optional<std::int64_t> stamp = stamps.empty() ? std::nullopt : std::optional(stamps[k]);
-    builder.add(stamp, read_cloud(files[k]), files[k].string());
+    builder.add(stamp, read_cloud(files[k], source.bin_columns), files[k].string());
   }
   add_lidar(out, builder.finish(source.folder.string(), out.notes));
   out.info.attribution = "imported from " + source.folder.filename().string() + ", " + std::to_string(files.size()) +

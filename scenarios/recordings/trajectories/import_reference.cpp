@@ -3,6 +3,7 @@
 #include "scenarios/recordings/clouds/sweep_stamps.hpp"
 #include "scenarios/recordings/import.hpp"
 #include "scenarios/recordings/recording_clock.hpp"
+#include "scenarios/recordings/trajectories/reference_check.hpp"
 
 namespace tumble::scenarios {
 
@@ -69,6 +70,7 @@ void attach_poses(Imported& recording, std::vector<ReferencePose> poses, const E
                   const std::string& where) {
   const sim::Sensors& sensors = recording.sensors;
   for (ReferencePose& pose : poses) pose.time_ns -= recording.info.origin_ns;
+  std::string remark = check_reference(poses, T_BA, sensors, where);
   move_to(poses, T_BA.inverse(Eigen::Isometry));
   sim::Truth truth = named(where, poses, span_of(sensors).second);
   for (const sim::ImuRecord& imu : sensors.imus) {
@@ -79,6 +81,7 @@ void attach_poses(Imported& recording, std::vector<ReferencePose> poses, const E
   for (const sim::LidarRecord& lidar : sensors.lidars) truth.lidars.push_back({lidar.name, lidar.T_BL, {}, {}});
   for (const sim::SeriesRecord& series : sensors.series) truth.series.push_back({series.name, series.T_BX, {}});
   recording.reference = std::move(truth);
+  recording.notes.push_back(std::move(remark));
 }
 
 void attach_reference(Imported& recording, const ReferenceSource& source) {

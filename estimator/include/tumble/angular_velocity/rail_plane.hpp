@@ -7,6 +7,8 @@
 #include <optional>
 #include <span>
 
+#include "tumble/common/compiled_alike.hpp"  // IWYU pragma: keep
+
 namespace tumble {
 
 /// Saturation of one sensing element of a gyro, seen in the compensated readings y as two planes: row . y = b - r and

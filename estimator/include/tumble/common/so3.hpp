@@ -4,6 +4,8 @@
 #include <Eigen/Core>
 #include <Eigen/Geometry>
 
+#include "tumble/common/compiled_alike.hpp"  // IWYU pragma: keep
+
 namespace tumble::so3 {
 
 /// Returns the skew-symmetric matrix [v]x with [v]x w = v x w.

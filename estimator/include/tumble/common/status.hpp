@@ -5,6 +5,8 @@
 #include <stdexcept>
 #include <string>
 
+#include "tumble/common/compiled_alike.hpp"  // IWYU pragma: keep
+
 namespace tumble {
 
 /// Kinds of input errors that a caller must expect. `none` means success.

@@ -3,6 +3,8 @@
 
 #include <cstdint>
 
+#include "tumble/common/compiled_alike.hpp"  // IWYU pragma: keep
+
 namespace tumble {
 
 /// Time stamp: integer nanoseconds from the start of the recording. Sample k of a stream has the stamp t0 + k * period.

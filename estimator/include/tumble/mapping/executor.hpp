@@ -4,6 +4,8 @@
 #include <cstddef>
 #include <functional>
 
+#include "tumble/common/compiled_alike.hpp"  // IWYU pragma: keep
+
 namespace tumble {
 
 /// Runs body(0) to body(count - 1), each once, in any order and on any of the caller's threads. Returns when all are

@@ -5,6 +5,8 @@
 #include <cstdint>
 #include <vector>
 
+#include "tumble/common/compiled_alike.hpp"  // IWYU pragma: keep
+
 namespace tumble {
 
 /// One lidar return in the lidar's axes L at its own time, not deskewed.
