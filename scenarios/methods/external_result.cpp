@@ -27,7 +27,7 @@ constexpr const char* kWithCovariance = "time_ns,wx_rad_s,wy_rad_s,wz_rad_s,cxx,
 
 std::string header_line(const std::filesystem::path& file) {
   std::ifstream stream(file);
-  if (!stream) throw BadInput(file.filename().string() + ": the command did not leave it");
+  if (!stream) throw BadInput(file.filename().string() + ": the command did not write this file");
   std::string line;
   std::getline(stream, line);
   while (!line.empty() && (line.back() == '\r' || line.back() == ' ')) line.pop_back();
@@ -44,13 +44,13 @@ Eigen::Matrix3d covariance(const Table& table, const Table::Row& row) {
 
 /// One row per sample of the first IMU, in their order.
 std::vector<RateState> read_rates(const std::filesystem::path& file, const sim::Sensors& sensors) {
-  if (sensors.imus.empty()) throw BadInput("the recording has no IMU, whose samples rates belong to");
+  if (sensors.imus.empty()) throw BadInput("the recording has no IMU; a rate method needs the samples of an IMU");
   const std::vector<std::int64_t>& stamps = sensors.imus.front().time_ns;
   const std::string header = header_line(file);
   const bool with_covariance = header == kWithCovariance;
   if (!with_covariance && header != kRateColumns)
     throw BadInput(file.filename().string() + ":1: header '" + header.substr(0, 120) + "', must be '" + kRateColumns +
-                   "', or that with ',cxx,cxy,cxz,cyy,cyz,czz'");
+                   "' or the same with ',cxx,cxy,cxz,cyy,cyz,czz' added");
   const Table table = Table::read(file, ',', header, with_covariance ? 10 : 4);
   if (table.rows.size() != stamps.size())
     throw BadInput(file.filename().string() + ": " + std::to_string(table.rows.size()) + " rows, must be " +
@@ -61,7 +61,7 @@ std::vector<RateState> read_rates(const std::filesystem::path& file, const sim::
     const std::int64_t time_ns = table.integer(row, 0);
     if (time_ns < stamps[k] - kStampTolerance_ns || time_ns > stamps[k] + kStampTolerance_ns)
       throw BadInput(file.filename().string() + ":" + std::to_string(row.line) + ": time " + std::to_string(time_ns) +
-                     " ns, sample " + std::to_string(k) + " is of " + std::to_string(stamps[k]) + " ns");
+                     " ns, but sample " + std::to_string(k) + " has the time " + std::to_string(stamps[k]) + " ns");
     rates[k].time_ns = stamps[k];
     rates[k].w_WI_I_rad_s = {table.number(row, 1), table.number(row, 2), table.number(row, 3)};
     if (with_covariance) rates[k].covariance_rad2_s2 = covariance(table, row);
@@ -90,7 +90,7 @@ std::vector<double> stamps_of(const std::filesystem::path& file) {
 /// A TUM file of poses in the frame stated.
 Estimate read_poses(const ExternalDescription& description, const std::filesystem::path& file) {
   if (!std::filesystem::is_regular_file(file))
-    throw BadInput(file.filename().string() + ": the command did not leave it");
+    throw BadInput(file.filename().string() + ": the command did not write this file");
   Kind kind{};
   std::string method;
   Estimate estimate = read_estimate(file, kind, method, description.frame);
@@ -107,8 +107,8 @@ Estimate read_folder(const ExternalDescription& description, const std::filesyst
   std::string method;
   Estimate estimate = read_estimate(folder, kind, method, description.frame);
   if (kind != description.kind)
-    throw BadInput(std::string("the command left an estimate of kind ") + to_string(kind) + ", " +
-                   description.file.filename().string() + " states " + to_string(description.kind));
+    throw BadInput(std::string("the command wrote an estimate of kind ") + to_string(kind) + ", " +
+                   description.file.filename().string() + " states kind " + to_string(description.kind));
   return estimate;
 }
 
@@ -157,7 +157,7 @@ std::vector<MapPoint> read_points(const std::filesystem::path& file) {
   const auto given = [](const auto& columns) {
     return std::ranges::all_of(columns, [](const auto* each) { return each != nullptr; });
   };
-  if (!given(place)) throw BadInput(file.filename().string() + ": must have x, y and z");
+  if (!given(place)) throw BadInput(file.filename().string() + ": columns x, y and z are needed");
   std::vector<MapPoint> points(cloud.points);
   for (std::size_t k = 0; k < points.size(); ++k) {
     const auto vector = [k](const auto& columns) -> Eigen::Vector3f {

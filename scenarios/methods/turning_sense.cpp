@@ -105,9 +105,9 @@ double difference(const std::vector<TurnPair>& pairs, Written written, const Eig
 
 std::string text_of(Written written, Frame frame, Frame stated) {
   std::string out;
-  if (written == Written::w_first) out = "the quaternions had w first (x y z w is asked)";
+  if (written == Written::w_first) out = "the quaternions had w first (expected order: x y z w)";
   if (written == Written::inverse)
-    out = "the quaternions were of the world in the sensor (of the sensor in the world is asked)";
+    out = "the quaternions described the world in sensor axes (expected: the sensor in world axes)";
   if (frame == stated) return out;
   return out + (out.empty() ? "the poses" : " and the poses") + " were of the frame " + to_string(frame);
 }
@@ -137,8 +137,8 @@ std::string turning_complaint(const Estimate& estimate, const sim::Sensors& sens
   }
   if (found.empty()) return "";
   return fmt::format(
-      "the attitudes in the frame {} do not turn as the gyro says (off by {:.0f} % over {} pairs), but "
-      "would (by {:.0f} %) if {}",
+      "the attitudes in frame {} do not rotate as the gyro does (difference {:.0f} % over {} pairs), but would "
+      "(difference {:.0f} %) if {}",
       to_string(estimate.frame), 100.0 * off, pairs.size(), 100.0 * least, found);
 }
 
