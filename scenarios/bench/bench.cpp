@@ -78,7 +78,7 @@ BenchResult collect_bench_result(const Results& results, const Suite& suite, con
     key.kind = method.kind;
     key.method = method.name;
     const std::optional<Outcome> outcome = results.find(key);
-    if (!outcome) throw BadInput("draw " + name_of(draw) + " has no outcome of " + method.name);
+    if (!outcome) throw BadInput("draw " + name_of(draw) + " has no outcome of method " + method.name);
     draw.recording = outcome->recording_digest;
     draw.status = outcome->status;
   }
@@ -99,8 +99,9 @@ void require_of_suite(const BenchResult& result, const Suite& suite) {
   const std::string digest = bench_suite_digest(suite);
   const std::string whose = full_name(result.kind, result.method);
   if (result.suite != suite.name || result.suite_digest != digest)
-    throw BadInput(whose + " is of suite " + result.suite + " " + result.suite_digest + ", must be of " + suite.name +
-                   " " + digest + ": results of two suites are not compared");
+    throw BadInput(whose + " belongs to suite " + result.suite + " " + result.suite_digest +
+                   "; it must belong to suite " + suite.name + " " + digest +
+                   ": results of two suites cannot be compared");
   const std::vector<BenchDraw> draws = draws_of(suite);
   if (result.draws.size() != draws.size())
     throw BadInput(whose + " has " + std::to_string(result.draws.size()) + " draws, must have " +

@@ -47,7 +47,7 @@ BenchDraw draw_from(const ordered_json& node) {
   if (!status) throw BadInput("unknown status '" + node.at("status").get<std::string>() + "'");
   draw.status = *status;
   for (const auto& [metric, value] : node.at("values").items()) {
-    if (!value.is_number() || !std::isfinite(value.get<double>())) throw BadInput("'" + metric + "' is no number");
+    if (!value.is_number() || !std::isfinite(value.get<double>())) throw BadInput("'" + metric + "' is not a number");
     draw.values[metric] = value.get<double>();
   }
   return draw;
@@ -55,7 +55,7 @@ BenchDraw draw_from(const ordered_json& node) {
 
 BenchResult result_from(const ordered_json& node) {
   if (!node.is_object() || node.value("format", "") != kFormat)
-    throw BadInput(std::string("not a line of format '") + kFormat + "'");
+    throw BadInput(std::string("this is not a line of format '") + kFormat + "'");
   const ordered_json version = node.value("format_version", ordered_json());
   if (version != kBenchFormatVersion)
     throw BadInput("format_version " + version.dump() + ", must be " + std::to_string(kBenchFormatVersion));
@@ -73,7 +73,7 @@ BenchResult result_from(const ordered_json& node) {
   for (const ordered_json& each : node.at("draws")) {
     BenchDraw draw = draw_from(each);
     if (result.find(draw) != nullptr)
-      throw BadInput("draw " + draw.scenario + " " + std::to_string(draw.seed) + " stands twice");
+      throw BadInput("draw " + draw.scenario + " " + std::to_string(draw.seed) + " occurs twice");
     result.draws.push_back(std::move(draw));
   }
   return result;

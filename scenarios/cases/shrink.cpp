@@ -107,7 +107,7 @@ class Shrinking {
       fails = failure_->holds(outcome);
       if (fails && shrunk_.controlled && options_.failure.holds(run.outcome(*options_.control, options_.timeout_s))) {
         fails = false;
-        outcome.message = one_line("so does the control, " + options_.control->info.name);
+        outcome.message = one_line("the control method fails too: " + options_.control->info.name);
       }
     } catch (const std::exception& error) {  // the draw is none: it does not show the failure
       outcome.status = OutcomeStatus::rejected;
@@ -220,7 +220,8 @@ Shrunk shrink(const DataRoot& data, const Scenario& scenario, std::uint64_t seed
     require_applies(*options.control, scenario);
     if (options.control->info.kind != method.info.kind)
       throw BadInput("the control '" + options.control->info.name + "' is of kind " +
-                     to_string(options.control->info.kind) + ", the method of kind " + to_string(method.info.kind));
+                     to_string(options.control->info.kind) + "; it must be of the method's kind, " +
+                     to_string(method.info.kind));
   }
   return Shrinking(data, scenario, seed, method, options).run();
 }

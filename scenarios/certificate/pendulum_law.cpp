@@ -180,7 +180,7 @@ CertificateEntry periods(const CertificateInput& input, const PendulumSetup& set
   // the amplitude's share: of 0.001 rad a simple pendulum has 6e-8, the bent shapes some fifty times that
   return {"pendulum_period",
           "pendulum",
-          "periods of the three small oscillations against their closed form: largest relative difference",
+          "periods of the three small oscillations equal their closed form: largest relative difference",
           "1",
           worst,
           0.0,
@@ -245,7 +245,7 @@ CertificateEntry force(const CertificateInput& input, const PendulumSetup& setup
   // 1e8
   return {"pendulum_specific_force",
           "pendulum",
-          "an ideal accelerometer on the lowest segment against Lagrange's equations: largest difference",
+          "an ideal accelerometer on the lowest segment agrees with Lagrange's equations: largest difference",
           "m/s^2",
           largest_m_s2,
           0.0,

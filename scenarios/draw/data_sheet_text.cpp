@@ -48,7 +48,7 @@ DataSheet parse_data_sheet(const std::string& text, const std::string& file, con
   for (const auto& [name, node] : fields.at("values").entries()) {
     const sim::Parameter* const parameter = find_parameter(type->parameters, name);
     if (parameter == nullptr) {
-      node.fail("unknown key '" + name + "' of kind '" + type->name + "'" +
+      node.fail("unknown key '" + name + "' for kind '" + type->name + "'" +
                 suggestion(name, names_of(type->parameters)));
     }
     sheet.entries.push_back(parse_entry(name, node, *parameter));

@@ -40,7 +40,8 @@ sim::Situation draw_given(const Scenario& scenario, std::span<const DataSheet> s
     const Scenario::Sensor& sensor = scenario.sensors[i];
     if (sheets[i].sensor_kind != sensor.kind) {
       throw BadInput(scenario.file + ":" + std::to_string(sensor.line) + ": sensors." + sensor.name + ": device '" +
-                     sensor.device + "' is of kind '" + sheets[i].sensor_kind + "', not '" + sensor.kind + "'");
+                     sensor.device + "' is of kind '" + sheets[i].sensor_kind + "'; it must be of kind '" +
+                     sensor.kind + "'");
     }
     out.sensors.push_back(draw_sensor(sensor, sheets[i], seed));
   }

@@ -17,7 +17,7 @@ using Shape = Distribution::Shape;
 using Numbers = std::map<std::string, Distribution>;
 
 constexpr double kLongestDuration_s = 3600.0;
-constexpr sim::Parameter kDuration{"duration_s", 10.0, 0.01, kLongestDuration_s, "s", "length of the situation"};
+constexpr sim::Parameter kDuration{"duration_s", 10.0, 0.01, kLongestDuration_s, "s", "duration of the scenario"};
 
 Distribution parse_distribution(const YamlNode& node) {
   static const std::array<std::string, 4> kShapes = {"uniform", "normal", "log_uniform", "choice"};
@@ -117,7 +117,7 @@ std::vector<Scenario::Sensor> parse_sensors(const YamlNode& list, const Registry
     Scenario::Sensor sensor = parse_sensor(item, registry);
     for (const Scenario::Sensor& other : out) {
       if (other.name == sensor.name)
-        item.fail("a sensor '" + sensor.name + "' stands already in line " + std::to_string(other.line));
+        item.fail("a sensor '" + sensor.name + "' exists already in line " + std::to_string(other.line));
     }
     out.push_back(std::move(sensor));
   }
@@ -147,7 +147,9 @@ Scenario parse_scenario(const std::string& text, const std::string& file, const 
   if (fields.contains("case")) {
     out.named_case = case_from_yaml(fields.at("case"));
     const std::vector<DrawnNumber> drawn = drawn_numbers(out);
-    if (!drawn.empty()) fields.at("case").fail("a case is one draw, but " + drawn.front().place + " is drawn");
+    if (!drawn.empty())
+      fields.at("case").fail("a case is a single draw, but " + drawn.front().place +
+                             " is drawn from a distribution; give a fixed number");
   }
   return out;
 }

@@ -56,7 +56,7 @@ double acceleration(std::span<const double> sorted) {
 }  // namespace
 
 MedianBootstrap::MedianBootstrap(std::size_t size, std::size_t resamples) : size_(size) {
-  if (size == 0) throw BadInput("bootstrap: there is no value");
+  if (size == 0) throw BadInput("bootstrap: there are no values");
   if (resamples < 100)
     throw BadInput("bootstrap: resamples is " + std::to_string(resamples) + ", must be at least 100");
   // statistics.md (S1): the lower middle of n uniform numbers, and the one above it given that
@@ -76,7 +76,8 @@ MedianBootstrap::MedianBootstrap(std::size_t size, std::size_t resamples) : size
 
 Interval MedianBootstrap::interval(std::span<const double> values, double risk) const {
   if (values.size() != size_)
-    throw BadInput("bootstrap: " + std::to_string(values.size()) + " values, made for " + std::to_string(size_));
+    throw BadInput("bootstrap: " + std::to_string(values.size()) + " values, but the bootstrap was made for " +
+                   std::to_string(size_));
   if (!(risk > 0.0 && risk < 1.0))
     throw BadInput("bootstrap: risk is " + std::to_string(risk) + ", must be within (0, 1)");
   std::vector<double> sorted(values.begin(), values.end());

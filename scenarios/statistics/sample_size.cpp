@@ -67,7 +67,8 @@ double pairs_for_failures(std::int64_t only_first, std::int64_t only_second, std
   require(plan);
   if (only_first < 0 || only_second < 0 || only_first + only_second > pairs)
     throw BadInput("plan: " + std::to_string(only_first) + " and " + std::to_string(only_second) +
-                   " failures of one alone, must be within " + std::to_string(pairs) + " pairs");
+                   " failures of only one method; their sum must be at most the number of pairs, " +
+                   std::to_string(pairs));
   if (only_first == only_second) return kInfinity;
   const auto n = static_cast<double>(pairs);
   const double either = static_cast<double>(only_first + only_second) / n;

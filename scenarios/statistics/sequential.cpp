@@ -22,10 +22,12 @@ SequentialSignTest::SequentialSignTest(double risk) : risk_(risk) {
 
 SequentialSignTest::Verdict SequentialSignTest::look(double share, std::int64_t negative, std::int64_t positive) {
   if (!(share > 0.0 && share <= 1.0 && share >= share_))
-    throw BadInput("share of the draws seen is " + std::to_string(share) + ", must be within (0, 1] and not fall");
+    throw BadInput("share of the draws seen is " + std::to_string(share) +
+                   "; it must be within (0, 1] and must not decrease");
   if (negative < 0 || positive < 0 || negative + positive < pairs_)
-    throw BadInput("pairs are " + std::to_string(negative) + " and " + std::to_string(positive) + ", were " +
-                   std::to_string(pairs_) + " at the look before");
+    throw BadInput("the numbers of pairs are " + std::to_string(negative) + " and " + std::to_string(positive) +
+                   "; at the previous look there were " + std::to_string(pairs_) +
+                   " pairs in all, and the number must not decrease");
   if (verdict_ != Verdict::open) return verdict_;
   share_ = share;
   toss(negative + positive - pairs_);

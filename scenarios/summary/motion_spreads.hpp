@@ -30,7 +30,7 @@ struct Spread {
 
 /// Whose figures `published` holds, to follow "beside".
 inline constexpr const char* kPublishedMotion =
-    "the published campaign of the rig (32 tumbles down a hill) and the aim of the scenario hill";
+    "the published campaign of the rig (32 tumbles down a hill) and the target of the scenario hill";
 
 /// Quantity by quantity, scenarios in the order of the draws. Of a share of draws ("draws that clip the gyro") the
 /// values are 0 or 1, the median is the share and the quantiles are its 95 % interval; so they are of a share of all

@@ -31,10 +31,10 @@ void require_contest(const std::string& metric, const std::string& kind) {
   const auto all = metrics();
   const auto own = std::find_if(all.begin(), all.end(), [&](const Metric& m) { return m.info.name == info.name; });
   if (own == all.end() || info.sense == Sense::none)
-    throw BadInput("metric '" + metric + "' of a question is not known, or has no better side");
+    throw BadInput("metric '" + metric + "' of a question is unknown, or has no better direction");
   if (to_string(own->kind) != kind)
-    throw BadInput("metric '" + metric + "' is of kind " + to_string(own->kind) + ", the methods of a question are '" +
-                   kind + "'");
+    throw BadInput("metric '" + metric + "' is of kind " + to_string(own->kind) +
+                   "; it must have the kind of the methods, '" + kind + "'");
 }
 
 /// Of one draw what each of the two has: a value, or the worst in its place.
@@ -118,12 +118,13 @@ void require_sound(const Question& question) {
   const std::string kind = kind_of(question.method);
   for (const std::string& name : {question.method, question.against}) {
     if (kind_of(name).empty())
-      throw BadInput("method '" + name + "' of a question needs its kind, as in 'rate/tumble'");
+      throw BadInput("method '" + name + "' of a question needs its kind, for example 'rate/tumble'");
     if (kind_of(name) != kind)
-      throw BadInput("methods '" + question.method + "' and '" + name + "' are of two kinds, which no metric compares");
+      throw BadInput("methods '" + question.method + "' and '" + name +
+                     "' have different kinds; no metric compares them");
   }
   if (question.method == question.against)
-    throw BadInput("method '" + question.method + "' is asked to be better than itself");
+    throw BadInput("method '" + question.method + "' is compared with itself; name two methods");
   require_contest(question.metric, kind);
   if (!(question.margin.value >= 0.0 && std::isfinite(question.margin.value)))
     throw BadInput("margin is " + std::to_string(question.margin.value) + ", must be finite and at least 0");
@@ -132,17 +133,18 @@ void require_sound(const Question& question) {
   if (question.looks < 1 || question.looks > kLooksMax)
     throw BadInput("looks are " + std::to_string(question.looks) + ", must be within [1, " + std::to_string(kLooksMax) +
                    "]");
-  if (question.scenarios.empty()) throw BadInput("a question needs a scenario");
-  if (question.last_seed < question.first_seed) throw BadInput("a question needs a seed");
+  if (question.scenarios.empty()) throw BadInput("a question needs at least one scenario");
+  if (question.last_seed < question.first_seed) throw BadInput("a question needs at least one seed");
 }
 
 void claim(Results& results, const Question& question, const std::filesystem::path& database) {
   const std::string known = results.note(kQuestionNote), asked = question.describe();
   if (known == asked) return;
   if (!known.empty())
-    throw BadInput(database.string() + ": was asked '" + known + "', now '" + asked + "': name another file");
+    throw BadInput(database.string() + ": stores the question '" + known + "', but now the question is '" + asked +
+                   "'; name another file");
   if (!results.outcomes().empty())
-    throw BadInput(database.string() + ": holds draws from before the question was asked: name another file");
+    throw BadInput(database.string() + ": holds draws that were made before the question was set; name another file");
   results.set_note(kQuestionNote, asked);
 }
 

@@ -41,8 +41,8 @@ void add(const Outcome& outcome, GateRun& run) {
 
 GateRun gate_run(std::span<const Outcome> outcomes, std::uint64_t first, std::uint64_t last) {
   if (last < first || last - first >= kDrawsMax) {
-    throw BadInput("a gate holds 1 to " + std::to_string(kDrawsMax) + " seeds, not " + std::to_string(first) + " to " +
-                   std::to_string(last));
+    throw BadInput("a gate has 1 to " + std::to_string(kDrawsMax) + " seeds; given were seeds " +
+                   std::to_string(first) + " to " + std::to_string(last));
   }
   GateRun run;
   for (std::uint64_t seed = first; seed <= last; ++seed) run.seeds.push_back(seed);

@@ -90,8 +90,8 @@ Keep parse_keep(const std::string& text) {
     if (read_number(std::string_view(text).substr(kWorst.size()), count) && count >= 1 && count <= kCountMax)
       return {Keep::Which::worst, count};
   }
-  throw BadInput("which draws to keep is '" + text + "', must be none, failed, all, or worst:N with N from 1 to " +
-                 std::to_string(kCountMax));
+  throw BadInput("the selection of draws to keep is '" + text +
+                 "', must be none, failed, all, or worst:N with N from 1 to " + std::to_string(kCountMax));
 }
 
 std::string to_string(const Keep& keep) {

@@ -181,7 +181,8 @@ class Joining {
     held_.bindNoCopy(4, row.method);
     held_.bindNoCopy(5, row.varied);
     held_.bind(6, row.setting);
-    if (!held_.executeStep()) throw BadInput(path_.string() + ": a row of draw " + row.scenario + " is not unique");
+    if (!held_.executeStep())
+      throw BadInput(path_.string() + ": a row of draw " + row.scenario + " is stored more than once");
     const std::int64_t id = held_.getColumn(0).getInt64();
     const std::string status_text = held_.getColumn(1).getString(), recording = held_.getColumn(2).getString(),
                       estimate = held_.getColumn(3).getString();
@@ -205,8 +206,9 @@ class Joining {
   }
 
   [[noreturn]] void complain(const ShardRow& row, const std::string& known, const std::string& digest) const {
-    throw BadInput(path_.string() + ": " + words(row) + ": is " + row.status + " with digest '" + row.estimate_digest +
-                   "', elsewhere " + known + " with digest '" + digest + "'; one build gives one answer");
+    throw BadInput(path_.string() + ": " + words(row) + ": status is " + row.status + " with digest '" +
+                   row.estimate_digest + "', but elsewhere " + known + " with digest '" + digest +
+                   "'; one build must give one result");
   }
 
   /// Of two rows with one digest the scores are the same bits too, but for what the runs cost.
@@ -239,8 +241,8 @@ class Joining {
 
   [[noreturn]] void differ(const ShardRow& row, const std::string& metric, const std::string& here,
                            const std::string& elsewhere) const {
-    throw BadInput(path_.string() + ": " + words(row) + ": " + metric + " is " + here + ", elsewhere " + elsewhere +
-                   "; one build gives one answer");
+    throw BadInput(path_.string() + ": " + words(row) + ": " + metric + " is " + here + ", but elsewhere " + elsewhere +
+                   "; one build must give one result");
   }
 
   /// The scores of a row of the shard, by name; rows are asked for in their order.

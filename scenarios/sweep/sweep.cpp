@@ -29,8 +29,8 @@ void claim(Results& results, const DataRoot& data, const Suite& suite, const std
   if (known.empty()) {
     results.set_note("data", digest);
   } else if (known != digest) {
-    throw BadInput(database.string() + ": made from other models or scenarios (digest " + known + ", now " + digest +
-                   "); outcomes of two catalogues do not mix: name another file");
+    throw BadInput(database.string() + ": was made from other models or scenarios (digest " + known + ", now " +
+                   digest + "); outcomes of two catalogues cannot be mixed; name another file");
   }
   results.set_note("suite", suite.name);
   if (!suite.recordings.empty()) results.set_note("source", kRecordingsSource);
@@ -53,8 +53,8 @@ void claim_methods(Results& results, std::span<const MethodPointer> methods) {
     const std::string key = method_note(method->info.kind, method->info.name);
     const std::string known = results.note(key);
     if (!known.empty() && known != method->info.version)
-      throw BadInput("the database holds rows of another " + key + " ('" + known + "', now '" + method->info.version +
-                     "'): name another file, or another method");
+      throw BadInput("the database holds rows of another version of " + key + " ('" + known + "', now '" +
+                     method->info.version + "'); name another file or another method");
     results.set_note(key, method->info.version);
   }
 }
@@ -142,7 +142,7 @@ class Sweep {
     try {
       workers_.emplace_back(terms_);
     } catch (const std::system_error& error) {
-      if (workers_.empty()) throw BadInput(std::string("no process can be made: ") + error.what());
+      if (workers_.empty()) throw BadInput(std::string("cannot start a worker process: ") + error.what());
       return false;  // when one of the others has ended
     }
     return workers_.back().give(task, deadline_s);
@@ -197,7 +197,8 @@ class Sweep {
 
   // the process of a draw died: what is left over of its runs has no answer
   void account_for_death(const DrawTask& draw, bool late, const Process::End& end) {
-    const std::string what = late ? "the draw did not end in time" : "the draw's process " + end.describe();
+    const std::string what =
+        late ? "the draw did not finish within its time limit" : "the draw's process " + end.describe();
     if (updating_kept_) {
       progress_.not_kept = what;
       return;
@@ -313,11 +314,11 @@ void require_sound(const Suite& suite, const SweepOptions& options) {
   require_seeds(suite);
   for (const OutcomeStatus status : options.again) {
     if (!may_run_again(status)) {
-      throw BadInput(std::string("'") + to_string(status) + "' is not run again; what may be: crashed timeout killed");
+      throw BadInput(std::string("'") + to_string(status) + "' cannot be run again; possible: crashed timeout killed");
     }
   }
   if (!suite.recordings.empty() && options.keep.which != Keep::Which::none)
-    throw BadInput("suite " + suite.name + ": its draws are recordings, which are there already; none is kept");
+    throw BadInput("suite " + suite.name + ": its draws are recordings, which exist already; set --keep none");
   require_worker_memory(options.memory_mib);
 }
 

@@ -38,7 +38,7 @@ const char* words(Reach reach) {
     case Reach::simulation:
       return "a number of the scenario";
     case Reach::input:
-      return "an error in what methods are given";
+      return "an error of the methods' input";
     case Reach::method:
       return "a parameter of a method";
   }
@@ -51,7 +51,7 @@ const GivenError& given_error(const std::string& key) {
   if (error != nullptr) return *error;
   std::vector<std::string> known;
   for (const GivenError& each : given_errors()) known.emplace_back(each.parameter.name);
-  throw BadInput("'" + key + "': no such error can be given" + suggestion(name, known));
+  throw BadInput("'" + key + "': unknown input error" + suggestion(name, known));
 }
 
 /// "rate/saave" and "jerk_psd_rad2_s5".
@@ -88,7 +88,7 @@ void check_given(const std::string& key, std::span<const double> values, const S
   const GivenError& error = given_error(key);
   for (const double value : values) require_settable(key, error.parameter, value);
   if (scenario.sensors.empty() || scenario.sensors.front().kind != "imu") {
-    throw BadInput("'" + key + "': the first sensor of scenario " + scenario.name + " is no IMU");
+    throw BadInput("'" + key + "': the first sensor of scenario " + scenario.name + " is not an IMU");
   }
   const bool lidar = std::any_of(scenario.sensors.begin(), scenario.sensors.end(),
                                  [](const Scenario::Sensor& sensor) { return sensor.kind.ends_with("lidar"); });
@@ -126,7 +126,7 @@ void check(const Variation& variation, const DataRoot& data, std::span<const std
     const Reach own = reach_of(key), first = reach_of(variation.keys.front());
     if (own != first) {
       throw BadInput("'" + key + "' is " + words(own) + " and '" + variation.keys.front() + "' " + words(first) +
-                     ": they cannot move together");
+                     "; these keys cannot vary together");
     }
     if (own == Reach::method) check_parameter(key, variation.values);
     for (const std::string& name : scenarios) {
