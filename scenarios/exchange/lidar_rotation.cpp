@@ -188,36 +188,38 @@ std::string pairs_text(const RotationAgreement& found) {
 /// Throws where the option that reads them otherwise would mend it.
 std::string unit_text(const std::string& where, const RotationAgreement& found, GyroUnit unit) {
   const bool degrees = unit == GyroUnit::deg_s;
-  const std::string read = std::string("read in ") + (degrees ? "deg/s" : "rad/s") + ", the lidar turns " +
-                           rounded(found.unit) + " times as the gyro says, to within " + percent(found.unit_error) +
-                           pairs_text(found) + ", must be within 0.5 and 2";
+  const std::string read = std::string("with rates in ") + (degrees ? "deg/s" : "rad/s") +
+                           ", the lidar's rotation is " + rounded(found.unit) +
+                           " times the gyro's rotation, accurate to " + percent(found.unit_error) + pairs_text(found) +
+                           ", must be within 0.5 and 2";
   if ((found.unit < 1.0) == degrees) return "caution: " + read;
   const std::string fits = degrees ? "rad/s" : "deg/s";
-  throw BadInput(where + ": " + read + ": are the rates in " + fits + "? ('--gyro-unit " + fits + "' takes them so)");
+  throw BadInput(where + ": " + read + "; the rates may be in " + fits + " (set '--gyro-unit " + fits + "')");
 }
 
 std::string delay_text(const RotationAgreement& found) {
   if (std::abs(found.delay_s) < kDelaySaid_s) return "";
-  return "caution: the lidar sees what the gyro says " + rounded(std::abs(found.delay_s)) +
-         (found.delay_s > 0.0 ? " s later" : " s before") +
-         ": two clocks, or stamps of sweeps' ends for their starts? Counted so, ";
+  return "caution: the lidar's rotation follows the gyro's " + rounded(std::abs(found.delay_s)) +
+         (found.delay_s > 0.0 ? " s later" : " s earlier") +
+         "; check that both use one clock and that sweep stamps are start times. With this delay removed, ";
 }
 
 std::string axes_text(const RotationAgreement& found) {
   if (found.error_as_read <= kAgrees && kTells * found.error_as_read <= found.axes_error) {
-    return "the lidar turns as the gyro says" + pairs_text(found) + ", to within " + percent(found.error_as_read) +
-           (kTells * found.next_error > found.axes_error ? ": units, senses and axes agree"
-                                                         : ": units agree; the motion does not tell all axes apart");
+    return "the lidar's rotation equals the gyro's" + pairs_text(found) + ", within " + percent(found.error_as_read) +
+           (kTells * found.next_error > found.axes_error ? ": units, signs and axes agree"
+                                                         : ": units agree; this motion cannot distinguish all axes");
   }
-  const std::string off = "caution: the lidar does not turn as the gyro says" + pairs_text(found) + " (off by " +
-                          percent(found.error_as_read) + "), but as if ";
+  const std::string off = "caution: the lidar's rotation differs from the gyro's" + pairs_text(found) +
+                          " (difference " + percent(found.error_as_read) + "); it would agree if ";
   if (found.axes_error <= kAgrees) {
-    return off + "its axes were " + found.axes.text() + " (off by " + percent(found.axes_error) +
-           "): senses, order of the axes, or the mounting?";
+    return off + "the lidar's axes were " + found.axes.text() + " (difference " + percent(found.axes_error) +
+           "); check the signs and order of the axes, and the mounting";
   }
   const Eigen::Quaterniond& q = found.turned;
-  return off + "it were turned by the quaternion x y z w " + rounded(q.x()) + " " + rounded(q.y()) + " " +
-         rounded(q.z()) + " " + rounded(q.w()) + " (off by " + percent(found.turned_error) + "): the mounting?";
+  return off + "the lidar were rotated by the quaternion x y z w " + rounded(q.x()) + " " + rounded(q.y()) + " " +
+         rounded(q.z()) + " " + rounded(q.w()) + " (difference " + percent(found.turned_error) +
+         "); check the mounting";
 }
 
 }  // namespace

@@ -52,8 +52,7 @@ Notes write_bag(const path& recording, const path& out, const ExportChoices& cho
   ExportNames names = export_names(sensors);
   Notes left_out;
   for (const sim::SeriesRecord& series : sensors.series)
-    left_out.push_back("'" + series.name + "', a " + series.kind +
-                       ", is left out: bags of ours have no message for it");
+    left_out.push_back("'" + series.name + "', a " + series.kind + ", is left out: bags have no message type for it");
   return joined(joined(std::move(names.imus.notes), names.lidars.notes), left_out);
 }
 
@@ -113,7 +112,7 @@ Notes export_recording(const path& recording, const std::string& format, const p
   for (const std::string& name : export_formats()) known += " " + name;
   const std::string near = sim::nearest_name(format, export_formats());
   throw BadInput("unknown format '" + format + "'" + (near.empty() ? "" : "; did you mean '" + near + "'?") +
-                 " (known:" + known + ")");
+                 " (known formats:" + known + ")");
 }
 
 }  // namespace tumble::scenarios

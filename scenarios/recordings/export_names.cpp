@@ -40,8 +40,9 @@ void add_claims(const std::vector<Record>& records, const std::string& kind, con
 
 std::string why_another(const Claim& claim) {
   const bool sensors = !own_names().contains(claim.name) && !frames_of_no_sensor().contains(claim.name);
-  return "'" + claim.name + "' is " + (sensors ? "another sensor's name too" : "a topic or frame that is no sensor's") +
-         ": " + claim.sensor + " is written as '" + claim.given + "'";
+  return "'" + claim.name + "' is " +
+         (sensors ? "also the name of another sensor" : "a topic or frame that does not belong to a sensor") + ": " +
+         claim.sensor + " is written as '" + claim.given + "'";
 }
 
 /// Of sensors or of their truth.

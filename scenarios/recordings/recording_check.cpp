@@ -28,7 +28,7 @@ std::string length_problem(const Lengths& lengths) {
   const auto& [first_name, first] = *lengths.begin();
   for (const auto& [name, length] : lengths) {
     if (length == first) continue;
-    return std::string(name) + " has " + std::to_string(length) + " rows, " + first_name + " has " +
+    return std::string(name) + " has " + std::to_string(length) + " rows, but " + first_name + " has " +
            std::to_string(first);
   }
   return "";
@@ -39,7 +39,7 @@ std::string pose_problem(const char* name, const Eigen::Isometry3d& pose) {
   if (!pose.matrix().allFinite()) return std::string(name) + " is not finite";
   const double departure = (rotation.transpose() * rotation - Eigen::Matrix3d::Identity()).cwiseAbs().maxCoeff();
   if (!(departure <= kUnitTolerance) || rotation.determinant() < 0.0)
-    return std::string(name) + " is not a rotation and a shift";
+    return std::string(name) + " is not a rotation with a translation";
   return "";
 }
 
@@ -49,7 +49,7 @@ std::string at_least(const char* name, double value, double bound) {
 }
 
 std::string positive(const char* name, std::int64_t value) {
-  return value > 0 ? "" : std::string(name) + " is " + std::to_string(value) + ", must be above 0";
+  return value > 0 ? "" : std::string(name) + " is " + std::to_string(value) + "; it must be greater than 0";
 }
 
 std::string first_of(std::initializer_list<std::string> problems) {
@@ -84,7 +84,7 @@ std::string times_problem(const char* name, const std::vector<std::int64_t>& tim
   const auto found = std::find_if(times_ns.begin(), times_ns.end(), far);
   if (found == times_ns.end()) return "";
   return std::string(name) + " is " + std::to_string(*found) + " in row " + std::to_string(found - times_ns.begin()) +
-         ", must be within 1e17 ns of the recording's start";
+         "; it must be within 1e17 ns of the start of the recording";
 }
 
 std::string imu_problem(const sim::ImuRecord& imu) {
@@ -111,12 +111,12 @@ std::string sweep_problem(const sim::LidarRecord& lidar, std::size_t points) {
            " rows, must have one more than sweep_start_ns (" + std::to_string(sweeps) + ")";
   }
   if (lidar.sweep_first.front() != 0 || lidar.sweep_first.back() != points) {
-    return "sweep_first must go from 0 to the number of points, " + std::to_string(points);
+    return "sweep_first must increase from 0 to the number of points, " + std::to_string(points);
   }
-  if (!std::is_sorted(lidar.sweep_first.begin(), lidar.sweep_first.end())) return "sweep_first falls";
+  if (!std::is_sorted(lidar.sweep_first.begin(), lidar.sweep_first.end())) return "sweep_first decreases";
   const auto stuck = [](std::int64_t a, std::int64_t b) { return a >= b; };
   const auto& start = lidar.sweep_start_ns;
-  if (std::adjacent_find(start.begin(), start.end(), stuck) != start.end()) return "sweep_start_ns does not rise";
+  if (std::adjacent_find(start.begin(), start.end(), stuck) != start.end()) return "sweep_start_ns does not increase";
   return "";
 }
 
@@ -146,13 +146,13 @@ std::string offset_problem(const Offsets& offsets) {
   return first_wrong(offsets, [](std::uint32_t offset, std::size_t i) -> std::string {
     if (offset == 0) return "";
     return "offset_ns is " + std::to_string(offset) + " at point " + std::to_string(i) +
-           ", must be 0 where points have no times of their own";
+           "; it must be 0 if points have no time stamps";
   });
 }
 
 template <class Offsets>
 std::string point_times_problem(const sim::LidarRecord& lidar, const Offsets& offsets) {
-  if (lidar.point_times > sim::PointTimes::unknown) return "point_times is none of measured, not_skewed, unknown";
+  if (lidar.point_times > sim::PointTimes::unknown) return "point_times is not one of measured, not_skewed, unknown";
   return lidar.point_times == sim::PointTimes::measured ? "" : offset_problem(offsets);
 }
 
@@ -174,7 +174,7 @@ std::string lidar_problem(const sim::LidarRecord& lidar, const Points& points) {
 std::string column_problem(const std::string& name) {
   const auto plain = [](unsigned char c) { return std::isalnum(c) != 0 || c == '_'; };
   if (!name.empty() && std::all_of(name.begin(), name.end(), plain)) return "";
-  return "name must be letters, digits and _, at least one";
+  return "the name must consist of letters, digits and _, at least one";
 }
 
 /// Of quantities or constants of a sensor, whose names are told apart.
@@ -185,7 +185,7 @@ std::string names_problem(const std::string& list, const std::vector<Record>& re
   for (std::size_t i = 0; i < records.size() && problem.empty(); ++i) {
     const std::string& name = records[i].name;
     problem = in(list + "/" + std::to_string(i),
-                 first_of({column_problem(name), names.insert(name).second ? "" : "name is another's too"}));
+                 first_of({column_problem(name), names.insert(name).second ? "" : "the name is used twice"}));
   }
   return problem;
 }
@@ -206,7 +206,7 @@ std::string series_problem(const sim::SeriesRecord& series) {
                                   quantities_problem(series.quantities), names_problem("constants", series.constants)});
   for (std::size_t i = 0; i < series.constants.size() && problem.empty(); ++i) {
     if (!std::isfinite(series.constants[i].value))
-      problem = in("constants/" + std::to_string(i), "value is not finite");
+      problem = in("constants/" + std::to_string(i), "the value is not finite");
   }
   for (std::size_t i = 0; i < series.quantities.size() && problem.empty(); ++i) {
     const sim::Quantity& quantity = series.quantities[i];
@@ -271,7 +271,7 @@ std::string lidar_truth_problem(const Lidar& lidar, std::size_t surfaces) {
 class RisingTimes {
  public:
   std::string operator()(std::int64_t time_ns, std::size_t) {
-    if (time_ns < before_) return "time_ns: falls or is negative";
+    if (time_ns < before_) return "time_ns: decreases or is negative";
     before_ = time_ns;
     return "";
   }
@@ -308,7 +308,7 @@ std::string attitude_problem(const Eigen::Quaterniond& q_WB, std::size_t) {
 
 std::string label_problem(sim::ContactLabel label, std::size_t) {
   if (label <= sim::ContactLabel::slide) return "";
-  return "label " + std::to_string(static_cast<int>(label)) + " is unknown, the largest is 3";
+  return "label " + std::to_string(static_cast<int>(label)) + " is unknown; the largest is 3";
 }
 
 template <class Truth>

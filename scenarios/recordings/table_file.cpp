@@ -48,8 +48,8 @@ bool read_line(std::istream& file, const std::filesystem::path& path, int number
     if (c == '\n') return true;
     line += static_cast<char>(c);
     if (line.size() > kLineMax)
-      throw BadInput(path.string() + ":" + std::to_string(number) + ": has more than " + std::to_string(kLineMax) +
-                     " bytes: no line of a table");
+      throw BadInput(path.string() + ":" + std::to_string(number) + ": the line has more than " +
+                     std::to_string(kLineMax) + " bytes; it is not a line of a table");
   }
   return !line.empty();
 }
@@ -136,7 +136,7 @@ Table Table::read(const std::filesystem::path& path, char separator, const std::
     }
     table.rows.push_back(std::move(row));
   }
-  if (header_due) throw BadInput(path.string() + ": empty, must begin with '" + header + "'");
+  if (header_due) throw BadInput(path.string() + ": the file is empty; it must begin with '" + header + "'");
   return table;
 }
 

@@ -32,7 +32,7 @@ struct Entry {
 // a signal handler reaches nothing but static storage
 std::array<Entry, kPlaces> entries;
 static_assert(std::atomic<pid_t>::is_always_lock_free && std::atomic<bool>::is_always_lock_free,
-              "a signal handler must not lock");
+              "a signal handler must not wait for a lock");
 
 std::atomic<int> waiting{0}, pending{0};  // how many SignalsWait, and the signal that came meanwhile
 

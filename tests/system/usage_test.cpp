@@ -120,7 +120,7 @@ INSTANTIATE_TEST_SUITE_P(
         Wrong{"a point beyond its bound", {"run", "hill", "--seed", "1", "--vary", "world.rock_count=-1"}, "within"},
         Wrong{"triage of one draw by results",
               {"triage", "hill", "--seed", "1", "--method", "rate/raw", "--db", "x.db"},
-              "one draw"},
+              "single draw"},
         Wrong{"a case's gate against another", {"gate", "regressions", "--against", "x.yaml"}, "says itself"},
         Wrong{"triage of many methods", {"triage", "hill", "--seed", "1", "--method", "tumble"}, "rate/tumble"},
         Wrong{"metric of a triage",
@@ -146,7 +146,7 @@ INSTANTIATE_TEST_SUITE_P(
               {"run", "roll", "--seed", "1", "--method", "slam/icp"},
               "does not apply to the robot 'sphere'"},
         Wrong{"a map without a lidar", {"run", "twirl", "--seed", "1", "--method", "slam/icp"}, "needs a lidar"},
-        Wrong{"output that is a device", {"record", "roll", "--seed", "1", "-o", "/dev/null"}, "no regular file"},
+        Wrong{"output that is a device", {"record", "roll", "--seed", "1", "-o", "/dev/null"}, "not a regular file"},
         Wrong{"render without seed", {"render", "hill", "-o", "x.png"}, "--seed"}));
 
 TEST(Message, IsOfALengthThatCanBeRead) {

@@ -48,7 +48,8 @@ bool is_livox_type(const std::string& type) {
 
 // the layout is held against the data first
 Cloud cloud_of(const ros::PointCloud2& message, const std::string& where) {
-  if (message.is_bigendian != 0) throw BadInput(where + ": big-endian points are not read");
+  if (message.is_bigendian != 0)
+    throw BadInput(where + ": points are big-endian; only little-endian points are supported");
   const std::uint64_t tight = std::uint64_t{message.width} * message.point_step;
   const std::uint64_t row_bytes = std::max<std::uint64_t>(message.row_step, tight);
   Cloud out;
@@ -64,7 +65,7 @@ Cloud cloud_of(const ros::PointCloud2& message, const std::string& where) {
     if (type == nullptr || field.count > 1) continue;  // 0: some drivers leave it so, and mean one
     if (std::uint64_t{field.offset} + type->bytes > message.point_step) {
       throw BadInput(where + ": field '" + field.name + "' at byte " + std::to_string(field.offset) +
-                     " lies outside of its point of " + std::to_string(message.point_step) + " bytes");
+                     " lies outside its point of " + std::to_string(message.point_step) + " bytes");
     }
     out.names.push_back(field.name);
     type->take(message, row_bytes, field.offset, out.columns.emplace_back(out.points));
@@ -74,7 +75,7 @@ Cloud cloud_of(const ros::PointCloud2& message, const std::string& where) {
 
 Cloud cloud_of(const ros::LivoxCustomMsg& message, const std::string& where) {
   if (message.point_num != message.points.size()) {
-    throw BadInput(where + ": states " + std::to_string(message.point_num) + " points and holds " +
+    throw BadInput(where + ": states " + std::to_string(message.point_num) + " points but holds " +
                    std::to_string(message.points.size()));
   }
   Cloud out;

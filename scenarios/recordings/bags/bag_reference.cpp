@@ -54,11 +54,12 @@ Eigen::Isometry3d pose_of_reference(const std::string& topic, const std::string&
   if (reading.reference_of == ReferenceOf::lidar) return lidar_of_poses(out.sensors, topic);
   if (reading.reference_of == ReferenceOf::body || frame.empty() || frame == places.body()) return body;
   const auto T_BA = places.of(frame);
-  const std::string whose = topic + ": poses of '" + frame + "' by their messages";
+  const std::string whose = topic + ": by the messages, poses of '" + frame + "'";
   if (T_BA) {
-    out.notes.push_back(whose + ": moved from there to the body ('--reference-frame body' takes them as its own)");
+    out.notes.push_back(whose +
+                        "; converted to poses of the body (set '--reference-frame body' to use them unchanged)");
   } else if (frame != "body" && frame != "base_link") {
-    out.notes.push_back(whose + ", which nothing places on the body: taken to be the body's");
+    out.notes.push_back(whose + ", which has no known pose on the body; assumed to be the body");
   }
   return T_BA.value_or(body);
 }

@@ -37,9 +37,9 @@ std::int64_t between(std::int64_t from_ns, std::int64_t to_ns) {
 
 /// What a stamp does after the one before.
 std::string course(std::int64_t before_ns, std::int64_t now_ns) {
-  if (now_ns > before_ns) return "rises by " + seconds_text(between(before_ns, now_ns));
-  if (now_ns < before_ns) return "goes back by " + seconds_text(between(now_ns, before_ns));
-  return now_ns == 0 ? "is 0, as the one before" : "stands still";
+  if (now_ns > before_ns) return "increases by " + seconds_text(between(before_ns, now_ns));
+  if (now_ns < before_ns) return "decreases by " + seconds_text(between(now_ns, before_ns));
+  return now_ns == 0 ? "is 0, like the previous one" : "does not change";
 }
 
 }  // namespace
@@ -58,10 +58,11 @@ std::int64_t BagStamps::take(std::int64_t header_ns, std::int64_t record_ns, con
     const std::string header = "the header's " + course(*header_ns_, header_ns),
                       record = "the record's " + course(*record_ns_, record_ns);
     const bool other_rises = by_header ? record_ns > *record_ns_ : header_ns > *header_ns_;
-    throw BadInput(where + ": stamp does not rise: " + (by_header ? header + ", " + record : record + ", " + header) +
-                   (!other_rises ? ""
-                    : by_header  ? " ('--stamps record' takes those)"
-                                 : " ('--stamps header' takes those)"));
+    throw BadInput(
+        where + ": the time stamp does not increase: " + (by_header ? header + ", " + record : record + ", " + header) +
+        (!other_rises ? ""
+         : by_header  ? "; set '--stamps record' to use the record stamps"
+                      : "; set '--stamps header' to use the header stamps"));
   }
   const std::int64_t lag_ns = between(header_ns, record_ns);
   least_lag_ns_ = header_ns_ ? std::min(least_lag_ns_, lag_ns) : lag_ns;
@@ -79,11 +80,11 @@ std::string BagStamps::remark() const {
   const bool changes = between(least_lag_ns_, most_lag_ns_) > kSteady_ns;
   const std::string taken = source_ == StampSource::header ? "headers" : "records";
   return std::string(other_clock() || changes ? "caution: " : "") + "the bag recorded its messages " +
-         seconds_text(least_lag_ns_) + " to " + seconds_text(most_lag_ns_) + " after the stamps of their headers" +
-         (other_clock() ? ": another clock?"
-          : changes     ? ": do the clocks drift?"
+         seconds_text(least_lag_ns_) + " to " + seconds_text(most_lag_ns_) + " after their header stamps" +
+         (other_clock() ? "; the clocks may differ"
+          : changes     ? "; one of the clocks may drift"
                         : "") +
-         "; taken are the " + taken + "'";
+         "; this import uses the stamps of the " + taken;
 }
 
 }  // namespace tumble::scenarios

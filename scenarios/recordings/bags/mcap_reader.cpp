@@ -43,7 +43,7 @@ class TopicWalk {
       const std::optional<std::uint64_t> stated = file_.stated_messages(channel);
       if (stated && *stated != counts_[channel]) {
         file_.fail(0, "channel " + std::to_string(channel) + " holds " + std::to_string(counts_[channel]) +
-                          " messages, the summary states " + std::to_string(*stated) + ": damaged");
+                          " messages, but the summary states " + std::to_string(*stated) + ": the file is damaged");
       }
     }
   }
@@ -71,7 +71,7 @@ class TopicWalk {
     if (time_ns >= segment.first_ns && time_ns <= segment.last_ns) return;
     file_.fail(segment.at, "a message at " + std::to_string(time_ns) + " ns in a chunk from " +
                                std::to_string(segment.first_ns) + " to " + std::to_string(segment.last_ns) +
-                               " ns: damaged");
+                               " ns: the file is damaged");
   }
 
   /// The index behind the chunk names the messages that are there, and no others.
@@ -84,15 +84,15 @@ class TopicWalk {
     std::sort(index->entries.begin(), index->entries.end());
     std::sort(found.begin(), found.end());
     if (index->entries == found) return;
-    file_.fail(segment.at, "the index of the chunk names " + std::to_string(index->entries.size()) +
-                               " messages of channel " + std::to_string(channel) + ", not the " +
-                               std::to_string(found.size()) + " that are there: damaged");
+    file_.fail(segment.at, "the chunk index names " + std::to_string(index->entries.size()) + " messages of channel " +
+                               std::to_string(channel) + ", but the chunk has " + std::to_string(found.size()) +
+                               ": the file is damaged");
   }
 
   void hold(const Segment& segment, std::uint64_t time_ns, std::string_view bytes) {
     waiting_bytes_ += bytes.size();
     if (waiting_bytes_ > kWaitingMax) {
-      file_.fail(segment.at, "chunks overlap in time so that more than 1 GiB of messages would have to wait");
+      file_.fail(segment.at, "the chunks overlap in time; more than 1 GiB of messages would have to be buffered");
     }
     const auto* first = reinterpret_cast<const std::uint8_t*>(bytes.data());
     waiting_.emplace(time_ns, ros::Bytes(first, first + bytes.size()));
@@ -134,7 +134,7 @@ class McapReader : public BagReader {
         if (found == topics.end()) {
           topics.push_back(topic);
         } else if (found->type != topic.type) {
-          file->fail(0, "topic " + topic.name + " is of type " + found->type + " and of type " + topic.type);
+          file->fail(0, "topic " + topic.name + " has the types " + found->type + " and " + topic.type);
         }
       }
     }

@@ -31,7 +31,8 @@ struct OpenedBag {
       names.push_back(each.name);
     }
     const std::string near = sim::nearest_name(name, names);
-    throw BadInput(place + ": no topic '" + name + "'" + (near.empty() ? "" : "; did you mean '" + near + "'?"));
+    throw BadInput(place + ": there is no topic '" + name + "'" +
+                   (near.empty() ? "" : "; did you mean '" + near + "'?"));
   }
 
   /// The topics named, which must be of a type that fits; all of such when none is named.

@@ -32,14 +32,13 @@ class Room {
   std::string whole(const char* what) {
     if (given_ != promised_) {
       throw BadInput(std::string("its ") + what + " frame holds " + std::to_string(given_) +
-                     " bytes, the chunk states " + std::to_string(promised_));
+                     " bytes, but the chunk states " + std::to_string(promised_));
     }
     return std::move(out_);
   }
   [[noreturn]] void stuck(const char* what, bool no_more_input) const {
-    throw BadInput(std::string("its ") + what + " frame " +
-                   (no_more_input ? "is truncated before" : "holds more than") + " the " + std::to_string(promised_) +
-                   " bytes that the chunk states");
+    throw BadInput(std::string("its ") + what + " frame " + (no_more_input ? "ends before" : "is longer than") +
+                   " the " + std::to_string(promised_) + " bytes that the chunk states");
   }
 
  private:

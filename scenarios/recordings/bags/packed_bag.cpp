@@ -53,8 +53,8 @@ void unpack(const path& file, const path& to) {
       if (ZSTD_isError(left) != 0) fail(std::string("its Zstandard frame is damaged: ") + ZSTD_getErrorName(left));
       bytes += out.pos;
       if (bytes > most)
-        fail("more than " + std::to_string(most) + " bytes come out of it, which " + to.parent_path().string() +
-             " has no room for or no bag is packed so far; TMPDIR names another folder");
+        fail("the unpacked bag has more than " + std::to_string(most) + " bytes; " + to.parent_path().string() +
+             " lacks the space, or the file is not a packed bag; set TMPDIR to another folder");
       unpacked.write(given.data(), static_cast<std::streamsize>(out.pos));
       full = out.pos == out.size;
     }
@@ -103,7 +103,8 @@ class UnpackedMessages : public BagReader {
     const std::string where = place_ + ": message " + std::to_string(number) + " of " + topic + ": ";
     const unsigned long long size = ZSTD_getFrameContentSize(bytes.data(), bytes.size());
     if (size == ZSTD_CONTENTSIZE_ERROR || size == ZSTD_CONTENTSIZE_UNKNOWN || size > most_of(bytes.size()))
-      throw BadInput(where + "is no Zstandard frame that states a size of 64 MiB and 200 times its own at most");
+      throw BadInput(where +
+                     "is not a Zstandard frame with a stated size of at most 64 MiB and 200 times its packed size");
     try {
       const std::string plain = unpacked_zstd({reinterpret_cast<const char*>(bytes.data()), bytes.size()}, size);
       return {plain.begin(), plain.end()};

@@ -253,8 +253,8 @@ class Ros1BagReader : public BagReader {
   void require_room(const std::filesystem::path& folder) const {
     const std::uint64_t needed = bytes_unpacked(file_), free = std::filesystem::space(folder).available;
     if (needed <= free) return;
-    throw BadInput(file_.string() + ": its LZ4 chunks unpack to a bag of " + std::to_string(needed) + " bytes, and " +
-                   folder.string() + " has " + std::to_string(free) + " free; TMPDIR names another folder");
+    throw BadInput(file_.string() + ": its unpacked LZ4 chunks need " + std::to_string(needed) + " bytes, but " +
+                   folder.string() + " has only " + std::to_string(free) + " bytes free; set TMPDIR to another folder");
   }
 
   void open(const std::filesystem::path& file) {

@@ -36,14 +36,14 @@ class Walk {
 
   void all() {
     if (bytes_ < kMagic.size() || text(0, kMagic.size()) != kMagic)
-      fail(0, "does not begin with '#ROSBAG V2.0': no ROS 1 bag of version 2.0");
+      fail(0, "does not begin with '#ROSBAG V2.0': not a ROS 1 bag of version 2.0");
     std::uint64_t at = kMagic.size();
     const CheckedRecord file = record(at, bytes_);
-    if (op(file) != ros1::kFile) fail(at, "the first record is no bag header");
+    if (op(file) != ros1::kFile) fail(at, "the first record is not a bag header");
     if (number<std::uint64_t>(file, "index_pos") == 0)
-      fail(at, "the bag was not closed: it has no index ('rosbag reindex' makes one)");
+      fail(at, "the bag was not closed: it has no index (create one with 'rosbag reindex')");
     const std::uint64_t index_at = number<std::uint64_t>(file, "index_pos");
-    if (index_at >= bytes_) fail(at, "the index lies beyond the end: truncated?");
+    if (index_at >= bytes_) fail(at, "the index is beyond the end of the file; the bag may be truncated");
     bool indexed = false;
     for (at = file.end(); at < bytes_;) {
       const CheckedRecord next = record(at, bytes_);
@@ -51,10 +51,10 @@ class Walk {
       step(next);
       at = next.end();
     }
-    if (!indexed) fail(index_at, "here the index should begin, and no record does");
+    if (!indexed) fail(index_at, "there is no record at the stated start of the index");
     for (const auto& [info_at, chunk_at] : infos_) {
       if (!chunks_.contains(chunk_at))
-        fail(info_at, "names a chunk at " + std::to_string(chunk_at) + ": there is none");
+        fail(info_at, "refers to a chunk at byte " + std::to_string(chunk_at) + ", which does not exist");
     }
   }
 
@@ -73,13 +73,14 @@ class Walk {
 
   /// The length that stands at `at`, of something that must end before `end`.
   std::uint32_t length(std::uint64_t at, std::uint64_t end, const char* what, std::uint32_t most) {
-    if (end - at < sizeof(std::uint32_t)) fail(at, std::string("ends in the length of ") + what + ": truncated?");
+    if (end - at < sizeof(std::uint32_t))
+      fail(at, std::string("the file ends within the length of ") + what + "; the bag may be truncated");
     std::uint32_t value = 0;
     std::memcpy(&value, text(at, sizeof(value)).data(), sizeof(value));
     const std::uint64_t left = end - at - sizeof(value);
     if (value > left || value > most) {
-      fail(at, std::string(what) + " of " + std::to_string(value) + " bytes, must be at most " +
-                   std::to_string(std::min<std::uint64_t>(left, most)) + ": damaged or truncated");
+      fail(at, std::string(what) + " has " + std::to_string(value) + " bytes, must be at most " +
+                   std::to_string(std::min<std::uint64_t>(left, most)) + ": the file is damaged or truncated");
     }
     return value;
   }
@@ -89,9 +90,9 @@ class Walk {
     std::map<std::string, std::string> out;
     for (std::size_t place = 0; place < bytes.size();) {
       std::uint32_t size = 0;
-      if (bytes.size() - place < 4) fail(at, "a field of the record's header is cut");
+      if (bytes.size() - place < 4) fail(at, "a field of the record's header is truncated");
       std::memcpy(&size, bytes.data() + place, 4);
-      if (size > bytes.size() - place - 4) fail(at, "a field of the record's header is cut");
+      if (size > bytes.size() - place - 4) fail(at, "a field of the record's header is truncated");
       const std::string field = bytes.substr(place + 4, size);
       const std::size_t equals = field.find('=');
       if (equals == std::string::npos) fail(at, "a field of the record's header has no '='");
@@ -142,14 +143,14 @@ class Walk {
         entries(record, 8);
         break;
       default:
-        fail(record.at, "a record of kind " + std::to_string(op(record)) + " has no place here");
+        fail(record.at, "a record of kind " + std::to_string(op(record)) + " is not allowed here");
     }
   }
 
   void connection(const CheckedRecord& record) {
     connections_.insert(number<std::uint32_t>(record, "conn"));
-    if (!record.fields.contains("topic")) fail(record.at, "a connection without topic");
-    if (record.data_bytes > kRecordHeaderMax) fail(record.at, "a connection of more than a MiB");
+    if (!record.fields.contains("topic")) fail(record.at, "a connection has no topic");
+    if (record.data_bytes > kRecordHeaderMax) fail(record.at, "a connection record is larger than 1 MiB");
     fields(record.at, text(record.data_at, record.data_bytes));  // what it says of its type is a header too
   }
 
@@ -160,13 +161,13 @@ class Walk {
     chunks_.insert(record.at);
     messages_.reset();
     chunk_bytes_ = size;
-    if (size > kChunkMax) fail(record.at, "a chunk of " + std::to_string(size) + " bytes, at most 1 GiB is read");
+    if (size > kChunkMax) fail(record.at, "a chunk of " + std::to_string(size) + " bytes; at most 1 GiB can be read");
     if (compression == "bz2" || compression == "lz4") return;
     if (compression != "none")
-      fail(record.at, "a chunk of compression '" + compression + "': none, bz2 or lz4 are read");
+      fail(record.at, "a chunk of compression '" + compression + "' is not supported; supported: none, bz2 and lz4");
     if (size != record.data_bytes) {
       fail(record.at,
-           "a plain chunk of " + std::to_string(record.data_bytes) + " bytes says that it has " + std::to_string(size));
+           "a plain chunk of " + std::to_string(record.data_bytes) + " bytes states a size of " + std::to_string(size));
     }
     messages_.emplace();
     for (std::uint64_t at = record.data_at; at < record.end();) {
@@ -176,13 +177,14 @@ class Walk {
       else if (op(inner) == ros1::kMessage)
         message(inner, at - record.data_at);
       else
-        fail(at, "a record of kind " + std::to_string(op(inner)) + " has no place in a chunk");
+        fail(at, "a record of kind " + std::to_string(op(inner)) + " is not allowed in a chunk");
       at = inner.end();
     }
   }
 
   void message(const CheckedRecord& record, std::uint64_t offset) {
-    if (!connections_.contains(number<std::uint32_t>(record, "conn"))) fail(record.at, "a message of no connection");
+    if (!connections_.contains(number<std::uint32_t>(record, "conn")))
+      fail(record.at, "a message belongs to no connection");
     number<std::uint64_t>(record, "time");
     messages_->insert(offset);
   }
@@ -190,8 +192,8 @@ class Walk {
   std::uint32_t entries(const CheckedRecord& record, std::uint32_t each) const {
     const std::uint32_t count = number<std::uint32_t>(record, "count");
     if (std::uint64_t{count} * each != record.data_bytes) {
-      fail(record.at, "promises " + std::to_string(count) + " entries of " + std::to_string(each) + " bytes in " +
-                          std::to_string(record.data_bytes));
+      fail(record.at, "states " + std::to_string(count) + " entries of " + std::to_string(each) +
+                          " bytes, but its size in bytes is " + std::to_string(record.data_bytes));
     }
     return count;
   }
@@ -199,7 +201,7 @@ class Walk {
   /// Offsets of messages in the chunk before.
   void index(const CheckedRecord& record) {
     constexpr std::uint32_t kEntry = 12, kPlace = 8;
-    if (chunks_.empty()) fail(record.at, "an index before any chunk");
+    if (chunks_.empty()) fail(record.at, "an index comes before any chunk");
     const std::uint32_t count = entries(record, kEntry);
     const std::string bytes = text(record.data_at, record.data_bytes);
     for (std::uint32_t i = 0; i < count; ++i) {
@@ -207,7 +209,7 @@ class Walk {
       std::memcpy(&offset, bytes.data() + i * kEntry + kPlace, sizeof(offset));
       if (messages_ ? messages_->contains(offset) : offset < chunk_bytes_) continue;
       fail(record.at, "entry " + std::to_string(i) + " of the index points to " + std::to_string(offset) +
-                          " in its chunk, where no message begins");
+                          " in its chunk, where no message starts");
     }
   }
 

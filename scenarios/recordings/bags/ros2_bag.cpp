@@ -161,8 +161,8 @@ std::string packed_by(const YAML::Node& root, const path& metadata) {
   const std::string format = text("compression_format"), mode = text("compression_mode");
   if (format.empty() || mode == "none") return "";
   if (format != "zstd" || (mode != "file" && mode != "message"))
-    fail_at(metadata, "the bag is compressed by '" + format + "' in mode '" + mode +
-                          "', must be zstd in mode file or message ('ros2 bag convert' makes a plain one)");
+    fail_at(metadata, "the bag has the compression format '" + format + "' and mode '" + mode +
+                          "'; supported: zstd with mode file or message (convert it with 'ros2 bag convert')");
   return mode;
 }
 
@@ -173,7 +173,7 @@ StoredBag storage_of(const path& bag) {
     return {name.extension() == ".mcap" ? "mcap" : "sqlite3", {bag}, packed ? "file" : ""};
   }
   const path metadata = bag / "metadata.yaml";
-  if (!std::filesystem::is_regular_file(metadata)) fail_at(bag, "holds no metadata.yaml: no ROS 2 bag");
+  if (!std::filesystem::is_regular_file(metadata)) fail_at(bag, "has no metadata.yaml: not a ROS 2 bag");
   StoredBag out;
   try {
     const YAML::Node root = YAML::LoadFile(metadata.string())["rosbag2_bagfile_information"];
@@ -188,9 +188,9 @@ StoredBag storage_of(const path& bag) {
   } catch (const YAML::Exception& error) {
     std::string what = error.what();
     std::replace(what.begin(), what.end(), '\n', ' ');
-    fail_at(metadata, "no metadata of a ROS 2 bag: " + what);
+    fail_at(metadata, "not the metadata of a ROS 2 bag: " + what);
   }
-  if (out.files.empty()) fail_at(metadata, "relative_file_paths names no file");
+  if (out.files.empty()) fail_at(metadata, "relative_file_paths lists no file");
   return out;
 }
 
@@ -207,7 +207,8 @@ class Ros2BagReader : public BagReader {
       while (query.executeStep()) {
         const std::string format = query.getColumn(2).getString();
         const BagTopic topic = {query.getColumn(0).getString(), ros1_type(query.getColumn(1).getString())};
-        if (format != "cdr") fail_at(file, "topic " + topic.name + " is serialized as '" + format + "', must be cdr");
+        if (format != "cdr")
+          fail_at(file, "topic " + topic.name + " has the serialization format '" + format + "', must be cdr");
         const auto same = [&](const BagTopic& each) { return each.name == topic.name; };
         if (std::none_of(topics.begin(), topics.end(), same)) topics.push_back(topic);
       }

@@ -31,11 +31,11 @@ void SensorPlaces::place(const std::string& topic, const std::string& frame, con
   } else if (!is_given(T_BA)) {
     if (const Placed* beside = neighbour(frame); beside != nullptr) {
       T_BA = beside->T_BA * *frames_.pose(beside->frame, frame, where_);
-      notes.push_back(topic + ": placed beside " + beside->topic + " by /tf_static, which has no frame 'body' or " +
+      notes.push_back(topic + ": placed next to " + beside->topic + " by /tf_static, which has no frame 'body' or " +
                       "'base_link', at " + pose_text(T_BA));
     } else {
       notes.push_back(topic + ": neither /tf_static nor " + option +
-                      " says where it is on the body: taken to lie in its centre of mass, along its axes");
+                      " gives its pose on the body; assumed at the centre of mass, along the body's axes");
     }
   }
   placed_.push_back({topic, frame, T_BA});
@@ -50,7 +50,7 @@ void SensorPlaces::place_in_body(const std::string& topic, const Eigen::Isometry
     notes.push_back(topic + ": placed in '" + body + "' by /tf_static, " + pose_text(stated));
   } else if (!(T_BA.matrix() - stated.matrix()).isZero(kSame)) {
     notes.push_back(topic + ": caution: /tf_static places it in '" + body + "' at " + pose_text(stated) +
-                    ", but given was " + pose_text(T_BA) + ", which holds");
+                    ", but the given pose is " + pose_text(T_BA) + "; the given pose is used");
   }
 }
 

@@ -125,9 +125,7 @@ ros::LivoxCustomMsg livox_of(const sim::LidarRecord& lidar, const std::vector<st
                              std::int64_t start_ns, const ros::Header& header) {
   constexpr double kFull = 255.0;
   if (!has_timed_points(lidar)) {
-    throw BadInput("the points of '" + lidar.name +
-                   "' have no times of their own: a CustomMsg has one for each, and a made-up one would pass for "
-                   "measured");
+    throw BadInput("the points of '" + lidar.name + "' have no time stamps; a CustomMsg needs measured time stamps");
   }
   ros::LivoxCustomMsg out;
   out.header = header;
@@ -136,13 +134,13 @@ ros::LivoxCustomMsg livox_of(const sim::LidarRecord& lidar, const std::vector<st
   out.points.reserve(points.size());
   for (const std::size_t k : points) {
     if (lidar.ring[k] > std::numeric_limits<std::uint8_t>::max()) {
-      throw BadInput("a point of '" + lidar.name + "' is of ring " + std::to_string(lidar.ring[k]) +
-                     ": a CustomMsg has lines 0 to 255");
+      throw BadInput("a point of '" + lidar.name + "' has ring " + std::to_string(lidar.ring[k]) +
+                     "; a CustomMsg stores lines 0 to 255 only");
     }
     const Eigen::Vector3f& p = lidar.position_L_m[k];
     if (!p.allFinite() || !std::isfinite(lidar.intensity[k])) {
       throw BadInput("point " + std::to_string(k) + " of '" + lidar.name +
-                     "' is not finite: a CustomMsg has no word for a return that is none");
+                     "' is not finite; a CustomMsg cannot store a missing return");
     }
     // tag 0: a single return, in which the device has full confidence
     out.points.push_back({lidar.offset_ns[k], p.x(), p.y(), p.z(), as<std::uint8_t>(lidar.intensity[k] * kFull), 0,

@@ -102,7 +102,7 @@ void require_numbers(const std::filesystem::path& path, const CloudHeader& heade
       const std::size_t end = std::min(line.find_first_of(" \t\r", begin), line.size());
       if (!is_number_of_pcl(std::string_view(line).substr(begin, end - begin))) {
         throw BadInput(path.string() + ":" + std::to_string(number) + ": word " + std::to_string(words + 1) +
-                       " is no number (decimals are written with a point)");
+                       " is not a number (use a decimal point)");
       }
       ++words;
       begin = end;
@@ -124,7 +124,8 @@ Cloud read_points(const std::filesystem::path& path, const CloudHeader& header, 
   const std::size_t found = std::size_t{cloud.width} * cloud.height;
   if (!read || found != header.points || cloud.data.size() < found * cloud.point_step) {
     throw BadInput(path.string() + ": cannot be read as " + (format == PclFormat::ply ? "PLY" : "PCD") +
-                   " after its header of " + std::to_string(header.header_bytes) + " bytes: damaged or truncated");
+                   " after its header of " + std::to_string(header.header_bytes) +
+                   " bytes: the file is damaged or truncated");
   }
   Cloud out = to_columns(cloud, found);
   out.viewpoint = header.viewpoint;
@@ -137,7 +138,7 @@ Cloud read_kitti(const std::filesystem::path& path) {
   constexpr std::uint64_t kPointBytes = kKittiColumns * sizeof(float);
   if (bytes % kPointBytes != 0) {
     throw BadInput(path.string() + ": has " + std::to_string(bytes) +
-                   " bytes, must be a multiple of 16 (float32 x y z intensity): truncated?");
+                   " bytes; the size must be a multiple of 16 (float32 x y z intensity), so the file may be truncated");
   }
   std::vector<float> numbers(bytes / sizeof(float));
   stream.read(reinterpret_cast<char*>(numbers.data()), static_cast<std::streamsize>(bytes));
@@ -163,7 +164,7 @@ Cloud read_cloud(const std::filesystem::path& path) {
   if (ending == ".pcd") return read_points(path, read_pcd_header(path), PclFormat::pcd);
   if (ending == ".bin") return read_kitti(path);
   if (ending == ".vtk") return read_vtk(path);
-  throw BadInput(path.string() + ": must end in .ply, .pcd, .vtk or .bin");
+  throw BadInput(path.string() + ": the file name must end in .ply, .pcd, .vtk or .bin");
 }
 
 }  // namespace tumble::scenarios

@@ -15,7 +15,7 @@ using std::filesystem::path;
 std::string ending_of(const std::string& format) {
   if (format == "ply" || format == "pcd" || format == "vtk") return "." + format;
   if (format == "kitti") return ".bin";
-  throw BadInput("sweeps of format '" + format + "' are not read: ply, pcd, vtk or kitti");
+  throw BadInput("the sweep format '" + format + "' is not supported; supported: ply, pcd, vtk and kitti");
 }
 
 /// The file of stamps that is asked for, or lies beside the sweeps; empty when there is none.
@@ -33,7 +33,7 @@ std::vector<std::int64_t> stamps_of(const SweepSource& source, const std::vector
   if (file.empty()) return stamps_in_names(files);
   std::vector<std::int64_t> stamps = read_stamps(file);
   if (stamps.size() != files.size()) {
-    throw BadInput(file.string() + ": holds " + std::to_string(stamps.size()) + " stamps, there are " +
+    throw BadInput(file.string() + ": holds " + std::to_string(stamps.size()) + " time stamps, but there are " +
                    std::to_string(files.size()) + " sweeps in " + source.folder.string() + "; must be equal");
   }
   return stamps;
@@ -55,7 +55,7 @@ Imported import_sweeps(const SweepSource& source) {
   if (stamps.empty() && source.steady_ns > 0) {
     stamps = steady_stamps(files.size(), source.steady_ns);
     reading.assumed = true;
-    out.notes.push_back("nothing tells the times of the sweeps but the period given");
+    out.notes.push_back("the sweeps have no time stamps; their times follow from the given period only");
   }
   const std::int64_t given_ns = reading.device.sweep_period_ns;
   SweepBuilder builder(std::move(reading), given_ns > 0 ? given_ns : median_step_ns(stamps));
@@ -65,7 +65,7 @@ Imported import_sweeps(const SweepSource& source) {
   }
   add_lidar(out, builder.finish(source.folder.string(), out.notes));
   out.info.attribution = "imported from " + source.folder.filename().string() + ", " + std::to_string(files.size()) +
-                         " sweeps of format " + source.format;
+                         " sweeps in format " + source.format;
   start_clock(out);
   return out;
 }

@@ -54,15 +54,15 @@ std::string choose_field(const Cloud& cloud, const SweepReading& reading, const 
     std::string all;
     for (const std::string& name : cloud.names) all += " " + name;
     const std::string near = sim::nearest_name(reading.time_field, cloud.names);
-    throw BadInput(where + ": no field '" + reading.time_field + "'" +
-                   (near.empty() ? "" : "; did you mean '" + near + "'?") + " (there are:" + all + ")");
+    throw BadInput(where + ": there is no field '" + reading.time_field + "'" +
+                   (near.empty() ? "" : "; did you mean '" + near + "'?") + " (existing fields:" + all + ")");
   }
   std::string found;
   for (const std::string& name : cloud.names) {
     if (!is_time(name)) continue;
     const bool states = unit_of_name(lower(name)) != nullptr, stated = unit_of_name(lower(found)) != nullptr;
     if (!found.empty() && states == stated)
-      throw BadInput(where + ": the fields '" + found + "' and '" + name + "' may both be times; say which");
+      throw BadInput(where + ": the fields '" + found + "' and '" + name + "' may both be point times; select one");
     if (found.empty() || states) found = name;  // of two the one whose name tells its unit
   }
   return found;
@@ -86,7 +86,7 @@ bool fits(double span, const TimeUnit& unit, double period_ns) {
 }
 
 std::string share_of(double span, const TimeUnit& unit, double period_ns) {
-  std::string text = std::string("in ") + unit.name + " that is ";
+  std::string text = std::string("in ") + unit.name + " this is ";
   append_number(text, static_cast<float>(100.0 * span * unit.ns / period_ns));
   return text + " % of the sweep period";
 }
@@ -98,10 +98,10 @@ void require_no_other_unit(const TimeUnit& stated, double span, double period_ns
   const auto* read =
       std::find_if(kUnits.begin(), kUnits.end(), [&](const TimeUnit& each) { return fits(span, each, period_ns); });
   if (read == kUnits.end()) return;
-  std::string line = where + ": the field '" + field + "' is stated to be in " + stated.name + " and spans ";
+  std::string line = where + ": the field '" + field + "' has the stated unit " + stated.name + " and a range of ";
   append_number(line, span);
   throw BadInput(line + " in a sweep: " + share_of(span, stated, period_ns) + ", " + share_of(span, *read, period_ns) +
-                 "; which is it?");
+                 "; check which unit is right");
 }
 
 /// The unit by the size of the numbers.
@@ -112,17 +112,17 @@ double unit_by_size(double span, double largest, double period_ns, const std::st
     if (!(period_ns > 0.0) && largest >= kEpochMin_s * 1e9 / unit.ns && largest < kEpochMin_s * 1e12 / unit.ns)
       return unit.ns;
   }
-  std::string line = where + ": the field '" + field + "' spans ";
+  std::string line = where + ": the field '" + field + "' has a range of ";
   append_number(line, span);
   line += " in a sweep";
   if (!(period_ns > 0.0)) {
-    throw BadInput(line +
-                   ", which no stamps since the epoch do: give the times of the sweeps, or the length of a single " +
-                   "one (--sweep-period)");
+    throw BadInput(
+        line + ", which does not match time stamps since 1970: give the times of the sweeps, or the duration of one " +
+        "sweep (--sweep-period)");
   }
-  line += ": in none of s, ms, us, ns is that 2 to 150 % of the sweep period of ";
+  line += ": in none of s, ms, us and ns is this 2 to 150 % of the sweep period of ";
   append_number(line, period_ns * 1e-6);
-  throw BadInput(line + " ms; say its unit");
+  throw BadInput(line + " ms; give the unit");
 }
 
 }  // namespace
@@ -148,7 +148,7 @@ PointTimeRule find_point_times(const std::vector<Cloud>& first, std::int64_t per
       std::find_if(kUnits.begin(), kUnits.end(), [&](const TimeUnit& each) { return unit == each.name; });
   const double span = upper_median(spans), period = static_cast<double>(period_ns);
   if (!unit.empty() && named == kUnits.end())
-    throw BadInput("the unit of times is '" + unit + "', must be s, ms, us or ns");
+    throw BadInput("the unit of point times is '" + unit + "', must be s, ms, us or ns");
   if (unit.empty()) named = unit_of_name(lower(rule.field));
   if (named != nullptr && named != kUnits.end() && upper_median(points) >= kPointsThatSpan)
     require_no_other_unit(*named, span, period, rule.field, where);

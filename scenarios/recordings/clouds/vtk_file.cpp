@@ -48,14 +48,14 @@ class VtkWords {
   /// The next word where one must stand.
   std::string_view need(const char* what) {
     const std::string_view word = next();
-    if (word.empty()) fail(std::string("ends before ") + what + ": truncated?");
+    if (word.empty()) fail(std::string("the file ends before ") + what + "; it may be truncated");
     return word;
   }
 
   std::uint64_t whole(const char* what) {
     const std::string_view word = need(what);
     std::uint64_t value = 0;
-    if (!read_number(word, value)) fail(std::string(what) + " is '" + shortened(word) + "', no whole number");
+    if (!read_number(word, value)) fail(std::string(what) + " is '" + shortened(word) + "'; it must be a whole number");
     return value;
   }
 
@@ -65,7 +65,7 @@ class VtkWords {
     if (word.starts_with('+')) word.remove_prefix(1);
     double value = 0.0;
     if (!read_number(word, value))
-      fail("'" + shortened(word) + "' is no number that a double holds, decimals behind a point");
+      fail("'" + shortened(word) + "' is not a number that fits a double (use a decimal point)");
     return value;
   }
 
@@ -82,17 +82,17 @@ class VtkWords {
 /// Holds so many numbers against what is left of the file, before anything is allocated for them.
 void require_room(const VtkWords& words, std::uint64_t count, std::uint64_t each) {
   if (count > kCloudPointsMax) {
-    words.fail("promises " + std::to_string(count) + " points, at most " + std::to_string(kCloudPointsMax) +
-               " are read from a file");
+    words.fail("states " + std::to_string(count) + " points; at most " + std::to_string(kCloudPointsMax) +
+               " can be read from a file");
   }
   if (count * each * 2 > words.left() + 1) {
-    words.fail("promises " + std::to_string(count) + " times " + std::to_string(each) + " numbers, but " +
-               std::to_string(words.left()) + " bytes follow: truncated?");
+    words.fail("states " + std::to_string(count) + " times " + std::to_string(each) + " numbers, but " +
+               std::to_string(words.left()) + " bytes follow; the file may be truncated");
   }
 }
 
 void read_points(VtkWords& words, Cloud& cloud) {
-  if (!cloud.names.empty()) words.fail("POINTS stands twice");
+  if (!cloud.names.empty()) words.fail("POINTS occurs twice");
   cloud.points = words.whole("the number of points");
   words.need("the points' type");
   require_room(words, cloud.points, 3);
@@ -122,13 +122,14 @@ void read_scalars(VtkWords& words, Cloud& cloud) {
   std::string_view word = words.need("LOOKUP_TABLE");
   if (word != "LOOKUP_TABLE") {
     if (!read_number(word, each) || each < 1 || each > 4)
-      words.fail("scalars '" + shortened(name) + "' of '" + shortened(word) + "' numbers a point, must be 1 to 4");
+      words.fail("scalars '" + shortened(name) + "' of '" + shortened(word) +
+                 "' numbers per point; there must be 1 to 4");
     word = words.need("LOOKUP_TABLE");
   }
-  if (word != "LOOKUP_TABLE") words.fail("'" + shortened(word) + "' in the place of LOOKUP_TABLE");
+  if (word != "LOOKUP_TABLE") words.fail("'" + shortened(word) + "' instead of LOOKUP_TABLE");
   words.need("the name of the lookup table");
   if (each != 1) return pass_over(words, cloud.points, each);
-  if (cloud.find(name) != nullptr) words.fail("scalars '" + shortened(name) + "' stand twice");
+  if (cloud.find(name) != nullptr) words.fail("scalars '" + shortened(name) + "' occur twice");
   require_room(words, cloud.points, 1);
   std::vector<double> column(cloud.points);
   for (double& value : column) value = words.number();
@@ -149,13 +150,13 @@ void pass_data(VtkWords& words, const Cloud& cloud, std::string_view section) {
 }
 
 void read_header(VtkWords& words) {
-  if (!words.line().starts_with("# vtk DataFile Version")) words.fail("begins as no VTK file does");
+  if (!words.line().starts_with("# vtk DataFile Version")) words.fail("does not begin as a VTK file");
   words.line();  // a title
   const std::string_view encoding = words.need("ASCII");
-  if (encoding == "BINARY") words.fail("is binary: VTK files are read as text (ASCII) alone");
-  if (encoding != "ASCII") words.fail("'" + shortened(encoding) + "' in the place of ASCII");
+  if (encoding == "BINARY") words.fail("is a binary file; only text (ASCII) VTK files are supported");
+  if (encoding != "ASCII") words.fail("'" + shortened(encoding) + "' instead of ASCII");
   if (words.need("DATASET") != "DATASET" || words.need("POLYDATA") != "POLYDATA")
-    words.fail("holds no POLYDATA, which clouds are");
+    words.fail("has no POLYDATA dataset; point clouds need one");
 }
 
 }  // namespace
@@ -173,7 +174,8 @@ Cloud read_vtk(const std::filesystem::path& path) {
     } else if (section == "POINT_DATA") {
       const std::uint64_t points = words.whole("the number of point data");
       if (points != cloud.points)
-        words.fail("POINT_DATA of " + std::to_string(points) + " points, POINTS has " + std::to_string(cloud.points));
+        words.fail("POINT_DATA has " + std::to_string(points) + " points, but POINTS has " +
+                   std::to_string(cloud.points));
       of_points = true;
     } else if (of_points && section == "SCALARS") {
       read_scalars(words, cloud);
@@ -181,10 +183,10 @@ Cloud read_vtk(const std::filesystem::path& path) {
                (section == "NORMALS" || section == "VECTORS" || section == "TENSORS" || section == "COLOR_SCALARS")) {
       pass_data(words, cloud, section);
     } else {
-      words.fail("section '" + shortened(section) + "' is not read there");
+      words.fail("section '" + shortened(section) + "' is not supported at this position");
     }
   }
-  if (cloud.names.empty()) words.fail("holds no POINTS");
+  if (cloud.names.empty()) words.fail("has no POINTS section");
   return cloud;
 }
 

@@ -26,8 +26,8 @@ const Dialect& dialect_of(const std::string& peer) {
     known += " " + dialect.name;
   }
   const std::string near = sim::nearest_name(peer, peer_dialects());
-  throw BadInput("unknown peer '" + peer + "'" + (near.empty() ? "" : "; did you mean '" + near + "'?") +
-                 " (known:" + known + ")");
+  throw BadInput("unknown export target '" + peer + "'" + (near.empty() ? "" : "; did you mean '" + near + "'?") +
+                 " (known targets:" + known + ")");
 }
 
 /// Where a lidar's range comes from numbers that are none, so does a configuration.
@@ -38,18 +38,20 @@ void require_finite(const sim::LidarRecord& lidar, const PointStore& aside) {
       if (sweep.position_L_m[k].allFinite() && std::isfinite(sweep.range_m[k]) && std::isfinite(sweep.intensity[k]))
         continue;
       throw BadInput("point " + std::to_string(lidar.sweep_first[number] + k) + " of '" + lidar.name +
-                     "' is not finite in place, range or intensity");
+                     "' has a position, range or intensity that is not finite");
     }
   }
 }
 
 void require_fitting(const Dialect& dialect, const sim::Sensors& sensors, const std::vector<PointStore>& points,
                      const SensorFacts& facts) {
-  const auto refuse = [&](const std::string& what) { throw BadInput(what + ", which " + dialect.name + " reads"); };
-  if (!facts.lidar || facts.lidar->points == 0) refuse("the recording holds no return of a lidar");
-  if (dialect.needs_imu && (!facts.imu || facts.imu->samples == 0)) refuse("the recording holds no reading of an IMU");
+  const auto refuse = [&](const std::string& what) {
+    throw BadInput(what + "; " + dialect.name + " cannot read such a recording");
+  };
+  if (!facts.lidar || facts.lidar->points == 0) refuse("the recording has no lidar return");
+  if (dialect.needs_imu && (!facts.imu || facts.imu->samples == 0)) refuse("the recording has no IMU reading");
   if (dialect.needs_times && !facts.lidar->timed)
-    refuse("the points of '" + sensors.lidars.front().name + "' have no times of their own");
+    refuse("the points of '" + sensors.lidars.front().name + "' have no time stamps");
   if (dialect.needs_rings && facts.lidar->livox)
     refuse("the lidar '" + facts.lidar->device + "' does not scan in rings");
   require_finite(sensors.lidars.front(), points.front());
@@ -69,7 +71,7 @@ std::vector<std::string> leave_out_empty_sweeps(Dialect& dialect, LidarFacts& li
   if (dialect.takes_empty || empty == 0) return {};
   lidar.sweeps -= empty;
   const std::string note = std::to_string(empty) + (empty == 1 ? " sweep" : " sweeps") +
-                           " without a point left out: " + dialect.name + " cannot take an empty cloud";
+                           " without points are left out: " + dialect.name + " cannot read an empty cloud";
   dialect.notes.push_back(note);
   return {note};
 }

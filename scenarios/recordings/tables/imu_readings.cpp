@@ -39,14 +39,13 @@ void require_plausible_force(const std::string& where, const sim::ImuRecord& imu
   const char* read_as = unit == AccelUnit::g ? "g" : "m/s^2";
   const std::string likely = likely_force_unit(middle, unit);
   const bool known = likely == "g" || likely == "m/s^2";
-  throw BadInput(where + ": read in " + read_as + " the median specific force is " + std::to_string(middle) +
-                 " m/s^2, must be within 3 and 30: is the file in " + likely + "?" +
-                 (known ? " ('--accel-unit " + likely + "' takes it so)" : "") +
-                 (middle < kLeastMedian_m_s2 ? " Or was gravity taken out of it?" : ""));
+  throw BadInput(where + ": read in " + read_as + ", the median specific force is " + std::to_string(middle) +
+                 " m/s^2; it must be within 3 and 30. The file may be in " + likely +
+                 (known ? " (set '--accel-unit " + likely + "')" : "") +
+                 (middle < kLeastMedian_m_s2 ? ". Or gravity may have been removed" : ""));
 }
 
-constexpr const char *kTakenInDegrees = " ('--gyro-unit deg/s' takes them so)",
-                     *kTakenInRadians = " ('--gyro-unit rad/s' takes them so)";
+constexpr const char *kTakenInDegrees = " (set '--gyro-unit deg/s')", *kTakenInRadians = " (set '--gyro-unit rad/s')";
 
 /// Of either triad [rad/s, m/s^2]: as the estimators bear.
 constexpr double kSensorReadingMax = 1e6;
@@ -62,9 +61,10 @@ constexpr double kLeastPeriod_s = 2e-5, kLargestPeriod_s = 2.0;
 void require_plausible_period(const std::string& where, const sim::ImuRecord& imu) {
   const double period_s = static_cast<double>(imu.period_ns) * 1e-9;
   if (period_s >= kLeastPeriod_s && period_s <= kLargestPeriod_s) return;
-  throw BadInput(where + ": the median step of the stamps is " + rounded(period_s) + " s, must be within " +
-                 rounded(kLeastPeriod_s) + " and " + rounded(kLargestPeriod_s) + ": are the stamps in another unit" +
-                 (period_s > kLargestPeriod_s ? ", in ms or us?" : " than s and ns?"));
+  throw BadInput(where + ": the median time step is " + rounded(period_s) + " s, must be within " +
+                 rounded(kLeastPeriod_s) + " and " + rounded(kLargestPeriod_s) +
+                 ". The time stamps may be in another unit" +
+                 (period_s > kLargestPeriod_s ? ", ms or us" : " than s or ns"));
 }
 
 /// Of a device whose sheet is not known: none that a robot bears reads more.
@@ -89,9 +89,9 @@ void require_rates_in_range(const std::string& where, const sim::ImuRecord& imu,
   const bool as_rad = unit == GyroUnit::rad_s;
   const bool degrees = as_rad && beyond_share(imu, bound, 1.0 / kDegreesPerRadian) <= kBeyondShare;
   throw BadInput(where + ": read in " + (as_rad ? "rad/s " : "deg/s ") + rounded(100.0 * share) +
-                 " % of the rates lie beyond " + rounded(bound) + " rad/s, " +
-                 (stated ? "twice the range that the device's sheet states" : "more than any robot turns") +
-                 "; must be at most 1 %: are the rates in " + (degrees ? "deg/s" : "raw counts of the sensor") + "?" +
+                 " % of the rates are beyond " + rounded(bound) + " rad/s, " +
+                 (stated ? "twice the stated range of the device" : "more than any robot rotates") +
+                 "; this must be at most 1 %. The rates may be in " + (degrees ? "deg/s" : "raw counts of the sensor") +
                  (degrees ? kTakenInDegrees : ""));
 }
 
@@ -114,9 +114,9 @@ std::string gaps_text(const sim::ImuRecord& imu) {
     if (step_ns(k) > step_ns(longest)) longest = k;
   }
   if (gaps == 0) return "";
-  return "caution: " + std::to_string(gaps) + (gaps == 1 ? " gap" : " gaps") + " beyond a second, the longest " +
+  return "caution: " + std::to_string(gaps) + (gaps == 1 ? " gap" : " gaps") + " of more than 1 s; the longest lasts " +
          rounded(1e-9 * static_cast<double>(step_ns(longest))) + " s before reading " + std::to_string(longest) +
-         ", of which nothing is known";
+         ". No data exist in these gaps";
 }
 
 GravityRotation gravity_rotation(const sim::ImuRecord& imu, RotationWindows windows) {
@@ -179,8 +179,8 @@ GravityRotation telling_rotation(const sim::ImuRecord& imu) {
 
 /// Why the motion does not tell.
 std::string untold_text(const GravityRotation& turn) {
-  if (turn.windows < kLeastWindows) return "gravity turns too little in the accelerometer to show them";
-  return "the force turns in the accelerometer, but too little as the gyro says to show them (" +
+  if (turn.windows < kLeastWindows) return "gravity's rotation in the accelerometer is too small to check them";
+  return "the force rotates in the accelerometer, but agrees too little with the gyro to check them (" +
          std::to_string(turn.windows) + " windows, correlation " + rounded(turn.correlation) + ")";
 }
 
@@ -193,27 +193,28 @@ std::string require_plausible_rates(const std::string& where, const sim::ImuReco
       std::all_of(imu.gyro_rad_s.begin(), imu.gyro_rad_s.end(), [](const auto& w) { return w.isZero(0.0); });
   if (dead) {
     return "caution: the gyro reads 0 on all axes in all " + std::to_string(imu.gyro_rad_s.size()) +
-           " samples: is it dead, or not in what was recorded?";
+           " samples; it may be defective or not recorded";
   }
   if (!tells_rotation(turn)) return "";
-  const std::string seen = "gravity turns in the accelerometer " + rounded(turn.ratio) + " times as the gyro says (" +
-                           std::to_string(turn.windows) + " windows, correlation " + rounded(turn.correlation) + ")";
+  const std::string seen = "gravity's rotation in the accelerometer is " + rounded(turn.ratio) +
+                           " times the gyro's rotation (" + std::to_string(turn.windows) + " windows, correlation " +
+                           rounded(turn.correlation) + ")";
   const bool as_deg = unit == GyroUnit::deg_s;
   if (!as_deg && near_factor(turn.ratio, 1.0 / kDegreesPerRadian))
-    throw BadInput(where + ": read in rad/s, " + seen + ", must be within 0.5 and 2: are the rates in deg/s?" +
-                   kTakenInDegrees);
+    throw BadInput(where + ": read in rad/s, " + seen +
+                   "; the ratio must be within 0.5 and 2. The rates may be in deg/s" + kTakenInDegrees);
   if (as_deg && near_factor(turn.ratio, kDegreesPerRadian))
-    throw BadInput(where + ": read in deg/s, " + seen + ", must be within 0.5 and 2: are the rates in rad/s?" +
-                   kTakenInRadians);
+    throw BadInput(where + ": read in deg/s, " + seen +
+                   "; the ratio must be within 0.5 and 2. The rates may be in rad/s" + kTakenInRadians);
   if (near_factor(turn.ratio, 1.0)) return seen + ": units and axes agree";
-  return "caution: " + seen + ", and should once: another unit, sign or order of the axes?";
+  return "caution: " + seen + "; the ratio should be 1. Check the unit, the signs and the order of the axes";
 }
 
 std::string rates_text(const std::string& where, const sim::ImuRecord& imu, GyroUnit unit) {
   const std::string told = require_plausible_rates(where, imu, unit);
   if (!told.empty()) return told;
-  return std::string("rates taken in ") + (unit == GyroUnit::deg_s ? "deg/s" : "rad/s") +
-         ", senses and axes as they are: " + untold_text(telling_rotation(imu));
+  return std::string("rates are read in ") + (unit == GyroUnit::deg_s ? "deg/s" : "rad/s") +
+         ", with unchanged signs and axes: " + untold_text(telling_rotation(imu));
 }
 
 sim::ImuRecord without_readings(sim::ImuRecord device) {
@@ -228,12 +229,13 @@ void add_reading(const std::string& where, std::int64_t stamp_ns, const Eigen::V
   for (const double value : {largest_of_triad(rate_rad_s), largest_of_triad(force_m_s2)}) {
     if (!std::isfinite(value)) throw BadInput(where + ": a reading is not finite");
     if (value > kSensorReadingMax)
-      throw BadInput(where + ": a reading is of size " + rounded(value) + " rad/s or m/s^2, must be at most " +
-                     rounded(kSensorReadingMax) + ": no sensor says that");
+      throw BadInput(where + ": a reading has the magnitude " + rounded(value) + " rad/s or m/s^2, must be at most " +
+                     rounded(kSensorReadingMax) + ", the limit of any sensor");
   }
   if (!imu.time_ns.empty() && stamp_ns <= imu.time_ns.back()) {
-    throw BadInput(where + ": stamp does not rise: " + std::to_string(stamp_ns - imu.time_ns.front()) +
-                   " ns after the first, the one before " + std::to_string(imu.time_ns.back() - imu.time_ns.front()));
+    throw BadInput(where + ": the time stamp does not increase: " + std::to_string(stamp_ns - imu.time_ns.front()) +
+                   " ns after the first; the previous one is at " +
+                   std::to_string(imu.time_ns.back() - imu.time_ns.front()));
   }
   imu.time_ns.push_back(stamp_ns);
   imu.gyro_rad_s.push_back(rate_rad_s);
@@ -243,7 +245,7 @@ void add_reading(const std::string& where, std::int64_t stamp_ns, const Eigen::V
 
 void finish_readings(const std::string& where, AccelUnit unit, sim::ImuRecord& imu) {
   if (imu.time_ns.size() < 2)
-    throw BadInput(where + ": holds " + std::to_string(imu.time_ns.size()) + " samples, needs 2");
+    throw BadInput(where + ": has " + std::to_string(imu.time_ns.size()) + " samples; it needs at least 2");
   require_plausible_force(where, imu, unit);
   imu.period_ns = median_step_ns(imu.time_ns);
   require_plausible_period(where, imu);
@@ -263,8 +265,9 @@ std::string even_out_stamps(sim::ImuRecord& imu) {
   if (!are_rounded(imu.time_ns)) return "";
   imu.time_ns = evened(imu.time_ns);
   imu.period_ns = mean_step_ns(imu.time_ns);
-  return "stamps are whole milliseconds of an IMU that beats every " +
-         rounded(1e-6 * static_cast<double>(imu.period_ns)) + " ms: put on that beat, by a millisecond at most";
+  return "time stamps are in whole milliseconds, but the IMU samples every " +
+         rounded(1e-6 * static_cast<double>(imu.period_ns)) +
+         " ms; they are replaced by equally spaced times, shifted by at most 1 ms";
 }
 
 double scale_of(AccelUnit unit) {

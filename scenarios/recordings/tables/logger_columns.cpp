@@ -98,7 +98,7 @@ class HeaderReader {
     for (std::size_t i = 0; i < header_.fields.size(); ++i) {
       const Name name = split_suffix(header_.fields[i], kTimeUnits, is_time);
       if (!is_time(name.quantity)) continue;
-      if (found) fail("two columns are a time: '" + text(*found) + "' and '" + text(i) + "'");
+      if (found) fail("two columns are time stamps: '" + text(*found) + "' and '" + text(i) + "'");
       decimals = unit_of(kTimeUnits, name, i);
       found = i;
     }
@@ -128,14 +128,14 @@ class HeaderReader {
       if (!found[axis]) missing_ += std::string(" ") + called + "_" + "xyz"[axis];
     }
     if (stated[0] != stated[1] || stated[0] != stated[2])
-      fail(std::string("axes of the ") + called + " are in several units");
+      fail(std::string("the axes of the ") + called + " have different units");
     return stated[0];
   }
 
   /// False where nothing but a time is known; throws where something is missing.
   bool complete(std::size_t readings) const {
     if (readings == 0) return false;
-    if (!missing_.empty()) fail("columns are missing:" + missing_);
+    if (!missing_.empty()) fail("missing columns:" + missing_);
     return true;
   }
   std::size_t taken() const { return static_cast<std::size_t>(std::count(taken_.begin(), taken_.end(), true)); }
@@ -158,7 +158,7 @@ class HeaderReader {
   std::optional<Unit> unit_of(const UnitNames<Unit>& units, const Name& name, std::size_t i) const {
     if (name.unit.empty()) return std::nullopt;
     std::optional<Unit> unit = value_of(units, name.unit);
-    if (!unit) fail("column '" + text(i) + "' is in a unit that is not known");
+    if (!unit) fail("column '" + text(i) + "' has an unknown unit");
     return unit;
   }
 

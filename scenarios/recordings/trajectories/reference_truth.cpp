@@ -72,15 +72,15 @@ Eigen::Vector3d rotation_vector(const Eigen::Quaterniond& q) {
 }
 
 sim::Truth reference_truth(const std::vector<ReferencePose>& poses, std::int64_t end_ns) {
-  if (poses.empty()) throw BadInput("the reference holds no pose");
+  if (poses.empty()) throw BadInput("the reference has no poses");
   const std::int64_t last_ns = std::min(end_ns, poses.back().time_ns);
   if (last_ns < 0 || poses.front().time_ns > end_ns) {
-    throw BadInput("the reference reaches from " + std::to_string(poses.front().time_ns) + " to " +
+    throw BadInput("the reference covers " + std::to_string(poses.front().time_ns) + " to " +
                    std::to_string(poses.back().time_ns) + " ns of the recording, which lasts " +
-                   std::to_string(end_ns) + " ns: another clock?");
+                   std::to_string(end_ns) + " ns; check that both use the same clock");
   }
   if (last_ns > kLongestReference_ns) {
-    throw BadInput("the reference lasts " + std::to_string(last_ns) + " ns, must be at most a day");
+    throw BadInput("the reference lasts " + std::to_string(last_ns) + " ns; it must be at most one day");
   }
   const std::vector<std::int64_t> times = times_of(poses);
   sim::Truth truth;
@@ -93,7 +93,7 @@ sim::Truth reference_truth(const std::vector<ReferencePose>& poses, std::int64_t
   }
   const auto known = [](const Eigen::Quaterniond& q) { return q.coeffs().allFinite(); };
   if (std::none_of(truth.q_WB.begin(), truth.q_WB.end(), known)) {
-    throw BadInput("the reference has poses too far apart to know any of the recording by");
+    throw BadInput("the poses of the reference are too far apart in time for any comparison");
   }
   differentiate(truth, static_cast<std::size_t>(std::max<std::int64_t>(kReach_ns / truth.period_ns, 1)));
   return truth;
