@@ -109,7 +109,7 @@ std::string text_of(Written written, Frame frame, Frame stated) {
   if (written == Written::inverse)
     out = "the quaternions described the world in sensor axes (expected: the sensor in world axes)";
   if (frame == stated) return out;
-  return out + (out.empty() ? "the poses" : " and the poses") + " were of the frame " + to_string(frame);
+  return out + (out.empty() ? "the poses" : " and the poses") + " belonged to the frame " + to_string(frame);
 }
 
 }  // namespace

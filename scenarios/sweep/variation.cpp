@@ -150,7 +150,8 @@ Scenario with_setting(Scenario scenario, const Setting& setting) {
 SimulatedDraw with_setting(const SimulatedDraw& draw, const Setting& setting) {
   SimulatedDraw changed = draw;
   if (reach(setting) == Reach::input) {
-    if (!draw.built) throw BadInput(setting.key + " is for simulated draws; " + draw.scenario + " is a recording");
+    if (!draw.built)
+      throw BadInput(setting.key + " applies to simulated draws only; " + draw.scenario + " is a recording");
     for (const std::string& key : keys_of(setting.key)) {
       given_error(key).put_in(changed.recording.sensors, changed.recording.truth, changed.built->situation(),
                               setting.value);

@@ -49,7 +49,7 @@ class RigidOdometry {
                               "edge of the voxel from which one point per sweep is registered", Rank::first});
       visit(p.map_voxel_m, {"map_voxel_m", "m", 0.01, 100.0, "edge of a voxel of the map's hash table", Rank::first});
       visit(p.map_spacing_m,
-            {"map_spacing_m", "m", 0.0, 100.0, "edge of the cube that holds one map point", Rank::first});
+            {"map_spacing_m", "m", 0.0, 100.0, "edge of the cube that stores at most one map point", Rank::first});
       visit(p.extend_always, on_off("extend_always", "1: extend the map with sweeps that could not be registered"));
       visit(p.degenerate_sigma_m,
             {"degenerate_sigma_m", "m", 1e-6, 1e3,

@@ -72,7 +72,7 @@ Record File::record_in(std::string_view records, std::uint64_t place, std::uint6
   take(out.op), take(size);
   if (size > take.left.size()) {
     fail(at + place, "a record of " + in_bytes(size) + ", must be at most " + std::to_string(take.left.size()) +
-                         ": damaged or truncated");
+                         ": the file is damaged or truncated");
   }
   if (out.op == 0) fail(at + place, "a record of kind 0: the file is damaged");
   out.content = take.cut(size);
