@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "scenarios/cases/hold_case.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <sstream>
@@ -35,9 +37,9 @@ std::string doc_of(const Shrunk& shrunk, const std::string& method, const std::s
     else
       needed += (needed.empty() ? "" : ", ") + line.what;
   }
-  std::string doc = method + ", " + shrunk.failure + ", on draw " + std::to_string(seed) + " of " + scenario +
-                    " in simplified form; it still needs " +
-                    (needed.empty() ? "no part that can be removed alone" : needed);
+  std::string doc =
+      fmt::format("{}, {}, on draw {} of {} in simplified form; it still needs {}", method, shrunk.failure, seed,
+                  scenario, needed.empty() ? "no part that can be removed alone" : needed);
   if (not_tried > 0) doc += "; " + std::to_string(not_tried) + " more parts were not tried";
   return doc + ".";
 }
@@ -87,7 +89,7 @@ CaseResult hold_case(const std::string& name, const Expectation& expected, const
     is_better("cured: " + how_it_fails(result));
   } else if (to_string(outcome.status) != expected.status) {
     result.fault =
-        std::string("fails with status ") + to_string(outcome.status) + "; the accepted status was " + expected.status;
+        fmt::format("fails with status {}; the accepted status was {}", to_string(outcome.status), expected.status);
   } else if (expected.value.has_value() != result.value.has_value()) {
     result.fault =
         expected.metric + (result.value ? " now has a value: " + four_digits(*result.value) : " no longer has a value");
@@ -96,7 +98,7 @@ CaseResult hold_case(const std::string& name, const Expectation& expected, const
     const double was = *expected.value, is = *result.value;
     const bool within = std::abs(is) <= kCaseFactor * std::abs(was) && std::abs(was) <= kCaseFactor * std::abs(is);
     const std::string what =
-        expected.metric + " is " + four_digits(is) + "; the accepted value was " + four_digits(was);
+        fmt::format("{} is {}; the accepted value was {}", expected.metric, four_digits(is), four_digits(was));
     if (!within && tumble::scenarios::is_better(info, is, was)) is_better("better: " + what);
     if (!within && !result.better) result.fault = what;
   }

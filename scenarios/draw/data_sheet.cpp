@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "scenarios/draw/data_sheet.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 
 #include "scenarios/draw/registry.hpp"
@@ -36,8 +38,8 @@ DataSheet load_data_sheet(const DataRoot& data, const std::string& device) {
   const Registry registry = Registry::of_simulation();
   DataSheet sheet = parse_data_sheet(read_text_file(path), path.string(), registry);
   if (sheet.device != device) {
-    throw BadInput(path.string() + ": device is '" + sheet.device + "'; it must be the name of the file, '" + device +
-                   "'");
+    throw BadInput(
+        fmt::format("{}: device is '{}'; it must be the name of the file, '{}'", path.string(), sheet.device, device));
   }
   require_every_number(sheet, path.string(), registry);
   return sheet;

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "scenarios/draw/scenario.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 
 #include "scenarios/draw/scenario_text.hpp"
@@ -42,8 +44,8 @@ Scenario load_scenario(const DataRoot& data, const std::string& name) {
   const std::filesystem::path path = is_case ? data.regressions() / (name + ".yaml") : find_scenario(data, cases, name);
   Scenario scenario = parse_scenario(read_text_file(path), path.string(), registry);
   if (scenario.name != name) {
-    throw BadInput(path.string() + ": name is '" + scenario.name + "'; it must be the name of the file, '" + name +
-                   "'");
+    throw BadInput(
+        fmt::format("{}: name is '{}'; it must be the name of the file, '{}'", path.string(), scenario.name, name));
   }
   if (is_case && !scenario.named_case) throw BadInput(path.string() + ": key 'case' is missing; a named case needs it");
   return scenario;

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "scenarios/draw/strict_yaml.hpp"
 
+#include <fmt/format.h>
+
 #include <yaml-cpp/eventhandler.h>
 #include <yaml-cpp/parser.h>
 
@@ -132,7 +134,7 @@ std::string YamlNode::identifier() const {
     fail("'" + name + "' must be a lower-case letter followed by letters, digits and underscores");
   }
   if (name.size() > kIdentifierMax) {
-    fail("has " + std::to_string(name.size()) + " characters, must be at most " + std::to_string(kIdentifierMax));
+    fail(fmt::format("has {} characters, must be at most {}", name.size(), kIdentifierMax));
   }
   return name;
 }
@@ -184,7 +186,7 @@ std::vector<std::pair<std::string, YamlNode>> YamlNode::entries() const {
   for (const auto& entry : node_) {
     const YamlNode key(entry.first, file_, place_);
     const std::string name = key.text();
-    if (!seen.insert(name).second) key.fail("key '" + name + "' is given twice");
+    if (!seen.insert(name).second) key.fail(fmt::format("key '{}' is given twice", name));
     YamlNode value(entry.second, file_, join(place_, name));
     // a block, an alias (marked where its anchor is) and an empty value (marked nowhere) are looked for at their key
     value.line_ = key.line_;
@@ -200,7 +202,7 @@ std::map<std::string, YamlNode> YamlNode::fields(std::span<const std::string> re
   if (!node_.IsMap() && !required.empty()) {
     std::string keys;
     for (const std::string& name : required) keys += (keys.empty() ? "" : ", ") + name;
-    fail("must be a map with the keys " + keys + "; it is " + kind_of(node_));
+    fail(fmt::format("must be a map with the keys {}; it is {}", keys, kind_of(node_)));
   }
   std::map<std::string, YamlNode> out;
   for (auto& [name, value] : entries()) {
@@ -210,7 +212,7 @@ std::map<std::string, YamlNode> YamlNode::fields(std::span<const std::string> re
     out.emplace(name, value);
   }
   for (const std::string& name : required) {
-    if (!out.contains(name)) fail("key '" + name + "' is missing");
+    if (!out.contains(name)) fail(fmt::format("key '{}' is missing", name));
   }
   return out;
 }

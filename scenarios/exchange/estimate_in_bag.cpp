@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "scenarios/exchange/estimate_in_bag.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cctype>
 #include <cstdlib>
@@ -143,8 +145,9 @@ void add_clouds(const sim::Sensors& sensors, const std::vector<PointStore>* poin
 void require_own(const std::filesystem::path& path, const std::string& own) {
   const std::string made_from = estimated_sensors(path);
   if (made_from.empty() || made_from == own) return;
-  throw BadInput("the estimate was made from another recording (digest of its sensors: " + made_from +
-                 "; digest of this recording: " + own + ")");
+  throw BadInput(fmt::format(
+      "the estimate was made from another recording (digest of its sensors: {}; digest of this recording: {})",
+      made_from, own));
 }
 
 /// "slam/tumble" as a topic and a frame.

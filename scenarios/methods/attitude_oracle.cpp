@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include <fmt/format.h>
+
 #include <cstddef>
 #include <cstdint>
 #include <vector>
@@ -25,7 +27,7 @@ sim::Sensors unclipped_gyros(const sim::Sensors& sensors, const sim::Truth& trut
   for (std::size_t i = 0; i < out.imus.size(); ++i) {
     sim::ImuRecord& imu = out.imus[i];
     if (truth.imus[i].gyro_unclipped_rad_s.size() != imu.time_ns.size()) {
-      throw BadInput("the truth of imu '" + imu.name + "' must have one reading per sample");
+      throw BadInput(fmt::format("the truth of imu '{}' must have one reading per sample", imu.name));
     }
     imu.gyro_rad_s = truth.imus[i].gyro_unclipped_rad_s;
     imu.stated_gyro_range_rad_s = 0.0;

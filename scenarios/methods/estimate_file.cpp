@@ -164,8 +164,7 @@ void read_contacts(const std::filesystem::path& path, Estimate& estimate) {
     if (!flagged) continue;
     const std::int64_t uncertain = table.integer(row, 2);
     if (uncertain != 0 && uncertain != 1) {
-      throw BadInput(path.string() + ":" + std::to_string(row.line) + ": uncertain is " + std::to_string(uncertain) +
-                     ", must be 0 or 1");
+      throw BadInput(fmt::format("{}:{}: uncertain is {}, must be 0 or 1", path.string(), row.line, uncertain));
     }
     estimate.uncertain.push_back(uncertain == 1);
   }
@@ -337,13 +336,13 @@ void write_estimate(const std::filesystem::path& folder, const std::string& meth
   }
   write_position_covariances(folder / "position_covariance.csv", estimate.poses);
   if (!estimate.uncertain.empty() && estimate.uncertain.size() != estimate.contacts.size()) {
-    throw std::invalid_argument("an estimate has " + std::to_string(estimate.uncertain.size()) +
-                                " flags of uncertainty for " + std::to_string(estimate.contacts.size()) + " contacts");
+    throw std::invalid_argument(fmt::format("an estimate has {} flags of uncertainty for {} contacts",
+                                            estimate.uncertain.size(), estimate.contacts.size()));
   }
   if (!estimate.contacts.empty()) {
     if (estimate.contacts.size() != estimate.poses.size()) {
-      throw std::invalid_argument("an estimate has " + std::to_string(estimate.contacts.size()) + " contacts for " +
-                                  std::to_string(estimate.poses.size()) + " poses");
+      throw std::invalid_argument(
+          fmt::format("an estimate has {} contacts for {} poses", estimate.contacts.size(), estimate.poses.size()));
     }
     write_contacts(folder / "contacts.csv", estimate);
   }

@@ -64,8 +64,7 @@ std::vector<std::string> words_of(const YamlNode& node) {
   for (const YamlNode& item : node.items()) {
     words.push_back(item.text());
     if (words.back().size() > kWordMax)
-      item.fail("has a word of " + std::to_string(words.back().size()) + " characters; a word may have at most " +
-                std::to_string(kWordMax));
+      item.fail(fmt::format("has a word of {} characters; a word may have at most {}", words.back().size(), kWordMax));
     try {
       placeholders_in(words.back());
     } catch (const BadInput& error) {
@@ -171,9 +170,10 @@ Kind kind_of_function(const std::string& text, const std::string& file) {
   std::vector<Kind> found = kinds_found(text, defined);
   if (found.empty()) found = kinds_found(text, assigned);
   if (found.size() != 1)
-    throw BadInput(file + ": defines " + std::to_string(found.size()) +
-                   " functions named rate, attitude, position or slam; it must define exactly one (a file NAME.yaml "
-                   "can name another function)");
+    throw BadInput(
+        fmt::format("{}: defines {} functions named rate, attitude, position or slam; it must define exactly one (a "
+                    "file NAME.yaml can name another function)",
+                    file, found.size()));
   return found.front();
 }
 

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "scenarios/methods/external_result.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -49,19 +51,19 @@ std::vector<RateState> read_rates(const std::filesystem::path& file, const sim::
   const std::string header = header_line(file);
   const bool with_covariance = header == kWithCovariance;
   if (!with_covariance && header != kRateColumns)
-    throw BadInput(file.filename().string() + ":1: header '" + header.substr(0, 120) + "', must be '" + kRateColumns +
-                   "' or the same with ',cxx,cxy,cxz,cyy,cyz,czz' added");
+    throw BadInput(fmt::format("{}:1: header '{}', must be '{}' or the same with ',cxx,cxy,cxz,cyy,cyz,czz' added",
+                               file.filename().string(), header.substr(0, 120), kRateColumns));
   const Table table = Table::read(file, ',', header, with_covariance ? 10 : 4);
   if (table.rows.size() != stamps.size())
-    throw BadInput(file.filename().string() + ": " + std::to_string(table.rows.size()) + " rows, must be " +
-                   std::to_string(stamps.size()) + ", one per sample of " + sensors.imus.front().name);
+    throw BadInput(fmt::format("{}: {} rows, must be {}, one per sample of {}", file.filename().string(),
+                               table.rows.size(), stamps.size(), sensors.imus.front().name));
   std::vector<RateState> rates(stamps.size());
   for (std::size_t k = 0; k < rates.size(); ++k) {
     const Table::Row& row = table.rows[k];
     const std::int64_t time_ns = table.integer(row, 0);
     if (time_ns < stamps[k] - kStampTolerance_ns || time_ns > stamps[k] + kStampTolerance_ns)
-      throw BadInput(file.filename().string() + ":" + std::to_string(row.line) + ": time " + std::to_string(time_ns) +
-                     " ns, but sample " + std::to_string(k) + " has the time " + std::to_string(stamps[k]) + " ns");
+      throw BadInput(fmt::format("{}:{}: time {} ns, but sample {} has the time {} ns", file.filename().string(),
+                                 row.line, time_ns, k, stamps[k]));
     rates[k].time_ns = stamps[k];
     rates[k].w_WI_I_rad_s = {table.number(row, 1), table.number(row, 2), table.number(row, 3)};
     if (with_covariance) rates[k].covariance_rad2_s2 = covariance(table, row);
@@ -107,8 +109,8 @@ Estimate read_folder(const ExternalDescription& description, const std::filesyst
   std::string method;
   Estimate estimate = read_estimate(folder, kind, method, description.frame);
   if (kind != description.kind)
-    throw BadInput(std::string("the command wrote an estimate of kind ") + to_string(kind) + ", " +
-                   description.file.filename().string() + " states kind " + to_string(description.kind));
+    throw BadInput(fmt::format("the command wrote an estimate of kind {}, but {} states kind {}", to_string(kind),
+                               description.file.filename().string(), to_string(description.kind)));
   return estimate;
 }
 

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "scenarios/methods/map_file.hpp"
 
+#include <fmt/format.h>
+
 #include <array>
 #include <bit>
 #include <charconv>
@@ -72,8 +74,7 @@ std::vector<MapPoint> read_map(const std::filesystem::path& path) {
   file.seekg(0, std::ios::end);
   const auto bytes = static_cast<std::uintmax_t>(file.tellg() - data);
   if (bytes / sizeof(Row) != points || bytes % sizeof(Row) != 0) {
-    throw BadInput(path.string() + ": truncated: it has " + std::to_string(bytes) + " bytes of data for " +
-                   std::to_string(points) + " points");
+    throw BadInput(fmt::format("{}: truncated: it has {} bytes of data for {} points", path.string(), bytes, points));
   }
   file.seekg(data);
   std::vector<MapPoint> map(points);

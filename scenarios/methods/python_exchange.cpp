@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "scenarios/methods/python_exchange.hpp"
 
+#include <fmt/format.h>
+
 #include <bit>
 #include <cmath>
 #include <cstring>
@@ -147,8 +149,8 @@ class Answer {
     // a function can make the memory larger than what it was asked for
     const std::uintmax_t most = bounds.table_bytes() + bounds.map_bytes();
     if (memory.size() > most)
-      throw BadInput("the answer has " + std::to_string(memory.size()) + " bytes, must be at most " +
-                     std::to_string(most) + " for this recording");
+      throw BadInput(
+          fmt::format("the answer has {} bytes, must be at most {} for this recording", memory.size(), most));
     bytes_ = memory.contents();
     if (bytes_.empty()) throw BadInput("the function ended the interpreter without an answer");
     std::uint64_t length = 0;
@@ -231,8 +233,7 @@ std::vector<PoseState> read_poses(const Answer& answer) {
     poses[k].p_WA_m = row_of(positions, k);
     const Eigen::Quaterniond q{Eigen::Map<const Eigen::Vector4d>(&quaternions[4 * k])};
     if (!(std::abs(q.coeffs().stableNorm() - 1.0) <= kQuaternionTolerance) || (k > 0 && times_ns[k] <= times_ns[k - 1]))
-      throw BadInput("pose " + std::to_string(k) +
-                     " of the answer has no valid attitude, or its time does not increase");
+      throw BadInput(fmt::format("pose {} of the answer has no valid attitude, or its time does not increase", k));
     poses[k].q_WA = q.normalized();
   }
   return poses;
@@ -275,7 +276,7 @@ Estimate read_answer(const SharedMemory& memory, Kind kind, Frame frame, const s
     return estimate;
   }
   estimate.poses = read_poses(answer);
-  const AnswerBounds::Place place = [](std::size_t k) { return "pose " + std::to_string(k) + " of the answer"; };
+  const AnswerBounds::Place place = [](std::size_t k) { return fmt::format("pose {} of the answer", k); };
   bounds.require_unit(estimate, "nanoseconds", place);
   bounds.require_poses(estimate.poses, place);
   if (kind == Kind::attitude) {

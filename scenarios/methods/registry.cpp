@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "scenarios/methods/registry.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <limits>
 #include <utility>
@@ -125,7 +127,7 @@ Method make_method(MethodInfo info, RunCore run) {
   RunMethod wrapped = [name, settings, parameters, needs_truth, run](
                           const sim::Sensors& sensors, const sim::Values& given, const OracleInput& oracle) {
     if (needs_truth && oracle.truth == nullptr) {
-      throw BadInput("method " + name + " needs the truth, but this recording has none");
+      throw BadInput(fmt::format("method {} needs the truth, but this recording has none", name));
     }
     try {
       const sim::Values resolved = resolve_settings("method " + name, given, settings);
@@ -169,7 +171,8 @@ std::vector<MethodPointer> find_methods_within(std::span<const std::string> name
       if (is_new) {
         found.push_back(std::move(method));
       } else if (is_method_file(name) && before->second != name) {
-        throw BadInput("'" + before->second + "' and '" + name + "' have the same name, " + full_name(method->info));
+        throw BadInput(
+            fmt::format("'{}' and '{}' have the same name, {}", before->second, name, full_name(method->info)));
       }
     }
   }

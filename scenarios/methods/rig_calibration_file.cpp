@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "scenarios/methods/rig_calibration_file.hpp"
 
+#include <fmt/format.h>
+
 #include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
@@ -69,8 +71,7 @@ class CalibrationReader {
 
   const json& array(const char* key, std::size_t count) const {
     const json& values = object_.at(key);
-    if (!values.is_array() || values.size() != count)
-      complain(key, "needs exactly " + std::to_string(count) + " numbers");
+    if (!values.is_array() || values.size() != count) complain(key, fmt::format("needs exactly {} numbers", count));
     return values;
   }
 
@@ -82,7 +83,7 @@ class CalibrationReader {
         complain(key, "holds an element that is not a number");
       // no constant of a rig comes near: it would drown everything else
       if (std::abs(values[i].get<double>()) > kMost) {
-        complain(key, "is " + values[i].dump() + "; its magnitude must be at most 1e6");
+        complain(key, fmt::format("is {}; its magnitude must be at most 1e6", values[i].dump()));
       }
       into.data()[i] = values[i].get<double>();
     }
@@ -245,7 +246,8 @@ RailPlanes LearntRig::planes(Triad triad) const {
 }
 
 void start_from(const LearntRig& rig, double trust, RateSmoother::Params& params) {
-  if (!(trust >= 1.0)) throw std::invalid_argument("trust is " + std::to_string(trust) + ", must be at least 1");
+  if (!(trust >= 1.0))
+    throw std::invalid_argument(fmt::format("trust is {}, must be at least 1", std::to_string(trust)));
   params.model.calibration = rig.calibration;
   params.model.calibration->covariance *= trust;
   params.expert.planes.known = rig.planes();

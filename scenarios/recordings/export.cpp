@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "scenarios/recordings/export.hpp"
 
+#include <fmt/format.h>
+
 #include <array>
 #include <optional>
 #include <utility>
@@ -111,8 +113,8 @@ Notes export_recording(const path& recording, const std::string& format, const p
   std::string known;
   for (const std::string& name : export_formats()) known += " " + name;
   const std::string near = sim::nearest_name(format, export_formats());
-  throw BadInput("unknown format '" + format + "'" + (near.empty() ? "" : "; did you mean '" + near + "'?") +
-                 " (known formats:" + known + ")");
+  throw BadInput(fmt::format("unknown format '{}'{} (known formats:{})", format,
+                             near.empty() ? "" : "; did you mean '" + near + "'?", known));
 }
 
 }  // namespace tumble::scenarios

@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include <fmt/format.h>
+
 #include <algorithm>
 
 #include "scenarios/errors.hpp"
@@ -59,7 +61,8 @@ class RecordingReader {
     if (!group_.has_attribute(name)) return;
     const std::string word = group_.text_attribute(name);
     const auto* found = std::find(kPointTimes.begin(), kPointTimes.end(), word);
-    if (found == kPointTimes.end()) group_.fail(name, "is '" + word + "', must be measured, not_skewed or unknown");
+    if (found == kPointTimes.end())
+      group_.fail(name, fmt::format("is '{}', must be measured, not_skewed or unknown", word));
     given = static_cast<sim::PointTimes>(found - kPointTimes.begin());
   }
   void texts(const char* name, std::vector<std::string>& texts) { texts = group_.read_texts(name); }
@@ -116,8 +119,7 @@ void require_format(const hdf5::Group& root) {
   }
   const std::int64_t version = root.int_attribute("format_version");
   if (version != kRecordingVersion) {
-    root.fail("format_version",
-              "is " + std::to_string(version) + "; this build reads version " + std::to_string(kRecordingVersion));
+    root.fail("format_version", fmt::format("is {}; this build reads version {}", version, kRecordingVersion));
   }
 }
 
@@ -131,8 +133,8 @@ void require_sound(const std::string& file, const std::string& problem, const st
                    const std::string& found) {
   if (!problem.empty()) throw BadInput(file + ": " + problem);
   if (!stored.empty() && stored != found) {
-    throw BadInput(file + ": damaged or changed: the digest of its data is " + found + ", but the stored digest is " +
-                   stored);
+    throw BadInput(fmt::format("{}: damaged or changed: the digest of its data is {}, but the stored digest is {}",
+                               file, found, stored));
   }
 }
 

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "scenarios/recordings/replace_file.hpp"
 
+#include <fmt/format.h>
+
 #include <fcntl.h>
 #include <sys/stat.h>
 #include <unistd.h>
@@ -84,7 +86,7 @@ void require_outside(const fs::path& output, std::span<const fs::path> inputs) {
     if (error) continue;
     const bool within = std::mismatch(folder.begin(), folder.end(), place.begin(), place.end()).first == folder.end();
     if (within && place != folder)
-      fail(output, "the output is a file of the input " + input.string() + "; name another output");
+      fail(output, fmt::format("the output is a file of the input {}; name another output", input.string()));
   }
 }
 

@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <optional>
 #include <string>
@@ -58,8 +60,7 @@ class Events {
 
 std::vector<SlipSpan> true_spans(const sim::Truth& truth) {
   if (truth.label.size() != truth.q_WB.size()) {
-    throw BadInput("truth.label has " + std::to_string(truth.label.size()) + " entries, must have " +
-                   std::to_string(truth.q_WB.size()));
+    throw BadInput(fmt::format("truth.label has {} entries, must have {}", truth.label.size(), truth.q_WB.size()));
   }
   Events events;
   for (std::size_t k = 0; k < truth.label.size(); ++k) {
@@ -82,8 +83,8 @@ bool counts(const SlipSpan& span, const sim::Truth& truth) {
 /// A label holds from its own instant to the next one's.
 std::vector<SlipSpan> claimed_spans(const Estimate& estimate) {
   if (estimate.contacts.size() != estimate.poses.size()) {
-    throw BadInput("the estimate has " + std::to_string(estimate.contacts.size()) + " contacts for " +
-                   std::to_string(estimate.poses.size()) + " poses");
+    throw BadInput(
+        fmt::format("the estimate has {} contacts for {} poses", estimate.contacts.size(), estimate.poses.size()));
   }
   Events events;
   for (std::size_t k = 0; k + 1 < estimate.contacts.size(); ++k) {

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "scenarios/scoring/truth_track.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <string>
@@ -55,7 +57,7 @@ TruthTrack::TruthTrack(const sim::Truth& truth, Frame frame) : truth_(&truth), T
   const std::size_t count = truth.p_WB_m.size();
   if (count == 0) throw BadInput("the truth has no motion");
   if (truth.period_ns <= 0)
-    throw BadInput("truth.period_ns is " + std::to_string(truth.period_ns) + "; it must be greater than 0");
+    throw BadInput(fmt::format("truth.period_ns is {}; it must be greater than 0", truth.period_ns));
   require_length("truth", "q_WB", truth.q_WB.size(), count);
   require_length("truth", "v_WB_m_s", truth.v_WB_m_s.size(), count);
   require_length("truth", "w_WB_B_rad_s", truth.w_WB_B_rad_s.size(), count);

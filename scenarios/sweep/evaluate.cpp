@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "scenarios/sweep/evaluate.hpp"
 
+#include <fmt/format.h>
+
 #include <sys/resource.h>
 #include <time.h>
 
@@ -52,7 +54,8 @@ std::vector<MethodPointer> applicable(std::span<const MethodPointer> methods, co
 
 void require_applies(const Method& method, const Scenario& scenario) {
   const std::string why = method.info.why_not(subject_of(scenario));
-  if (!why.empty()) throw BadInput("method '" + method.info.name + "' on " + scenario.name + ": the method " + why);
+  if (!why.empty())
+    throw BadInput(fmt::format("method '{}' on {}: the method {}", method.info.name, scenario.name, why));
 }
 
 namespace {

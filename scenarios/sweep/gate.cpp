@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "scenarios/sweep/gate.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -101,8 +103,8 @@ void hold_worst_draw(const MetricInfo& info, const std::vector<GatePair>& pairs,
   const double slack = by_difference(info) ? margin_of(info, policy) : 0.0;
   if (!(badness(info, now.now) > policy.worst * badness(info, before.before) + slack)) return;
   result.seed = now.seed;
-  result.fault = "worst draw: " + three_digits(now.now) + " at seed " + std::to_string(now.seed) +
-                 "; the worst draw of the accepted run had " + three_digits(before.before);
+  result.fault = fmt::format("worst draw: {} at seed {}; the worst draw of the accepted run had {}",
+                             three_digits(now.now), now.seed, three_digits(before.before));
 }
 
 /// Tests of a metric count once, two-sided ones too: they take twice the smaller chance. Puts a shift of the pairs, and
@@ -233,11 +235,12 @@ const MethodRun* GateRun::find(const std::string& scenario, Kind kind, const std
 
 std::vector<GateResult> hold_to_gate(const GateRun& run, const Gate& gate) {
   if (gate.accepted.methods.empty())
-    throw BadInput("the gate of " + gate.suite + " has no accepted results; run 'tumble gate SUITE --accept'");
+    throw BadInput(fmt::format("the gate of {} has no accepted results; run 'tumble gate SUITE --accept'", gate.suite));
   if (run.seeds != gate.accepted.seeds) {
-    throw BadInput("the gate of " + gate.suite + " accepted " + std::to_string(gate.accepted.seeds.size()) +
-                   " draws with other seeds than the " + std::to_string(run.seeds.size()) +
-                   " of this run; run 'tumble gate " + gate.suite + " --accept' to accept this run");
+    throw BadInput(
+        fmt::format("the gate of {} accepted {} draws with other seeds than the {} of this run; run 'tumble gate {} "
+                    "--accept' to accept this run",
+                    gate.suite, gate.accepted.seeds.size(), run.seeds.size(), gate.suite));
   }
   std::vector<Pooled> all = pooled_metrics(gate.accepted);
   std::size_t tests = all.size();

@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -132,7 +134,7 @@ void read_row(const GateLine& line, std::span<const MethodPointer> described, Ga
 double within(const YamlNode& node, double low, double high) {
   const double value = node.number();
   if (!(value >= low && value <= high)) {
-    node.fail("is " + number_text(value) + ", must be within [" + number_text(low) + ", " + number_text(high) + "]");
+    node.fail(fmt::format("is {}, must be within [{}, {}]", number_text(value), number_text(low), number_text(high)));
   }
   return value;
 }
@@ -163,15 +165,15 @@ Gate load_gate(const DataRoot& data, const std::string& name, std::span<const Me
   const bool is_file = name.ends_with(".yaml");
   const std::filesystem::path path = is_file ? std::filesystem::path(name) : data.gates() / (name + ".yaml");
   if (!std::filesystem::exists(path)) {
-    throw BadInput("there is no accepted run of '" + name + "'" + suggestion(name, gate_names(data)) +
-                   "; create it with 'tumble gate " + name + " --accept'");
+    throw BadInput(fmt::format("there is no accepted run of '{}'{}; create it with 'tumble gate {} --accept'", name,
+                               suggestion(name, gate_names(data)), name));
   }
   const YamlNode root = YamlNode::parse(read_text_file(path), path.string());
   const std::array<std::string, 6> required = {"suite", "risk", "margin", "share_margin", "time_margin_s", "worst"};
   const auto fields = root.fields(required);
   Gate gate;
   gate.suite = fields.at("suite").text();
-  if (!is_file && gate.suite != name) fields.at("suite").fail("is '" + gate.suite + "', must be '" + name + "'");
+  if (!is_file && gate.suite != name) fields.at("suite").fail(fmt::format("is '{}', must be '{}'", gate.suite, name));
   gate.policy.risk = within(fields.at("risk"), 1e-6, 0.5);
   gate.policy.margin = within(fields.at("margin"), 0.0, 10.0);
   gate.policy.share_margin = within(fields.at("share_margin"), 0.0, 1.0);

@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <array>
 #include <map>
@@ -70,7 +72,7 @@ void read_curves(const DataRoot& data, const YamlNode& node, Suite& suite) {
   for (const auto& [text, values] : node.entries()) {
     Variation curve = read_variation(data, suite, text, values);
     for (const Variation& other : suite.curves) {
-      if (other.key() == curve.key()) values.fail("a curve over '" + curve.key() + "' exists already");
+      if (other.key() == curve.key()) values.fail(fmt::format("a curve over '{}' exists already", curve.key()));
     }
     suite.curves.push_back(std::move(curve));
   }
@@ -87,7 +89,7 @@ void read_scenarios(const DataRoot& data, const YamlNode& node, Suite& suite) {
       item.fail("unknown scenario '" + name + "'" + suggestion(name, known));
     }
     if (std::find(suite.scenarios.begin(), suite.scenarios.end(), name) != suite.scenarios.end()) {
-      item.fail("scenario '" + name + "' occurs twice");
+      item.fail(fmt::format("scenario '{}' occurs twice", name));
     }
     suite.scenarios.push_back(name);
   }
@@ -157,7 +159,7 @@ void read_draws(const DataRoot& data, const YamlNode& root, const std::map<std::
     return;
   }
   for (const char* key : {"scenarios", "seeds"}) {
-    if (!fields.contains(key)) root.fail(std::string("key '") + key + "' is missing");
+    if (!fields.contains(key)) root.fail(fmt::format("key '{}' is missing", key));
   }
   read_seeds(fields.at("seeds"), suite);
   read_scenarios(data, fields.at("scenarios"), suite);
@@ -243,10 +245,10 @@ std::uint64_t Suite::draw_count() const {
 }
 
 void require_seeds(const Suite& suite) {
-  if (suite.last_seed < suite.first_seed) throw BadInput("suite " + suite.name + ": the last seed is below the first");
+  if (suite.last_seed < suite.first_seed)
+    throw BadInput(fmt::format("suite {}: the last seed is below the first", suite.name));
   if (suite.last_seed - suite.first_seed >= kSeedsMax)
-    throw BadInput("suite " + suite.name + ": has more than " + std::to_string(kSeedsMax) +
-                   " seeds; split the range into parts");
+    throw BadInput(fmt::format("suite {}: has more than {} seeds; split the range into parts", suite.name, kSeedsMax));
 }
 
 std::vector<std::string> suite_names(const DataRoot& data) {
@@ -260,7 +262,8 @@ Suite load_suite(const DataRoot& data, const std::string& name) {
     const std::filesystem::path path = data.suites() / (name + ".yaml");
     Suite suite = read_suite(data, path);
     if (suite.name != name)
-      throw BadInput(path.string() + ": name is '" + suite.name + "'; it must be the name of the file, '" + name + "'");
+      throw BadInput(
+          fmt::format("{}: name is '{}'; it must be the name of the file, '{}'", path.string(), suite.name, name));
     return suite;
   }
   const std::vector<std::string> scenarios = scenario_names(data), cases = case_names(data);

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "scenarios/sweep/sweep.hpp"
 
+#include <fmt/format.h>
+
 #include <poll.h>
 
 #include <algorithm>
@@ -29,8 +31,10 @@ void claim(Results& results, const DataRoot& data, const Suite& suite, const std
   if (known.empty()) {
     results.set_note("data", digest);
   } else if (known != digest) {
-    throw BadInput(database.string() + ": was made from other models or scenarios (digest " + known + ", now " +
-                   digest + "); outcomes of two catalogues cannot be mixed; name another file");
+    throw BadInput(
+        fmt::format("{}: was made from other models or scenarios (digest {}, now {}); outcomes of two catalogues "
+                    "cannot be mixed; name another file",
+                    database.string(), known, digest));
   }
   results.set_note("suite", suite.name);
   if (!suite.recordings.empty()) results.set_note("source", kRecordingsSource);
@@ -53,8 +57,9 @@ void claim_methods(Results& results, std::span<const MethodPointer> methods) {
     const std::string key = method_note(method->info.kind, method->info.name);
     const std::string known = results.note(key);
     if (!known.empty() && known != method->info.version)
-      throw BadInput("the database holds rows of another version of " + key + " ('" + known + "', now '" +
-                     method->info.version + "'); name another file or another method");
+      throw BadInput(fmt::format(
+          "the database holds rows of another version of {} ('{}', now '{}'); name another file or another method", key,
+          known, method->info.version));
     results.set_note(key, method->info.version);
   }
 }
@@ -292,7 +297,7 @@ std::uint64_t SweepProgress::not_ok() const {
 void require_worker_memory(double mib) {
   constexpr double kMinMib = 64.0, kMaxMib = 1e7;
   if (!(mib >= kMinMib && mib <= kMaxMib))
-    throw BadInput("memory is " + std::to_string(mib) + " MiB, must be within [64, 1e7]");
+    throw BadInput(fmt::format("memory is {} MiB, must be within [64, 1e7]", std::to_string(mib)));
 }
 
 Results open_results(const DataRoot& data, const Suite& suite, const std::filesystem::path& database) {
@@ -308,8 +313,7 @@ SweepProgress sweep(const DataRoot& data, const Suite& suite, const std::filesys
 
 void require_sound(const Suite& suite, const SweepOptions& options) {
   if (options.jobs < 1 || options.jobs > kJobsMax) {
-    throw BadInput("jobs is " + std::to_string(options.jobs) + ", must be within [1, " + std::to_string(kJobsMax) +
-                   "]");
+    throw BadInput(fmt::format("jobs is {}, must be within [1, {}]", options.jobs, kJobsMax));
   }
   require_seeds(suite);
   for (const OutcomeStatus status : options.again) {
@@ -318,7 +322,7 @@ void require_sound(const Suite& suite, const SweepOptions& options) {
     }
   }
   if (!suite.recordings.empty() && options.keep.which != Keep::Which::none)
-    throw BadInput("suite " + suite.name + ": its draws are recordings, which exist already; set --keep none");
+    throw BadInput(fmt::format("suite {}: its draws are recordings, which exist already; set --keep none", suite.name));
   require_worker_memory(options.memory_mib);
 }
 

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "scenarios/sweep/variation.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <sstream>
@@ -73,8 +75,8 @@ void check_parameter(const std::string& key, std::span<const double> values) {
   const Method& method = *find_methods(name).front();
   const sim::Parameter* const parameter = find_parameter(method.info.parameters, number);
   if (parameter == nullptr) {
-    throw BadInput("'" + key + "': unknown parameter '" + number + "' of method " + name +
-                   suggestion(number, names_of(method.info.parameters)));
+    throw BadInput(fmt::format("'{}': unknown parameter '{}' of method {}{}", key, number, name,
+                               suggestion(number, names_of(method.info.parameters))));
   }
   const auto is_whole = [&](const SettingsTable* stage) { return stage->is_whole(parameter->name); };
   const bool whole = std::any_of(method.info.settings.begin(), method.info.settings.end(), is_whole);
@@ -88,11 +90,11 @@ void check_given(const std::string& key, std::span<const double> values, const S
   const GivenError& error = given_error(key);
   for (const double value : values) require_settable(key, error.parameter, value);
   if (scenario.sensors.empty() || scenario.sensors.front().kind != "imu") {
-    throw BadInput("'" + key + "': the first sensor of scenario " + scenario.name + " is not an IMU");
+    throw BadInput(fmt::format("'{}': the first sensor of scenario {} is not an IMU", key, scenario.name));
   }
   const bool lidar = std::any_of(scenario.sensors.begin(), scenario.sensors.end(),
                                  [](const Scenario::Sensor& sensor) { return sensor.kind.ends_with("lidar"); });
-  if (error.needs_lidar && !lidar) throw BadInput("'" + key + "': scenario " + scenario.name + " has no lidar");
+  if (error.needs_lidar && !lidar) throw BadInput(fmt::format("'{}': scenario {} has no lidar", key, scenario.name));
 }
 
 }  // namespace
@@ -125,8 +127,8 @@ void check(const Variation& variation, const DataRoot& data, std::span<const std
   for (const std::string& key : variation.keys) {
     const Reach own = reach_of(key), first = reach_of(variation.keys.front());
     if (own != first) {
-      throw BadInput("'" + key + "' is " + words(own) + " and '" + variation.keys.front() + "' " + words(first) +
-                     "; these keys cannot vary together");
+      throw BadInput(fmt::format("'{}' is {} and '{}' {}; these keys cannot vary together", key, words(own),
+                                 variation.keys.front(), words(first)));
     }
     if (own == Reach::method) check_parameter(key, variation.values);
     for (const std::string& name : scenarios) {
@@ -151,7 +153,7 @@ SimulatedDraw with_setting(const SimulatedDraw& draw, const Setting& setting) {
   SimulatedDraw changed = draw;
   if (reach(setting) == Reach::input) {
     if (!draw.built)
-      throw BadInput(setting.key + " applies to simulated draws only; " + draw.scenario + " is a recording");
+      throw BadInput(fmt::format("{} applies to simulated draws only; {} is a recording", setting.key, draw.scenario));
     for (const std::string& key : keys_of(setting.key)) {
       given_error(key).put_in(changed.recording.sensors, changed.recording.truth, changed.built->situation(),
                               setting.value);

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "scenarios/recordings/bags/bag_reference.hpp"
 
+#include <fmt/format.h>
+
 #include <type_traits>
 #include <utility>
 
@@ -42,8 +44,8 @@ NamedPoses reference_poses(const OpenedBag& bag, const std::string& topic, Stamp
   const std::string type = bag.topic(topic).type;
   if (type == kOdometry) return read_poses<ros::Odometry>(bag, topic, source);
   if (type == kPoseStamped) return read_poses<ros::PoseStamped>(bag, topic, source);
-  throw BadInput(bag.place + ": topic '" + topic + "' is of type " + type + ", must be " + kOdometry + " or " +
-                 kPoseStamped);
+  throw BadInput(
+      fmt::format("{}: topic '{}' is of type {}, must be {} or {}", bag.place, topic, type, kOdometry, kPoseStamped));
 }
 
 /// Whose poses they are: by the one who imports them, else by the messages, where the bag places the frame that they

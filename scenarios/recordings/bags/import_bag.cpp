@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <sstream>
@@ -64,8 +66,9 @@ AccelUnit take_in_g(const std::string& topic, const BagReading& reading, sim::Im
   if (reading.accel_unit || !is_in_g(imu)) return reading.accel_unit.value_or(AccelUnit::m_s2);
   for (Eigen::Vector3d& force : imu.accel_m_s2) force *= scale_of(AccelUnit::g);
   notes.push_back(
-      topic + ": caution: the message definition requires m/s^2, but the magnitude at rest is 1, so it is read in g" +
-      " (set '--accel-unit m/s^2' to use the definition)");
+      fmt::format("{}: caution: the message definition requires m/s^2, but the magnitude at rest is 1, so it is read "
+                  "in g (set '--accel-unit m/s^2' to use the definition)",
+                  topic));
   return AccelUnit::g;
 }
 
@@ -151,8 +154,9 @@ CloudHeaders read_headers(const OpenedBag& bag, const std::string& topic, const 
   out.follow_records = !stamps.other_clock();
   if (reading.stamps == StampSource::record) {
     for (std::int64_t& stamp : out.stamps) stamp -= out.period_ns;
-    out.remark += (out.remark.empty() ? "" : "; ") + std::string("assumption: each sweep starts ") +
-                  std::to_string(1e-9 * static_cast<double>(out.period_ns)) + " s before its record stamp";
+    out.remark +=
+        fmt::format("{}assumption: each sweep starts {} s before its record stamp", out.remark.empty() ? "" : "; ",
+                    std::to_string(1e-9 * static_cast<double>(out.period_ns)));
   }
   return out;
 }
@@ -167,10 +171,11 @@ void note_points_to_come(const std::string& topic, const BuiltSweeps& built, con
   if (ahead_s.empty()) return;
   const double middle_s = upper_median(std::move(ahead_s));
   if (middle_s < kAhead_s) return;
-  notes.push_back(topic + ": caution: the last points of a sweep, by their times after the stamp, are " +
-                  std::to_string(middle_s) +
-                  " s later than the record stamp; the stamp may be the end of the sweep. It is " +
-                  "read as the start (set '--stamps record' to start each sweep one period before its record stamp)");
+  notes.push_back(
+      fmt::format("{}: caution: the last points of a sweep, by their times after the stamp, are {} s later than the "
+                  "record stamp; the stamp may be the end of the sweep. It is read as the start (set '--stamps record' "
+                  "to start each sweep one period before its record stamp)",
+                  topic, std::to_string(middle_s)));
 }
 
 BuiltSweeps read_lidar(const OpenedBag& bag, SensorPlaces& places, const std::string& topic,
@@ -196,8 +201,10 @@ BuiltSweeps read_lidar(const OpenedBag& bag, SensorPlaces& places, const std::st
   if (reading.stamps == StampSource::header && headers.follow_records)
     note_points_to_come(topic, built, records, notes);
   if (clocks_apart_s > kClocksApart_s) {
-    notes.push_back(topic + ": caution: the messages' timebase and their header stamps differ by up to " +
-                    std::to_string(clocks_apart_s) + " s; point times are counted from the header stamps");
+    notes.push_back(
+        fmt::format("{}: caution: the messages' timebase and their header stamps differ by up to {} s; point times are "
+                    "counted from the header stamps",
+                    topic, std::to_string(clocks_apart_s)));
   }
   places.place(topic, headers.frame, "--T-body-lidar", built.lidar.T_BL, notes);
   return built;
@@ -208,8 +215,9 @@ void note_packets(const OpenedBag& bag, std::vector<std::string>& notes) {
   for (const BagTopic& topic : bag.topics) {
     const auto has = [&](const char* word) { return topic.type.find(word) != std::string::npos; };
     if (!has("Packet") && !has("packet") && !has("VelodyneScan") && !has("PandarScan")) continue;
-    notes.push_back(topic.name + ": caution: raw packets (" + topic.type +
-                    ") are not read; convert them to points with " + "the lidar's driver");
+    notes.push_back(
+        fmt::format("{}: caution: raw packets ({}) are not read; convert them to points with the lidar's driver",
+                    topic.name, topic.type));
   }
 }
 
@@ -230,11 +238,11 @@ void require_one_clock(const sim::Sensors& sensors, bool by_headers, const std::
   for (const Span& early : spans) {
     for (const Span& late : spans) {
       if (late.first_ns <= early.last_ns) continue;
-      throw BadInput(path.string() + ": the time ranges of '" + early.name + "' and '" + late.name +
-                     "' do not overlap: one ends " +
-                     std::to_string((static_cast<double>(late.first_ns) - static_cast<double>(early.last_ns)) * 1e-9) +
-                     " s before the other begins" +
-                     (by_headers ? "; set '--stamps record' to use the record stamps" : ""));
+      throw BadInput(
+          fmt::format("{}: the time ranges of '{}' and '{}' do not overlap: one ends {} s before the other begins{}",
+                      path.string(), early.name, late.name,
+                      std::to_string((static_cast<double>(late.first_ns) - static_cast<double>(early.last_ns)) * 1e-9),
+                      by_headers ? "; set '--stamps record' to use the record stamps" : ""));
     }
   }
 }
@@ -268,8 +276,9 @@ void add_lidars(const OpenedBag& bag, SensorPlaces& places, const BagReading& re
   for (const std::string& topic : bag.chosen(reading.lidar_topics, is_cloud_type, kCloud)) {
     const CloudHeaders headers = read_headers(bag, topic, reading);
     if (headers.left_out(reading)) {
-      out.notes.push_back(topic + ": its points are in frame '" + headers.frame +
-                          "', which is not the frame of a sensor; they are left out");
+      out.notes.push_back(
+          fmt::format("{}: its points are in frame '{}', which is not the frame of a sensor; they are left out", topic,
+                      headers.frame));
     } else if (headers.stamps.empty() && reading.lidar_topics.empty()) {
       out.notes.push_back(topic + kNoMessage);
     } else {
@@ -288,8 +297,8 @@ Imported import_bag(BagReader& reader, const std::filesystem::path& path, const 
   add_lidars(bag, places, reading, out);
   note_packets(bag, out.notes);
   if (out.sensors.imus.empty() && out.sensors.lidars.empty()) {
-    throw BadInput(path.string() + ": has no topic of type " + kImu + ", " + kCloud +
-                   " or CustomMsg with messages; number of topics: " + std::to_string(bag.topics.size()));
+    throw BadInput(fmt::format("{}: has no topic of type {}, {} or CustomMsg with messages; number of topics: {}",
+                               path.string(), kImu, kCloud, bag.topics.size()));
   }
   out.info.attribution = "imported from " + path.filename().string();
   require_one_clock(out.sensors, reading.stamps == StampSource::header, path);

@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cstring>
 #include <fstream>
@@ -54,7 +56,7 @@ class Walk {
     if (!indexed) fail(index_at, "there is no record at the stated start of the index");
     for (const auto& [info_at, chunk_at] : infos_) {
       if (!chunks_.contains(chunk_at))
-        fail(info_at, "refers to a chunk at byte " + std::to_string(chunk_at) + ", which does not exist");
+        fail(info_at, fmt::format("refers to a chunk at byte {}, which does not exist", chunk_at));
     }
   }
 
@@ -74,13 +76,13 @@ class Walk {
   /// The length that stands at `at`, of something that must end before `end`.
   std::uint32_t length(std::uint64_t at, std::uint64_t end, const char* what, std::uint32_t most) {
     if (end - at < sizeof(std::uint32_t))
-      fail(at, std::string("the file ends within the length of ") + what + "; the bag may be truncated");
+      fail(at, fmt::format("the file ends within the length of {}; the bag may be truncated", what));
     std::uint32_t value = 0;
     std::memcpy(&value, text(at, sizeof(value)).data(), sizeof(value));
     const std::uint64_t left = end - at - sizeof(value);
     if (value > left || value > most) {
-      fail(at, std::string(what) + " has " + std::to_string(value) + " bytes, must be at most " +
-                   std::to_string(std::min<std::uint64_t>(left, most)) + ": the file is damaged or truncated");
+      fail(at, fmt::format("{} has {} bytes, must be at most {}: the file is damaged or truncated", what, value,
+                           std::min<std::uint64_t>(left, most)));
     }
     return value;
   }
@@ -116,8 +118,7 @@ class Walk {
   Number number(const CheckedRecord& record, const char* name) const {
     const auto found = record.fields.find(name);
     if (found == record.fields.end() || found->second.size() != sizeof(Number)) {
-      fail(record.at,
-           std::string("the record has no field '") + name + "' of " + std::to_string(sizeof(Number)) + " bytes");
+      fail(record.at, fmt::format("the record has no field '{}' of {} bytes", name, sizeof(Number)));
     }
     Number value;
     std::memcpy(&value, found->second.data(), sizeof(value));
@@ -143,7 +144,7 @@ class Walk {
         entries(record, 8);
         break;
       default:
-        fail(record.at, "a record of kind " + std::to_string(op(record)) + " is not allowed here");
+        fail(record.at, fmt::format("a record of kind {} is not allowed here", op(record)));
     }
   }
 
@@ -161,13 +162,13 @@ class Walk {
     chunks_.insert(record.at);
     messages_.reset();
     chunk_bytes_ = size;
-    if (size > kChunkMax) fail(record.at, "a chunk of " + std::to_string(size) + " bytes; at most 1 GiB can be read");
+    if (size > kChunkMax) fail(record.at, fmt::format("a chunk of {} bytes; at most 1 GiB can be read", size));
     if (compression == "bz2" || compression == "lz4") return;
     if (compression != "none")
-      fail(record.at, "a chunk of compression '" + compression + "' is not supported; supported: none, bz2 and lz4");
-    if (size != record.data_bytes) {
       fail(record.at,
-           "a plain chunk of " + std::to_string(record.data_bytes) + " bytes states a size of " + std::to_string(size));
+           fmt::format("a chunk of compression '{}' is not supported; supported: none, bz2 and lz4", compression));
+    if (size != record.data_bytes) {
+      fail(record.at, fmt::format("a plain chunk of {} bytes states a size of {}", record.data_bytes, size));
     }
     messages_.emplace();
     for (std::uint64_t at = record.data_at; at < record.end();) {
@@ -177,7 +178,7 @@ class Walk {
       else if (op(inner) == ros1::kMessage)
         message(inner, at - record.data_at);
       else
-        fail(at, "a record of kind " + std::to_string(op(inner)) + " is not allowed in a chunk");
+        fail(at, fmt::format("a record of kind {} is not allowed in a chunk", op(inner)));
       at = inner.end();
     }
   }
@@ -192,8 +193,8 @@ class Walk {
   std::uint32_t entries(const CheckedRecord& record, std::uint32_t each) const {
     const std::uint32_t count = number<std::uint32_t>(record, "count");
     if (std::uint64_t{count} * each != record.data_bytes) {
-      fail(record.at, "states " + std::to_string(count) + " entries of " + std::to_string(each) +
-                          " bytes, but its size in bytes is " + std::to_string(record.data_bytes));
+      fail(record.at,
+           fmt::format("states {} entries of {} bytes, but its size in bytes is {}", count, each, record.data_bytes));
     }
     return count;
   }
@@ -208,8 +209,8 @@ class Walk {
       std::uint32_t offset = 0;
       std::memcpy(&offset, bytes.data() + i * kEntry + kPlace, sizeof(offset));
       if (messages_ ? messages_->contains(offset) : offset < chunk_bytes_) continue;
-      fail(record.at, "entry " + std::to_string(i) + " of the index points to " + std::to_string(offset) +
-                          " in its chunk, where no message starts");
+      fail(record.at,
+           fmt::format("entry {} of the index points to {} in its chunk, where no message starts", i, offset));
     }
   }
 

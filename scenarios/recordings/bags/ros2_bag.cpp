@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include <fmt/format.h>
+
 #include <SQLiteCpp/SQLiteCpp.h>
 #include <unistd.h>
 #include <yaml-cpp/yaml.h>
@@ -161,8 +163,9 @@ std::string packed_by(const YAML::Node& root, const path& metadata) {
   const std::string format = text("compression_format"), mode = text("compression_mode");
   if (format.empty() || mode == "none") return "";
   if (format != "zstd" || (mode != "file" && mode != "message"))
-    fail_at(metadata, "the bag has the compression format '" + format + "' and mode '" + mode +
-                          "'; supported: zstd with mode file or message (convert it with 'ros2 bag convert')");
+    fail_at(metadata, fmt::format("the bag has the compression format '{}' and mode '{}'; supported: zstd with mode "
+                                  "file or message (convert it with 'ros2 bag convert')",
+                                  format, mode));
   return mode;
 }
 
@@ -179,7 +182,7 @@ StoredBag storage_of(const path& bag) {
     const YAML::Node root = YAML::LoadFile(metadata.string())["rosbag2_bagfile_information"];
     out.kind = root["storage_identifier"].as<std::string>();
     if (out.kind != "sqlite3" && out.kind != "mcap")
-      fail_at(metadata, "the storage is '" + out.kind + "', must be sqlite3 or mcap");
+      fail_at(metadata, fmt::format("the storage is '{}', must be sqlite3 or mcap", out.kind));
     out.packed = packed_by(root, metadata);
     for (const YAML::Node& each : root["relative_file_paths"]) {
       const path name = path(each.as<std::string>()).filename();  // nothing leads out of the folder
@@ -208,7 +211,7 @@ class Ros2BagReader : public BagReader {
         const std::string format = query.getColumn(2).getString();
         const BagTopic topic = {query.getColumn(0).getString(), ros1_type(query.getColumn(1).getString())};
         if (format != "cdr")
-          fail_at(file, "topic " + topic.name + " has the serialization format '" + format + "', must be cdr");
+          fail_at(file, fmt::format("topic {} has the serialization format '{}', must be cdr", topic.name, format));
         const auto same = [&](const BagTopic& each) { return each.name == topic.name; };
         if (std::none_of(topics.begin(), topics.end(), same)) topics.push_back(topic);
       }

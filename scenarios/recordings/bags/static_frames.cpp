@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "scenarios/recordings/bags/static_frames.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 
@@ -20,7 +22,7 @@ std::string without_slash(const std::string& frame) {
 
 void StaticFrames::add(const ros::TransformStamped& transform, const std::string& where) {
   const std::string parent = without_slash(transform.header.frame_id), child = without_slash(transform.child_frame_id);
-  const std::string what = where + ": the transform of '" + child + "' in '" + parent + "'";
+  const std::string what = fmt::format("{}: the transform of '{}' in '{}'", where, child, parent);
   const auto p = Eigen::Vector3d::Map(transform.translation.data());
   Eigen::Quaterniond q;
   q.coeffs() = Eigen::Vector4d::Map(transform.rotation_xyzw.data());
@@ -28,18 +30,19 @@ void StaticFrames::add(const ros::TransformStamped& transform, const std::string
   if (!(p.cwiseAbs().maxCoeff() <= kFrameFar_m) || !p.allFinite()) {
     hung.problem = what + ": its translation must be at most 1 km";
   } else if (!(std::abs(q.norm() - 1.0) <= kFrameNormTolerance)) {
-    hung.problem = what + ": its quaternion has norm " + std::to_string(q.norm()) + ", must be 1";
+    hung.problem = fmt::format("{}: its quaternion has norm {}, must be 1", what, std::to_string(q.norm()));
   } else if (parent == child) {
     hung.problem = what + ": the frame is its own parent";
   } else {
     hung.T_parent.linear() = q.normalized().toRotationMatrix();
     hung.T_parent.translation() = p;
   }
-  if (!hung.problem.empty()) remarks_.push_back("caution: " + hung.problem + "; it is ignored");
+  if (!hung.problem.empty()) remarks_.push_back(fmt::format("caution: {}; it is ignored", hung.problem));
   if (const auto before = frames_.find(child); before != frames_.end() && before->second.parent != parent) {
-    remarks_.push_back("caution: '" + child + "' has the parent '" + before->second.parent +
-                       "' and later the parent '" + parent +
-                       "'; a frame may have only one parent, so the later one is used (" + where + ")");
+    remarks_.push_back(
+        fmt::format("caution: '{}' has the parent '{}' and later the parent '{}'; a frame may have only one parent, so "
+                    "the later one is used ({})",
+                    child, before->second.parent, parent, where));
   }
   frames_.insert_or_assign(child, std::move(hung));
 }

@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -33,7 +35,7 @@ class HeaderLines {
     if (!std::getline(stream_, line_) || stream_.eof()) fail("the header does not end; the file may be truncated");
     ++number_;
     bytes_ += line_.size() + 1;
-    if (bytes_ > kCloudHeaderMax) fail("the header is longer than " + std::to_string(kCloudHeaderMax) + " bytes");
+    if (bytes_ > kCloudHeaderMax) fail(fmt::format("the header is longer than {} bytes", kCloudHeaderMax));
     // the library that reads the points parts words by blanks and tabs alone
     if (line_.find_first_of("\v\f") != std::string::npos) fail("the header contains a form feed or a vertical tab");
     std::istringstream words(line_);
@@ -51,7 +53,7 @@ class HeaderLines {
 
   std::uint64_t whole(const std::string& what, const std::string& text) const {
     std::uint64_t value = 0;
-    if (!read_number(text, value)) fail(what + " is '" + text + "'; it must be a whole number");
+    if (!read_number(text, value)) fail(fmt::format("{} is '{}'; it must be a whole number", what, text));
     return value;
   }
 
@@ -60,16 +62,15 @@ class HeaderLines {
   /// Holds a promise of points against what follows the header, of which a byte makes so many at most.
   void require_room(const CloudHeader& header, std::uint64_t made_of_a_byte = 1) const {
     if (header.points > kCloudPointsMax) {
-      fail("states " + std::to_string(header.points) + " points; at most " + std::to_string(kCloudPointsMax) +
-           " can be read from a file");
+      fail(fmt::format("states {} points; at most {} can be read from a file", header.points, kCloudPointsMax));
     }
     // a number written as text has a digit and a blank or line end at least; the last one may lack it
     const std::uint64_t point_bytes = header.point_bytes > 0 ? header.point_bytes : 2 * header.fields;
     const std::uint64_t slack = header.point_bytes > 0 ? 0 : 1;
     const std::uint64_t rest = bytes_in_file_ - std::min(bytes_, bytes_in_file_) + slack;
     if (header.points * point_bytes > rest * made_of_a_byte) {
-      fail("states " + std::to_string(header.points) + " points of at least " + std::to_string(point_bytes) +
-           " bytes, but only " + std::to_string(rest) + " bytes follow; the file may be truncated");
+      fail(fmt::format("states {} points of at least {} bytes, but only {} bytes follow; the file may be truncated",
+                       header.points, point_bytes, rest));
     }
   }
 
@@ -80,12 +81,11 @@ class HeaderLines {
       fail("there are no compressed points; the file may be truncated");
     const std::uint64_t rest = bytes_in_file_ - std::min(bytes_ + sizeof(sizes), bytes_in_file_);
     if (sizes[0] == 0 || sizes[0] > rest) {
-      fail("states " + std::to_string(sizes[0]) + " bytes of compressed points, but " + std::to_string(rest) +
-           " follow");
+      fail(fmt::format("states {} bytes of compressed points, but {} follow", sizes[0], rest));
     }
     if (sizes[1] != header.points * header.point_bytes) {
-      fail("states " + std::to_string(sizes[1]) + " bytes of uncompressed points; this must be " +
-           std::to_string(header.points * header.point_bytes));
+      fail(fmt::format("states {} bytes of uncompressed points; this must be {}", sizes[1],
+                       header.points * header.point_bytes));
     }
   }
 
@@ -160,30 +160,30 @@ std::map<std::string, Words> pcd_lines(HeaderLines& lines) {
   }
   for (const char* needed : {"FIELDS", "SIZE", "TYPE", "WIDTH", "HEIGHT"}) {
     if (!found.contains(needed))
-      lines.fail(std::string("there is no line ") + needed + " before DATA; the file may not be a PCD file");
+      lines.fail(fmt::format("there is no line {} before DATA; the file may not be a PCD file", needed));
   }
   return found;
 }
 
 std::uint64_t single(const HeaderLines& lines, const std::string& name, const Words& words) {
-  if (words.size() != 1) lines.fail(name + " has " + std::to_string(words.size()) + " numbers, must have 1");
+  if (words.size() != 1) lines.fail(fmt::format("{} has {} numbers, must have 1", name, words.size()));
   const std::uint64_t value = lines.whole(name, words.front());
   if (value > kCloudPointsMax) {
-    lines.fail(name + " is " + std::to_string(value) + ", must be at most " + std::to_string(kCloudPointsMax));
+    lines.fail(fmt::format("{} is {}, must be at most {}", name, value, kCloudPointsMax));
   }
   return value;
 }
 
 /// Of a VIEWPOINT, x y z qw qx qy qz: as written, or "" where it says nothing.
 std::string viewpoint_of(const HeaderLines& lines, const Words& words) {
-  if (words.size() != 7) lines.fail("VIEWPOINT has " + std::to_string(words.size()) + " numbers, must have 7");
+  if (words.size() != 7) lines.fail(fmt::format("VIEWPOINT has {} numbers, must have 7", words.size()));
   constexpr std::array<double, 7> kOwn = {0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0};
   std::string written;
   bool own = true;
   for (std::size_t i = 0; i < kOwn.size(); ++i) {
     double value = 0.0;
     if (!read_number(words[i], value) || !std::isfinite(value))
-      lines.fail("VIEWPOINT's number " + std::to_string(i + 1) + " is '" + words[i] + "', must be finite");
+      lines.fail(fmt::format("VIEWPOINT's number {} is '{}', must be finite", i + 1, words[i]));
     own = own && value == kOwn[i];
     written += (i > 0 ? " " : "") + words[i];
   }
@@ -232,21 +232,20 @@ CloudHeader read_pcd_header(const std::filesystem::path& path) {
   if (!found.contains("COUNT")) found["COUNT"] = Words(header.fields, "1");
   for (const char* name : {"SIZE", "TYPE", "COUNT"}) {
     if (found[name].size() != header.fields) {
-      lines.fail(std::string(name) + " has " + std::to_string(found[name].size()) + " words, but FIELDS has " +
-                 std::to_string(header.fields));
+      lines.fail(fmt::format("{} has {} words, but FIELDS has {}", name, found[name].size(), header.fields));
     }
   }
   for (std::size_t i = 0; i < header.fields; ++i) {
     const std::uint64_t size = lines.whole("SIZE", found["SIZE"][i]), count = lines.whole("COUNT", found["COUNT"][i]);
     if (size == 0 || size > 8 || count == 0 || count > 4096) {
-      lines.fail("field " + found["FIELDS"][i] + " has " + std::to_string(count) + " numbers of " +
-                 std::to_string(size) + " bytes; supported are 1 to 4096 numbers of 1 to 8 bytes");
+      lines.fail(fmt::format("field {} has {} numbers of {} bytes; supported are 1 to 4096 numbers of 1 to 8 bytes",
+                             found["FIELDS"][i], count, size));
     }
     const std::string& type = found["TYPE"][i];
     const bool whole = type == "I" || type == "U", real = type == "F";
     if (!(whole && (size == 1 || size == 2 || size == 4 || size == 8)) && !(real && (size == 4 || size == 8))) {
-      lines.fail("field " + std::to_string(i + 1) +
-                 " has an unsupported type; supported: I and U with 1, 2, 4 or 8 bytes, F with 4 or 8 bytes");
+      lines.fail(fmt::format(
+          "field {} has an unsupported type; supported: I and U with 1, 2, 4 or 8 bytes, F with 4 or 8 bytes", i + 1));
     }
     header.point_bytes += size * count;
     header.numbers += count;
@@ -254,7 +253,7 @@ CloudHeader read_pcd_header(const std::filesystem::path& path) {
   const std::uint64_t width = single(lines, "WIDTH", found["WIDTH"]), height = single(lines, "HEIGHT", found["HEIGHT"]);
   header.points = width * height;
   if (found.contains("POINTS") && single(lines, "POINTS", found["POINTS"]) != header.points) {
-    lines.fail("POINTS is " + found["POINTS"].front() + ", but WIDTH times HEIGHT is " + std::to_string(header.points));
+    lines.fail(fmt::format("POINTS is {}, but WIDTH times HEIGHT is {}", found["POINTS"].front(), header.points));
   }
   if (found.contains("VIEWPOINT")) header.viewpoint = viewpoint_of(lines, found["VIEWPOINT"]);
   const std::string encoding = found["DATA"].empty() ? "" : found["DATA"].front();
@@ -263,7 +262,7 @@ CloudHeader read_pcd_header(const std::filesystem::path& path) {
     header.point_bytes = 0;
     header.ascii = true;
   } else if (encoding != "binary" && encoding != "binary_compressed") {
-    lines.fail("DATA is '" + encoding + "', must be ascii, binary or binary_compressed");
+    lines.fail(fmt::format("DATA is '{}', must be ascii, binary or binary_compressed", encoding));
   }
   lines.require_room(header, encoding == "binary_compressed" ? kLzfMost : 1);
   if (encoding == "binary_compressed" && header.points > 0) lines.require_sizes(header);

@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include <fmt/format.h>
+
 #include <algorithm>
 
 #include "scenarios/errors.hpp"
@@ -15,7 +17,7 @@ using std::filesystem::path;
 std::string ending_of(const std::string& format) {
   if (format == "ply" || format == "pcd" || format == "vtk") return "." + format;
   if (format == "kitti") return ".bin";
-  throw BadInput("the sweep format '" + format + "' is not supported; supported: ply, pcd, vtk and kitti");
+  throw BadInput(fmt::format("the sweep format '{}' is not supported; supported: ply, pcd, vtk and kitti", format));
 }
 
 /// The file of stamps that is asked for, or lies beside the sweeps; empty when there is none.
@@ -33,8 +35,8 @@ std::vector<std::int64_t> stamps_of(const SweepSource& source, const std::vector
   if (file.empty()) return stamps_in_names(files);
   std::vector<std::int64_t> stamps = read_stamps(file);
   if (stamps.size() != files.size()) {
-    throw BadInput(file.string() + ": holds " + std::to_string(stamps.size()) + " time stamps, but there are " +
-                   std::to_string(files.size()) + " sweeps in " + source.folder.string() + "; must be equal");
+    throw BadInput(fmt::format("{}: holds {} time stamps, but there are {} sweeps in {}; must be equal", file.string(),
+                               stamps.size(), files.size(), source.folder.string()));
   }
   return stamps;
 }
@@ -64,8 +66,8 @@ Imported import_sweeps(const SweepSource& source) {
     builder.add(stamp, read_cloud(files[k]), files[k].string());
   }
   add_lidar(out, builder.finish(source.folder.string(), out.notes));
-  out.info.attribution = "imported from " + source.folder.filename().string() + ", " + std::to_string(files.size()) +
-                         " sweeps in format " + source.format;
+  out.info.attribution = fmt::format("imported from {}, {} sweeps in format {}", source.folder.filename().string(),
+                                     files.size(), source.format);
   start_clock(out);
   return out;
 }

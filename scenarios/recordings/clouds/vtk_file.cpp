@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "scenarios/recordings/clouds/vtk_file.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cstdint>
 #include <fstream>
@@ -48,14 +50,14 @@ class VtkWords {
   /// The next word where one must stand.
   std::string_view need(const char* what) {
     const std::string_view word = next();
-    if (word.empty()) fail(std::string("the file ends before ") + what + "; it may be truncated");
+    if (word.empty()) fail(fmt::format("the file ends before {}; it may be truncated", what));
     return word;
   }
 
   std::uint64_t whole(const char* what) {
     const std::string_view word = need(what);
     std::uint64_t value = 0;
-    if (!read_number(word, value)) fail(std::string(what) + " is '" + shortened(word) + "'; it must be a whole number");
+    if (!read_number(word, value)) fail(fmt::format("{} is '{}'; it must be a whole number", what, shortened(word)));
     return value;
   }
 
@@ -82,12 +84,11 @@ class VtkWords {
 /// Holds so many numbers against what is left of the file, before anything is allocated for them.
 void require_room(const VtkWords& words, std::uint64_t count, std::uint64_t each) {
   if (count > kCloudPointsMax) {
-    words.fail("states " + std::to_string(count) + " points; at most " + std::to_string(kCloudPointsMax) +
-               " can be read from a file");
+    words.fail(fmt::format("states {} points; at most {} can be read from a file", count, kCloudPointsMax));
   }
   if (count * each * 2 > words.left() + 1) {
-    words.fail("states " + std::to_string(count) + " times " + std::to_string(each) + " numbers, but " +
-               std::to_string(words.left()) + " bytes follow; the file may be truncated");
+    words.fail(fmt::format("states {} times {} numbers, but {} bytes follow; the file may be truncated", count, each,
+                           words.left()));
   }
 }
 
@@ -122,14 +123,14 @@ void read_scalars(VtkWords& words, Cloud& cloud) {
   std::string_view word = words.need("LOOKUP_TABLE");
   if (word != "LOOKUP_TABLE") {
     if (!read_number(word, each) || each < 1 || each > 4)
-      words.fail("scalars '" + shortened(name) + "' of '" + shortened(word) +
-                 "' numbers per point; there must be 1 to 4");
+      words.fail(fmt::format("scalars '{}' of '{}' numbers per point; there must be 1 to 4", shortened(name),
+                             shortened(word)));
     word = words.need("LOOKUP_TABLE");
   }
   if (word != "LOOKUP_TABLE") words.fail("'" + shortened(word) + "' instead of LOOKUP_TABLE");
   words.need("the name of the lookup table");
   if (each != 1) return pass_over(words, cloud.points, each);
-  if (cloud.find(name) != nullptr) words.fail("scalars '" + shortened(name) + "' occur twice");
+  if (cloud.find(name) != nullptr) words.fail(fmt::format("scalars '{}' occur twice", shortened(name)));
   require_room(words, cloud.points, 1);
   std::vector<double> column(cloud.points);
   for (double& value : column) value = words.number();
@@ -142,7 +143,7 @@ void pass_data(VtkWords& words, const Cloud& cloud, std::string_view section) {
   words.need("a name");
   if (section == "COLOR_SCALARS") {
     const std::uint64_t each = words.whole("the numbers of a colour");
-    if (each < 1 || each > 4) words.fail("colours of " + std::to_string(each) + " numbers, must be 1 to 4");
+    if (each < 1 || each > 4) words.fail(fmt::format("colours of {} numbers, must be 1 to 4", each));
     return pass_over(words, cloud.points, each);
   }
   words.need("a type");
@@ -174,8 +175,7 @@ Cloud read_vtk(const std::filesystem::path& path) {
     } else if (section == "POINT_DATA") {
       const std::uint64_t points = words.whole("the number of point data");
       if (points != cloud.points)
-        words.fail("POINT_DATA has " + std::to_string(points) + " points, but POINTS has " +
-                   std::to_string(cloud.points));
+        words.fail(fmt::format("POINT_DATA has {} points, but POINTS has {}", points, cloud.points));
       of_points = true;
     } else if (of_points && section == "SCALARS") {
       read_scalars(words, cloud);
@@ -183,7 +183,7 @@ Cloud read_vtk(const std::filesystem::path& path) {
                (section == "NORMALS" || section == "VECTORS" || section == "TENSORS" || section == "COLOR_SCALARS")) {
       pass_data(words, cloud, section);
     } else {
-      words.fail("section '" + shortened(section) + "' is not supported at this position");
+      words.fail(fmt::format("section '{}' is not supported at this position", shortened(section)));
     }
   }
   if (cloud.names.empty()) words.fail("has no POINTS section");

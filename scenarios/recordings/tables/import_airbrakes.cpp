@@ -94,8 +94,8 @@ Imported import_airbrakes(const std::filesystem::path& path) {
   std::size_t doubled = 0;
   while (text.next(line)) {
     if (line.fields.size() != count) {
-      throw BadInput(line.where + ": has " + std::to_string(line.fields.size()) + " columns, but the header has " +
-                     std::to_string(count) + "; must be equal");
+      throw BadInput(fmt::format("{}: has {} columns, but the header has {}; must be equal", line.where,
+                                 line.fields.size(), count));
     }
     const double time_s = csv_number(line, stamp, "timestamp_seconds");
     if (!(time_s >= 0.0 && time_s <= kAirbrakesStampMax_s)) {

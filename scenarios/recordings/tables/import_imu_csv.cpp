@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include <fmt/format.h>
+
 #include <array>
 #include <optional>
 #include <string>
@@ -35,7 +37,8 @@ std::string unit_of_stamps(int decimals) {
 void say_columns(const ImuColumns& columns, bool stated, std::vector<std::string>& notes) {
   if (columns.stamp_form != StampForm::decimal) return;
   if (!stated)
-    notes.push_back("times are read in " + unit_of_stamps(*columns.stamp_decimals) + ", from the size of their steps");
+    notes.push_back(
+        fmt::format("times are read in {}, from the size of their steps", unit_of_stamps(*columns.stamp_decimals)));
   if (columns.gyro_unit == GyroUnit::deg_s) notes.push_back("rates are read in deg/s, from the column names");
   if (columns.accel_unit == AccelUnit::g) notes.push_back("specific force is read in g, from the column names");
   std::string others;
@@ -75,8 +78,7 @@ Imported import_imu_csv(const std::filesystem::path& path, const sim::ImuRecord&
   }
   const std::int64_t first_ns = imu.time_ns.front();
   for (std::int64_t& time : imu.time_ns) time -= first_ns;
-  out.info.attribution =
-      "imported from " + path.filename().string() + ", first time stamp " + std::to_string(first_ns) + " ns";
+  out.info.attribution = fmt::format("imported from {}, first time stamp {} ns", path.filename().string(), first_ns);
   out.info.origin_ns = first_ns;
   out.sensors.imus.push_back(std::move(imu));
   return out;

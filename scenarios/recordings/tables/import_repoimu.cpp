@@ -54,8 +54,8 @@ struct Log {
 /// "Vicon Orientation/W": the group's name stands above its first column.
 std::vector<std::string> column_names(const CsvLine& groups, const CsvLine& names) {
   if (groups.fields.size() != names.fields.size()) {
-    fail(names, "has " + std::to_string(names.fields.size()) + " columns, but the line above has " +
-                    std::to_string(groups.fields.size()) + "; must be equal");
+    fail(names, fmt::format("has {} columns, but the line above has {}; must be equal", names.fields.size(),
+                            groups.fields.size()));
   }
   std::vector<std::string> full;
   std::string group;
@@ -155,8 +155,7 @@ Log read_log(const std::filesystem::path& path) {
     const std::size_t found = line.fields.size();
     const bool trailing = columns.open_ended && found == columns.count && line.fields.back().empty();
     if (found != columns.count - (columns.open_ended ? 1 : 0) && !trailing) {
-      fail(line, "has " + std::to_string(found) + " columns, must have " +
-                     std::to_string(columns.count - (columns.open_ended ? 1 : 0)));
+      fail(line, fmt::format("has {} columns, must have {}", found, columns.count - (columns.open_ended ? 1 : 0)));
     }
     DecimalNumbers numbers(line, log.decimal_commas);
     const double time_s = numbers.at(columns.time, "Time");
@@ -288,7 +287,7 @@ Imported import_repoimu(const std::filesystem::path& path, bool align) {
   sim::ImuRecord imu;
   imu.name = "imu";
   if (log.where.size() < 2)
-    throw BadInput(path.string() + ": has " + std::to_string(log.where.size()) + " samples; it needs at least 2");
+    throw BadInput(fmt::format("{}: has {} samples; it needs at least 2", path.string(), log.where.size()));
   require_attitudes(path, log);
   out.info.origin_ns = log.readings.time_ns.front();
   for (std::int64_t& time : log.readings.time_ns) time -= out.info.origin_ns;

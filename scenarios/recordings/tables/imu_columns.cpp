@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "scenarios/recordings/tables/imu_columns.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cctype>
 #include <charconv>
@@ -124,8 +126,8 @@ double number(const CsvLine& line, std::size_t column) {
 std::int64_t whole_number(const CsvLine& line, std::size_t column, std::int64_t largest) {
   const double value = number(line, column);
   if (value != std::floor(value) || value < 0.0 || value > static_cast<double>(largest)) {
-    fail(line, "column " + std::to_string(column) + " must be a whole number from 0 to " + std::to_string(largest) +
-                   "; it is '" + std::string(line.fields[column]) + "'");
+    fail(line, fmt::format("column {} must be a whole number from 0 to {}; it is '{}'", column, largest,
+                           std::string(line.fields[column])));
   }
   return static_cast<std::int64_t>(value);
 }
@@ -158,16 +160,15 @@ std::int64_t seconds_ns(const CsvLine& line, std::size_t column) {
   const Decimal number(text);
   const auto ns = number.whole.size() <= 10 && number.part.size() <= 9 ? scaled_ns(number, 9) : std::nullopt;
   if (ns) return *ns;
-  fail(line, "column " + std::to_string(column) + " must be seconds with at most nine decimals; it is '" +
-                 std::string(text) + "'");
+  fail(line, fmt::format("column {} must be seconds with at most nine decimals; it is '{}'", column, text));
 }
 
 std::int64_t decimal_ns(const CsvLine& line, std::size_t column, int decimals) {
   const std::string_view text = line.fields[column];
   if (const auto ns = scaled_ns(Decimal(text), static_cast<std::size_t>(decimals))) return *ns;
-  fail(line, "column " + std::to_string(column) +
-                 " must be a time, digits with or without a decimal point, up to the year 2255; it is '" +
-                 std::string(text) + "'");
+  fail(line,
+       fmt::format("column {} must be a time, digits with or without a decimal point, up to the year 2255; it is '{}'",
+                   column, text));
 }
 
 /// Whole seconds in a column and nanoseconds in another.
@@ -188,8 +189,7 @@ ImuColumns imu_columns(const CsvLine& first) {
     ImuColumns columns;
     columns.has_header = false;
     if (first.fields.size() < kColumnsByPlace) {
-      fail(first, "has " + std::to_string(first.fields.size()) + " columns and no header; it needs " +
-                      std::to_string(kColumnsByPlace));
+      fail(first, fmt::format("has {} columns and no header; it needs {}", first.fields.size(), kColumnsByPlace));
     }
     return columns;
   }
@@ -221,8 +221,7 @@ std::int64_t stamp_ns(const CsvLine& line, const ImuColumns& columns) {
 
 void require_width(const CsvLine& line, std::size_t columns) {
   if (line.fields.size() == columns) return;
-  fail(line, "has " + std::to_string(line.fields.size()) + " columns, but the first line has " +
-                 std::to_string(columns) + "; must be equal");
+  fail(line, fmt::format("has {} columns, but the first line has {}; must be equal", line.fields.size(), columns));
 }
 
 int decimals_by_step(CsvText text, std::size_t stamp, std::size_t columns, const std::string& file) {
@@ -243,9 +242,10 @@ int decimals_by_step(CsvText text, std::size_t stamp, std::size_t columns, const
     const double step_s = step * std::pow(10.0, decimals - 9);
     if (step_s >= kLeast_s && step_s < kMost_s) return decimals;
   }
-  throw BadInput(file + ": the time step is " + std::to_string(step) +
-                 "; in none of s, ms, us and ns is this a rate of 10 to 1000 Hz. Add the unit to the column name, as "
-                 "in time_s or 'time [ns]'");
+  throw BadInput(
+      fmt::format("{}: the time step is {}; in none of s, ms, us and ns is this a rate of 10 to 1000 Hz. Add the unit "
+                  "to the column name, as in time_s or 'time [ns]'",
+                  file, std::to_string(step)));
 }
 
 }  // namespace tumble::scenarios

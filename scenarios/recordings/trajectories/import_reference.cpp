@@ -1,5 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "scenarios/errors.hpp"
+
+#include <fmt/format.h>
+
 #include "scenarios/recordings/clouds/sweep_stamps.hpp"
 #include "scenarios/recordings/import.hpp"
 #include "scenarios/recordings/recording_clock.hpp"
@@ -25,7 +28,8 @@ std::vector<ReferencePose> poses_of(const ReferenceSource& source, const std::ve
   if (source.format == "tum") return read_tum_poses(source.file, source.sorted);
   if (source.format == "kitti") return read_kitti_poses(source.file, sweeps_ns.empty() ? own_times(source) : sweeps_ns);
   if (source.format == "odometry") return read_odometry_poses(source.file);
-  throw BadInput("the pose format '" + source.format + "' is not supported; supported: tum, kitti and odometry");
+  throw BadInput(
+      fmt::format("the pose format '{}' is not supported; supported: tum, kitti and odometry", source.format));
 }
 
 /// From poses of A to poses of B.

@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -75,12 +77,12 @@ sim::Truth reference_truth(const std::vector<ReferencePose>& poses, std::int64_t
   if (poses.empty()) throw BadInput("the reference has no poses");
   const std::int64_t last_ns = std::min(end_ns, poses.back().time_ns);
   if (last_ns < 0 || poses.front().time_ns > end_ns) {
-    throw BadInput("the reference covers " + std::to_string(poses.front().time_ns) + " to " +
-                   std::to_string(poses.back().time_ns) + " ns of the recording, which lasts " +
-                   std::to_string(end_ns) + " ns; check that both use the same clock");
+    throw BadInput(fmt::format(
+        "the reference covers {} to {} ns of the recording, which lasts {} ns; check that both use the same clock",
+        poses.front().time_ns, poses.back().time_ns, end_ns));
   }
   if (last_ns > kLongestReference_ns) {
-    throw BadInput("the reference lasts " + std::to_string(last_ns) + " ns; it must be at most one day");
+    throw BadInput(fmt::format("the reference lasts {} ns; it must be at most one day", last_ns));
   }
   const std::vector<std::int64_t> times = times_of(poses);
   sim::Truth truth;
