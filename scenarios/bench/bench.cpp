@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "scenarios/bench/bench.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <optional>
@@ -78,7 +80,7 @@ BenchResult collect_bench_result(const Results& results, const Suite& suite, con
     key.kind = method.kind;
     key.method = method.name;
     const std::optional<Outcome> outcome = results.find(key);
-    if (!outcome) throw BadInput("draw " + name_of(draw) + " has no outcome of " + method.name);
+    if (!outcome) throw BadInput(fmt::format("draw {} has no outcome of method {}", name_of(draw), method.name));
     draw.recording = outcome->recording_digest;
     draw.status = outcome->status;
   }
@@ -99,12 +101,12 @@ void require_of_suite(const BenchResult& result, const Suite& suite) {
   const std::string digest = bench_suite_digest(suite);
   const std::string whose = full_name(result.kind, result.method);
   if (result.suite != suite.name || result.suite_digest != digest)
-    throw BadInput(whose + " is of suite " + result.suite + " " + result.suite_digest + ", must be of " + suite.name +
-                   " " + digest + ": results of two suites are not compared");
+    throw BadInput(fmt::format(
+        "{} belongs to suite {} {}; it must belong to suite {} {}: results of two suites cannot be compared", whose,
+        result.suite, result.suite_digest, suite.name, digest));
   const std::vector<BenchDraw> draws = draws_of(suite);
   if (result.draws.size() != draws.size())
-    throw BadInput(whose + " has " + std::to_string(result.draws.size()) + " draws, must have " +
-                   std::to_string(draws.size()));
+    throw BadInput(fmt::format("{} has {} draws, must have {}", whose, result.draws.size(), draws.size()));
   for (const BenchDraw& draw : draws)
     if (result.find(draw) == nullptr) throw BadInput(whose + " has no draw " + name_of(draw));
 }

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "scenarios/cases/shrink.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <iterator>
@@ -106,7 +108,7 @@ class Shrinking {
       fails = failure_->holds(outcome);
       if (fails && shrunk_.controlled && options_.failure.holds(run.outcome(*options_.control, options_.timeout_s))) {
         fails = false;
-        outcome.message = one_line("so does the control, " + options_.control->info.name);
+        outcome.message = one_line("the control method fails too: " + options_.control->info.name);
       }
     } catch (const std::exception& error) {  // the draw is invalid and does not show the failure
       outcome.status = OutcomeStatus::rejected;
@@ -218,8 +220,9 @@ Shrunk shrink(const DataRoot& data, const Scenario& scenario, std::uint64_t seed
   if (options.control) {
     require_applies(*options.control, scenario);
     if (options.control->info.kind != method.info.kind)
-      throw BadInput("the control '" + options.control->info.name + "' is of kind " +
-                     to_string(options.control->info.kind) + ", the method of kind " + to_string(method.info.kind));
+      throw BadInput(fmt::format("the control '{}' is of kind {}; it must be of the method's kind, {}",
+                                 options.control->info.name, to_string(options.control->info.kind),
+                                 to_string(method.info.kind)));
   }
   return Shrinking(data, scenario, seed, method, options).run();
 }

@@ -20,7 +20,7 @@ std::vector<CertificateEntry> certify_free_fall(const CertificateInput& input, c
   }
   // The first step that ends in contact ends at most one step after the touch; with rounding, exactly at it.
   return {{"free_fall_time", "sphere",
-           "a drop of h takes sqrt(2 h / g): first contact less that, in steps of the engine", "1",
+           "a drop from height h takes sqrt(2 h / g): time of first contact minus this, in steps of the engine", "1",
            (touched_s - expected_s) / trial.step_s(), -0.01, 1.01, ""}};
 }
 

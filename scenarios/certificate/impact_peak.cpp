@@ -71,11 +71,12 @@ std::vector<CertificateEntry> certify_impact(const CertificateInput& input, cons
     exponent += std::log(soft / hard) / std::log(setup.soft_s / setup.hard_s) / attitudes().size();
   }
   return {{"impact_peak_step", "rig",
-           "the first impact's peak does not depend on the engine's step: largest relative change at a quarter of it",
+           "the peak of the first impact does not depend on the time step: largest relative change at a quarter of the "
+           "step",
            "1", step_change, 0.0, 0.05, ""},
           {"impact_peak_softness", "rig",
-           "the peak goes with the time constant of the contact to the power -1, as a spring's: exponent, mean of four "
-           "landings",
+           "the impact peak is proportional to the contact's time constant to the power -1, as for a spring: exponent, "
+           "mean of four landings",
            "1", exponent, -1.3, -0.7, ""}};
 }
 

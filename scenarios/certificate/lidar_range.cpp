@@ -80,14 +80,15 @@ std::vector<CertificateEntry> certify_lidar_range(const CertificateInput& input,
   for (const auto& [robot, device] : {std::pair{"rig", "rs16"}, std::pair{"sphere", "mid100"}}) {
     const sim::Recording recording = sim::simulate(build(input, moving_lidar(input, robot, device)));
     const RangeErrors errors = against_planes(recording, setup.added_range_m);
-    CertificateEntry entry{"lidar_range_analytic",
-                           device,
-                           "each point of a moving lidar without noise lies on the plane that it hit: largest distance",
-                           "m",
-                           errors.largest_m,
-                           0.0,
-                           1e-3,
-                           ""};
+    CertificateEntry entry{
+        "lidar_range_analytic",
+        device,
+        "each point of a moving noise-free lidar lies on the plane that the beam hit: largest distance",
+        "m",
+        errors.largest_m,
+        0.0,
+        1e-3,
+        ""};
     if (errors.points < 10000) {
       entry.value = std::nan("");
       entry.note = "only " + std::to_string(errors.points) + " points";

@@ -181,7 +181,7 @@ CertificateEntry periods(const CertificateInput& input, const PendulumSetup& set
   // higher modes.
   return {"pendulum_period",
           "pendulum",
-          "periods of the three small oscillations against their closed form: largest relative difference",
+          "periods of the three small oscillations equal their closed form: largest relative difference",
           "1",
           worst,
           0.0,
@@ -245,7 +245,7 @@ CertificateEntry force(const CertificateInput& input, const PendulumSetup& setup
   // Measured 1e-6. Simpson and RK4 follow fast changes at the segments' turning points to some parts in 1e8.
   return {"pendulum_specific_force",
           "pendulum",
-          "an ideal accelerometer on the lowest segment against Lagrange's equations: largest difference",
+          "an ideal accelerometer on the lowest segment agrees with Lagrange's equations: largest difference",
           "m/s^2",
           largest_m_s2,
           0.0,

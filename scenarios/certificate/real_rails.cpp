@@ -85,14 +85,18 @@ void show_plane(const DataSheet& sheet, const MeasuredPlane& plane, const RealRa
     entries.push_back({row, subject, law, unit, value, measured.low, measured.high, note});
   };
   const char* slope =
-      "a simulated device with the sensing elements of a real one shows its plane at the rail: slope against an axis "
-      "beside it, within what was measured";
+      "a simulated device with the sensing elements of a real one has the same rail plane: difference of the slope to "
+      "a neighbouring axis";
   add("real_rail_slope", name + ", " + axis_name(plane.element + 1), slope, "1", fitted.first_slope, plane.first_slope);
   add("real_rail_slope", name + ", " + axis_name(plane.element + 2), slope, "1", fitted.second_slope,
       plane.second_slope);
-  add("real_rail_distance", name, "the same of the plane's distance", "rad/s", fitted.distance, plane.distance_rad_s);
-  add("real_rail_offset", name, "the same of the middle between the rails of the two signs", "rad/s", fitted.offset,
-      plane.offset_rad_s);
+  add("real_rail_distance", name,
+      "a simulated device with the sensing elements of a real one has the same rail plane: difference of the distance",
+      "rad/s", fitted.distance, plane.distance_rad_s);
+  add("real_rail_offset", name,
+      "a simulated device with the sensing elements of a real one has the same rail plane: difference of the midpoint "
+      "between both rails",
+      "rad/s", fitted.offset, plane.offset_rad_s);
 }
 
 /// Standard deviations of the planes that follow from a data sheet's distribution of elements.
@@ -138,11 +142,13 @@ std::vector<CertificateEntry> certify_real_rails(const CertificateInput& input, 
     if (sheet.sensor_kind != "imu") continue;
     const DrawnPlanes drawn = drawn_planes(sheet, setup);
     entries.push_back({"real_rail_slope_drawn", name + " gyro",
-                       "the steepest slope that was measured is within what is drawn of this device: over the standard "
+                       "the steepest measured slope is within the distribution for this device: ratio to the standard "
                        "deviation of drawn slopes",
                        "1", slope / drawn.slope, 0.0, kCut, ""});
-    entries.push_back({"real_rail_offset_drawn", name + " gyro", "the same of the largest offset", "1",
-                       offset_rad_s / drawn.offset_rad_s, 0.0, kCut, ""});
+    entries.push_back({"real_rail_offset_drawn", name + " gyro",
+                       "the largest measured offset is within the distribution for this device: ratio to the standard "
+                       "deviation of drawn offsets",
+                       "1", offset_rad_s / drawn.offset_rad_s, 0.0, kCut, ""});
   }
   return entries;
 }

@@ -72,14 +72,15 @@ std::vector<CertificateEntry> certify_tilted_rail(const CertificateInput& input,
   std::vector<CertificateEntry> entries;
   for (const auto& [subject, errors] : {std::pair{"mti30 gyro", gyro}, std::pair{"mti30 accel", accel}}) {
     const bool enough = errors.samples >= kFewestClipped && errors.samples < kMany;
-    const std::string note = enough ? "" : "an element that is clipped in fewer than 10 whole samples of a sign";
+    const std::string note = enough ? "" : "an element has fewer than 10 fully clipped samples of one sign";
     const double none = std::nan("");
     // exact law; measured 1e-15: rounding
-    entries.push_back(
-        {"tilted_rail_slope", subject,
-         "clipped readings of drawn devices lie on the planes of their elements: largest error of a slope", "1",
-         enough ? errors.slope : none, 0.0, 1e-9, note});
-    entries.push_back({"tilted_rail_distance", subject, "the same of the planes' distances and offsets, over the rail",
+    entries.push_back({"tilted_rail_slope", subject,
+                       "clipped readings of drawn devices lie on the planes of their elements: largest slope error",
+                       "1", enough ? errors.slope : none, 0.0, 1e-9, note});
+    entries.push_back({"tilted_rail_distance", subject,
+                       "clipped readings of drawn devices lie on the planes of their elements: largest error of "
+                       "distance and offset, divided by the rail",
                        "1", enough ? errors.distance_share : none, 0.0, 1e-9, note});
   }
   return entries;

@@ -25,14 +25,14 @@ std::string count_problem(const Distribution& d) {
   const std::size_t n = d.numbers.size();
   switch (d.shape) {
     case Shape::constant:
-      return n == 1 ? "" : "needs one number";
+      return n == 1 ? "" : "needs exactly one number";
     case Shape::uniform:
     case Shape::log_uniform:
       return n == 2 ? "" : std::string(to_string(d.shape)) + " needs [low, high]";
     case Shape::normal:
       return n == 2 || n == 4 ? "" : "normal needs [mean, sigma] or [mean, sigma, low, high]";
     case Shape::choice:
-      return n >= 1 ? "" : "choice is empty";
+      return n >= 1 ? "" : "choice needs at least one value";
   }
   return "unknown shape";
 }
@@ -68,7 +68,8 @@ double draw_normal(const std::vector<double>& numbers, sim::Stream& stream) {
     const double value = numbers[0] + numbers[1] * stream.normal();
     if (value >= numbers[2] && value <= numbers[3]) return value;
   }
-  throw BadInput("truncated normal distribution was missed 10000 times");
+  throw BadInput(
+      "no sample of the truncated normal distribution was within its limits in 10000 tries; widen [low, high]");
 }
 
 }  // namespace
@@ -92,7 +93,7 @@ const char* to_string(Distribution::Shape shape) {
 std::string find_problem(const Distribution& d) {
   if (const std::string problem = count_problem(d); !problem.empty()) return problem;
   if (!std::all_of(d.numbers.begin(), d.numbers.end(), [](double x) { return std::isfinite(x); })) {
-    return "a number is not finite";
+    return "contains a number that is not finite";
   }
   switch (d.shape) {
     case Shape::uniform:
@@ -100,7 +101,7 @@ std::string find_problem(const Distribution& d) {
     case Shape::normal:
       return normal_problem(d.numbers);
     case Shape::log_uniform: {
-      if (std::min(d.numbers[0], d.numbers[1]) <= 0.0) return "log_uniform needs numbers above 0";
+      if (std::min(d.numbers[0], d.numbers[1]) <= 0.0) return "log_uniform needs numbers greater than 0";
       return range_problem(d.numbers[0], d.numbers[1]);
     }
     case Shape::constant:

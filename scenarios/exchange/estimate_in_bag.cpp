@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "scenarios/exchange/estimate_in_bag.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cctype>
 #include <cstdlib>
@@ -28,10 +30,12 @@ Eigen::Isometry3d mounting_of(const Estimate& estimate, const sim::Sensors& sens
       T_BA.translation() = truth != nullptr ? truth->p_BG_m : estimate.centre_B_m;
       break;
     case Frame::imu:
-      if (sensors.imus.empty()) throw BadInput("its poses are of an IMU, and the recording has none");
+      if (sensors.imus.empty())
+        throw BadInput("the poses of the estimate are those of an IMU, but the recording has no IMU");
       return sensors.imus.front().T_BI;
     case Frame::lidar:
-      if (sensors.lidars.empty()) throw BadInput("its poses are of a lidar, and the recording has none");
+      if (sensors.lidars.empty())
+        throw BadInput("the poses of the estimate are those of a lidar, but the recording has no lidar");
       return sensors.lidars.front().T_BL;
   }
   return T_BA;
@@ -49,7 +53,7 @@ Alignment alignment_of(const Estimate& estimate, const StoredTruth* truth) {
     const std::int64_t after_ns = pose.time_ns % truth->period_ns;
     if (track.covers(after_ns)) return Alignment::at(pose, track.pose(after_ns));
   }
-  throw BadInput("the truth knows the place at none of its poses: another clock?");
+  throw BadInput("the truth has no position at any time of the estimate's poses; check that both use the same clock");
 }
 
 Eigen::Matrix3d cross_matrix(const Eigen::Vector3d& v) {
@@ -141,7 +145,9 @@ void add_clouds(const sim::Sensors& sensors, const std::vector<PointStore>* poin
 void require_own(const std::filesystem::path& path, const std::string& own) {
   const std::string made_from = estimated_sensors(path);
   if (made_from.empty() || made_from == own) return;
-  throw BadInput("was made from another recording (its sensors have the digest " + made_from + ", these " + own + ")");
+  throw BadInput(fmt::format(
+      "the estimate was made from another recording (digest of its sensors: {}; digest of this recording: {})",
+      made_from, own));
 }
 
 /// Converts "slam/tumble" to a topic and frame name.
@@ -156,7 +162,8 @@ std::string plain_name(const std::string& method) {
 
 BagTrack in_bag(const std::string& name, const Estimate& estimate, const sim::Sensors& sensors,
                 const std::vector<PointStore>* points, const StoredTruth* truth) {
-  if (estimate.poses.empty()) throw BadInput("holds no poses: a rate or an attitude alone has no place in a bag");
+  if (estimate.poses.empty())
+    throw BadInput("the estimate holds no poses; a bag cannot store a rate or an attitude alone");
   const Eigen::Isometry3d T_AB = mounting_of(estimate, sensors, truth).inverse();
   const Alignment alignment = alignment_of(estimate, truth);
   BagTrack out;

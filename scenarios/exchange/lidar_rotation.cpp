@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "scenarios/exchange/lidar_rotation.hpp"
 
+#include <fmt/format.h>
+
 #include <Eigen/SVD>
 #include <algorithm>
 #include <cmath>
@@ -183,42 +185,48 @@ std::string percent(double share) {
 }
 
 std::string pairs_text(const RotationAgreement& found) {
-  return " over " + std::to_string(found.pairs) + " pairs of sweeps";
+  return fmt::format(" over {} pairs of sweeps", found.pairs);
 }
 
 /// Throws if reading the gyro in another unit would remove the disagreement.
 std::string unit_text(const std::string& where, const RotationAgreement& found, GyroUnit unit) {
   const bool degrees = unit == GyroUnit::deg_s;
-  const std::string read = std::string("read in ") + (degrees ? "deg/s" : "rad/s") + ", the lidar turns " +
-                           rounded(found.unit) + " times as the gyro says, to within " + percent(found.unit_error) +
-                           pairs_text(found) + ", must be within 0.5 and 2";
+  const std::string read = fmt::format(
+      "with rates in {}, the lidar's rotation is {} times the gyro's rotation, accurate to {}{}, must be within 0.5 "
+      "and 2",
+      degrees ? "deg/s" : "rad/s", rounded(found.unit), percent(found.unit_error), pairs_text(found));
   if ((found.unit < 1.0) == degrees) return "caution: " + read;
   const std::string fits = degrees ? "rad/s" : "deg/s";
-  throw BadInput(where + ": " + read + ": are the rates in " + fits + "? ('--gyro-unit " + fits + "' takes them so)");
+  throw BadInput(fmt::format("{}: {}; the rates may be in {} (set '--gyro-unit {}')", where, read, fits, fits));
 }
 
 std::string delay_text(const RotationAgreement& found) {
   if (std::abs(found.delay_s) < kDelaySaid_s) return "";
-  return "caution: the lidar sees what the gyro says " + rounded(std::abs(found.delay_s)) +
-         (found.delay_s > 0.0 ? " s later" : " s before") +
-         ": two clocks, or stamps of sweeps' ends for their starts? Counted so, ";
+  return fmt::format(
+      "caution: the lidar's rotation follows the gyro's {}{}; check that both use one clock and that sweep stamps are "
+      "start times. With this delay removed, ",
+      rounded(std::abs(found.delay_s)), found.delay_s > 0.0 ? " s later" : " s earlier");
 }
 
 std::string axes_text(const RotationAgreement& found) {
   if (found.error_as_read <= kAgrees && kTells * found.error_as_read <= found.axes_error) {
-    return "the lidar turns as the gyro says" + pairs_text(found) + ", to within " + percent(found.error_as_read) +
-           (kTells * found.next_error > found.axes_error ? ": units, senses and axes agree"
-                                                         : ": units agree; the motion does not tell all axes apart");
+    return fmt::format(
+        "the lidar's rotation equals the gyro's{}, within {}{}", pairs_text(found), percent(found.error_as_read),
+        kTells * found.next_error > found.axes_error ? ": units, signs and axes agree"
+                                                     : ": units agree; this motion cannot distinguish all axes");
   }
-  const std::string off = "caution: the lidar does not turn as the gyro says" + pairs_text(found) + " (off by " +
-                          percent(found.error_as_read) + "), but as if ";
+  const std::string off =
+      fmt::format("caution: the lidar's rotation differs from the gyro's{} (difference {}); it would agree if ",
+                  pairs_text(found), percent(found.error_as_read));
   if (found.axes_error <= kAgrees) {
-    return off + "its axes were " + found.axes.text() + " (off by " + percent(found.axes_error) +
-           "): senses, order of the axes, or the mounting?";
+    return fmt::format(
+        "{}the lidar's axes were {} (difference {}); check the signs and order of the axes, and the mounting", off,
+        found.axes.text(), percent(found.axes_error));
   }
   const Eigen::Quaterniond& q = found.turned;
-  return off + "it were turned by the quaternion x y z w " + rounded(q.x()) + " " + rounded(q.y()) + " " +
-         rounded(q.z()) + " " + rounded(q.w()) + " (off by " + percent(found.turned_error) + "): the mounting?";
+  return fmt::format(
+      "{}the lidar were rotated by the quaternion x y z w {} {} {} {} (difference {}); check the mounting", off,
+      rounded(q.x()), rounded(q.y()), rounded(q.z()), rounded(q.w()), percent(found.turned_error));
 }
 
 }  // namespace

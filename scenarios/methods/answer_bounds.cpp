@@ -41,7 +41,7 @@ std::string unit_like(std::string_view unit, double times) {
   constexpr double kFactor = 5.0;  // an answer may cover only a part of the recording
   for (const auto& [name, length_s] : kUnits) {
     const double share = times * length_s / asked_s;  // fraction of the recording if the stamps had this unit
-    if (unit != name && share > 1.0 / kFactor && share < kFactor) return fmt::format(" and looks like {}", name);
+    if (unit != name && share > 1.0 / kFactor && share < kFactor) return fmt::format("; the values look like {}", name);
   }
   return "";
 }
@@ -66,15 +66,16 @@ void require_attitude(const Eigen::Quaterniond& q, const std::string& where) {
 /// Checks that a covariance is finite, with variances of at least 0 and correlations of at most 1.
 template <int N>
 void require_covariance(const Eigen::Matrix<double, N, N>& C, const std::string& where) {
-  if (!C.allFinite()) throw BadInput(where + ": a covariance that is not finite, must be");
+  if (!C.allFinite()) throw BadInput(where + ": the covariance has a value that is not finite");
   if (const double least = C.diagonal().minCoeff(); least < 0.0)
-    throw BadInput(fmt::format("{}: a variance of {:g}, must be at least 0", where, least));
+    throw BadInput(fmt::format("{}: variance {:g}; it must be at least 0", where, least));
   for (int i = 0; i < N; ++i) {
     for (int j = i + 1; j < N; ++j) {
       const double most = std::sqrt(C(i, i)) * std::sqrt(C(j, j));
       if (std::abs(C(i, j)) > (1.0 + kCorrelationTolerance) * most)
-        throw BadInput(fmt::format("{}: a covariance of {:g} beside variances of {:g} and {:g}, must be within {:g}",
-                                   where, C(i, j), C(i, i), C(j, j), most));
+        throw BadInput(
+            fmt::format("{}: covariance {:g} between variances {:g} and {:g}; its magnitude must be at most {:g}",
+                        where, C(i, j), C(i, i), C(j, j), most));
     }
   }
 }
@@ -110,19 +111,20 @@ void AnswerBounds::require_size(const std::filesystem::path& file, std::uintmax_
   const std::string name = file.filename().string();
   // Rejects links, which could lead to files that the method did not write.
   if (!std::filesystem::is_regular_file(std::filesystem::symlink_status(file)))
-    throw BadInput(name + ": is no regular file");
+    throw BadInput(name + ": is not a regular file");
   std::error_code error;
   const std::uintmax_t size = std::filesystem::file_size(file, error);
   if (error) throw BadInput(name + ": " + error.message());
   if (size > bytes)
-    throw BadInput(fmt::format("{}: {} bytes, must be at most {} for this recording", name, size, bytes));
+    throw BadInput(fmt::format("{}: has {} bytes; it may have at most {} for this recording", name, size, bytes));
 }
 
 void AnswerBounds::require_time(std::int64_t time_ns, const std::string& where) const {
   if (time_ns >= first_ns_ - kMargin_ns && time_ns <= last_ns_ + kMargin_ns) return;
   const auto seconds = [](std::int64_t ns) { return static_cast<double>(ns) * 1e-9; };
-  throw BadInput(fmt::format("{}: stamp {:.9g} s, must be within {:.9g} to {:.9g} s: the recording and 10 s", where,
-                             seconds(time_ns), seconds(first_ns_ - kMargin_ns), seconds(last_ns_ + kMargin_ns)));
+  throw BadInput(
+      fmt::format("{}: stamp {:.9g} s; it must be within {:.9g} to {:.9g} s, the recording with a margin of 10 s",
+                  where, seconds(time_ns), seconds(first_ns_ - kMargin_ns), seconds(last_ns_ + kMargin_ns)));
 }
 
 void AnswerBounds::require_unit(std::span<const double> stamps_s, const char* unit, const Place& place) const {
@@ -138,10 +140,9 @@ void AnswerBounds::require_unit(std::span<const double> stamps_s, const char* un
   const std::string like = unit_like(unit, times);
   if (far && like.empty()) return;  // probably single wrong stamps
   const std::size_t row = far ? static_cast<std::size_t>(outside - stamps_s.begin()) : stamps_s.size() - 1;
-  throw BadInput(
-      fmt::format("{}: stamp {:.9g} s, and {} stamps span {:.3g} s of a recording of {:.3g} s, must be in "
-                  "{}{}",
-                  place(row), stamps_s[row], stamps_s.size(), most - least, length_s_, unit, like));
+  throw BadInput(fmt::format(
+      "{}: stamp {:.9g} s: {} stamps span {:.3g} s, but the recording lasts {:.3g} s; stamps must be in {}{}",
+      place(row), stamps_s[row], stamps_s.size(), most - least, length_s_, unit, like));
 }
 
 void AnswerBounds::require_unit(const Estimate& estimate, const char* unit, const Place& place) const {

@@ -29,7 +29,7 @@ Method attitude_eskf() {
   MethodInfo info;
   info.name = "eskf";
   info.kind = Kind::attitude;
-  info.doc = "Error-state Kalman filter of attitude and gyro bias with the specific force as a measurement of up.";
+  info.doc = "Error-state Kalman filter of attitude and gyro bias; the specific force measures the vertical.";
   info.source = "textbook, J. Sola, Quaternion kinematics for the error-state Kalman filter, arXiv 1711.02508";
   info.settings = {&attitude_eskf_settings()};
   return make_method(std::move(info), run_attitude_eskf);

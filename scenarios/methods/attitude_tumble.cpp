@@ -117,8 +117,8 @@ Method attitude_tumble() {
   info.name = "tumble";
   info.kind = Kind::attitude;
   info.doc =
-      "Tilt and gyro bias from the velocity being bounded, that of rolling on a sphere, and zero at rest; rates that a "
-      "rail hid are those of rate/tumble.";
+      "Estimates tilt and gyro bias from three velocity constraints: bounded in motion, rolling for a sphere, zero at "
+      "rest. Clipped rates are those of rate/tumble.";
   info.ours = true;
   info.settings = {&attitude_tumble_settings()};
   return make_method(std::move(info), at_sample_times<run_without_truth>);

@@ -82,9 +82,8 @@ Method attitude_tumble_batch() {
   info.name = "tumble_batch";
   info.kind = Kind::attitude;
   info.doc =
-      "A smoother over the whole recording of a body that is carried: bounded acceleration, velocity and position, "
-      "rest, "
-      "clipped gyro axes as bounds, or with the rates of rate/tumble where nobody held the body meanwhile.";
+      "Smoother over the complete recording of a hand-held body, with bounded acceleration, velocity and position, "
+      "rest, and bounds for clipped gyro axes. It uses the rates of rate/tumble while nobody holds the body.";
   info.ours = true;
   info.settings = {&carried_settings()};
   return make_method(std::move(info), at_sample_times<run_attitude_tumble_batch>);

@@ -55,9 +55,7 @@ Method attitude_tumble_lag() {
   MethodInfo info;
   info.name = "tumble_lag";
   info.kind = Kind::attitude;
-  info.doc =
-      "The filter of attitude/tumble on the rates of rate/tumble_lag: causal, each attitude at the age at which the "
-      "stream gives out its rate.";
+  info.doc = "The filter of attitude/tumble on the rates of rate/tumble_lag. It is causal and has the same lag.";
   info.ours = true;
   info.settings = {&attitude_tumble_settings()};
   info.robots = {"rig", "pendulum"};

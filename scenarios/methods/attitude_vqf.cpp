@@ -24,7 +24,9 @@ Method attitude_vqf() {
   MethodInfo info;
   info.name = "vqf";
   info.kind = Kind::attitude;
-  info.doc = "Specific force low-passed in a nearly inertial frame, gyro bias at rest and in motion; no magnetometer.";
+  info.doc =
+      "Low-passes the specific force in a nearly inertial frame and estimates the gyro bias at rest and in motion. It "
+      "uses no magnetometer.";
   info.source = "D. Laidig, T. Seel, VQF, Information Fusion 91, 2023";
   info.settings = {&attitude_vqf_settings()};
   return make_method(std::move(info), run_attitude_vqf);

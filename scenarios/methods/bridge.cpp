@@ -35,7 +35,7 @@ Status check_period(const sim::ImuRecord& record, std::span<const ImuSample> sam
   if (record.period_ns <= 0 || samples.size() < 3) return {};
   const double step_s = median_period_s(samples), stated_s = seconds(record.period_ns);
   if (step_s > stated_s / kPeriodsMax && step_s < stated_s * kPeriodsMax) return {};
-  return {Trouble::out_of_range, "median step of imu time_ns in s, held to 20 times the stated period and its 20th,",
+  return {Trouble::out_of_range, "median step of imu time_ns in s (must be within a factor of 20 of the stated period)",
           step_s, step_s < stated_s ? stated_s / kPeriodsMax : stated_s * kPeriodsMax};
 }
 
@@ -88,10 +88,11 @@ Status check_range(const sim::ImuRecord& record, const Eigen::Vector3d& gyro_rad
     if (!(bound > 0.0) || reading.cwiseAbs().maxCoeff() <= bound) return {};
     return {Trouble::out_of_range, field, reading.cwiseAbs().maxCoeff(), bound};
   };
-  const Status gyro =
-      beyond(gyro_rad_s, record.stated_gyro_range_rad_s, "angular_velocity_rad_s, held to twice its stated range,");
+  const Status gyro = beyond(gyro_rad_s, record.stated_gyro_range_rad_s,
+                             "angular_velocity_rad_s (must be within twice the stated range)");
   if (!gyro.ok()) return gyro;
-  return beyond(accel_m_s2, record.stated_accel_range_m_s2, "specific_force_m_s2, held to twice its stated range,");
+  return beyond(accel_m_s2, record.stated_accel_range_m_s2,
+                "specific_force_m_s2 (must be within twice the stated range)");
 }
 
 std::vector<bool> find_inliers(const sim::ImuRecord& record) {
@@ -166,7 +167,7 @@ std::size_t sweep_count(const sim::LidarRecord& record) {
   require_length(place, "intensity", record.intensity.size(), points);
   for (std::size_t k = 0; k < sweeps; ++k) {
     if (record.sweep_first[k] > record.sweep_first[k + 1]) {
-      throw BadInput(place + ".sweep_first falls at sweep " + std::to_string(k));
+      throw BadInput(place + ".sweep_first decreases at sweep " + std::to_string(k));
     }
   }
   require_length(place, "position_L_m", points, record.sweep_first[sweeps]);

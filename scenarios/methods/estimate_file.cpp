@@ -164,8 +164,7 @@ void read_contacts(const std::filesystem::path& path, Estimate& estimate) {
     if (!flagged) continue;
     const std::int64_t uncertain = table.integer(row, 2);
     if (uncertain != 0 && uncertain != 1) {
-      throw BadInput(path.string() + ":" + std::to_string(row.line) + ": uncertain is " + std::to_string(uncertain) +
-                     ", must be 0 or 1");
+      throw BadInput(fmt::format("{}:{}: uncertain is {}, must be 0 or 1", path.string(), row.line, uncertain));
     }
     estimate.uncertain.push_back(uncertain == 1);
   }
@@ -225,7 +224,8 @@ void read_sweeps(const std::filesystem::path& folder, Estimate& estimate) {
   for (const Table::Row& row : poses.rows) {
     const std::int64_t index = poses.integer(row, 0);
     if (index < 0 || index >= static_cast<std::int64_t>(estimate.sweeps.size())) {
-      throw BadInput(poses.path.string() + ":" + std::to_string(row.line) + ": no sweep " + std::to_string(index));
+      throw BadInput(poses.path.string() + ":" + std::to_string(row.line) + ": there is no sweep " +
+                     std::to_string(index));
     }
     estimate.sweeps[static_cast<std::size_t>(index)].trajectory.push_back(read_pose(poses, row, 1, 2));
   }
@@ -242,7 +242,7 @@ void read_tum(const std::filesystem::path& path, std::vector<PoseState>& poses, 
     if (all_finite && !(pose.p_WA_m.allFinite() && pose.q_WA.coeffs().allFinite()))
       throw BadInput(path.string() + ":" + std::to_string(row.line) + ": the pose is not finite");
     if (!poses.empty() && pose.time_ns <= poses.back().time_ns)
-      throw BadInput(path.string() + ":" + std::to_string(row.line) + ": time stamps must rise");
+      throw BadInput(path.string() + ":" + std::to_string(row.line) + ": time stamps must increase");
     poses.push_back(pose);
   }
 }
@@ -290,7 +290,7 @@ json header_of(const std::string& method, Kind kind, const Estimate& estimate, c
 
 void read_header(const std::filesystem::path& path, Kind& kind, std::string& method, Estimate& estimate) {
   if (std::error_code error; !std::filesystem::exists(path, error))
-    throw BadInput(path.string() + ": no such file; not a folder of an estimate");
+    throw BadInput(path.string() + ": no such file; the folder does not hold an estimate");
   std::ifstream file = open_regular_file(path);
   const json header = json::parse(file, nullptr, false);
   if (!header.is_object()) throw BadInput(path.string() + ": not a JSON object");
@@ -319,7 +319,7 @@ void write_estimate(const std::filesystem::path& folder, const std::string& meth
                     const std::string& sensors_digest) {
   std::error_code error;
   std::filesystem::create_directories(folder, error);
-  if (error) throw BadInput(folder.string() + ": cannot be made: " + error.message());
+  if (error) throw BadInput(folder.string() + ": cannot create the folder: " + error.message());
   // Remove files of an earlier estimate; they would be read as part of this one.
   for (const char* name : kEstimateFiles) std::filesystem::remove(folder / name, error);
   if (!estimate.rates.empty()) write_rates(folder / "rates.csv", estimate.rates);
@@ -336,13 +336,13 @@ void write_estimate(const std::filesystem::path& folder, const std::string& meth
   }
   write_position_covariances(folder / "position_covariance.csv", estimate.poses);
   if (!estimate.uncertain.empty() && estimate.uncertain.size() != estimate.contacts.size()) {
-    throw std::invalid_argument("an estimate has " + std::to_string(estimate.uncertain.size()) +
-                                " flags of uncertainty for " + std::to_string(estimate.contacts.size()) + " contacts");
+    throw std::invalid_argument(fmt::format("an estimate has {} flags of uncertainty for {} contacts",
+                                            estimate.uncertain.size(), estimate.contacts.size()));
   }
   if (!estimate.contacts.empty()) {
     if (estimate.contacts.size() != estimate.poses.size()) {
-      throw std::invalid_argument("an estimate has " + std::to_string(estimate.contacts.size()) + " contacts for " +
-                                  std::to_string(estimate.poses.size()) + " poses");
+      throw std::invalid_argument(
+          fmt::format("an estimate has {} contacts for {} poses", estimate.contacts.size(), estimate.poses.size()));
     }
     write_contacts(folder / "contacts.csv", estimate);
   }
@@ -369,7 +369,7 @@ Estimate read_estimate(const std::filesystem::path& path, Kind& kind, std::strin
     method = path.stem().string();
     estimate.frame = tum_frame;
     read_tum(path, estimate.poses, true);
-    if (estimate.poses.empty()) throw BadInput(path.string() + ": no pose in it");
+    if (estimate.poses.empty()) throw BadInput(path.string() + ": contains no pose");
     return estimate;
   }
   read_header(path / "estimate.json", kind, method, estimate);

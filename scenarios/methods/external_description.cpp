@@ -64,15 +64,14 @@ std::vector<std::string> words_of(const YamlNode& node) {
   for (const YamlNode& item : node.items()) {
     words.push_back(item.text());
     if (words.back().size() > kWordMax)
-      item.fail("a word of " + std::to_string(words.back().size()) + " characters, must be at most " +
-                std::to_string(kWordMax));
+      item.fail(fmt::format("has a word of {} characters; a word may have at most {}", words.back().size(), kWordMax));
     try {
       placeholders_in(words.back());
     } catch (const BadInput& error) {
       item.fail(error.what());
     }
   }
-  if (words.empty()) node.fail("no word");
+  if (words.empty()) node.fail("must have at least one word");
   return words;
 }
 
@@ -131,23 +130,24 @@ bool names_output(const std::vector<std::string>& command) {
 
 void read_command(const std::map<std::string, YamlNode>& fields, ExternalDescription& out) {
   for (const char* key : kOfPython)
-    if (fields.contains(key)) fields.at(key).fail("is of a function of Python, and this is a command");
+    if (fields.contains(key)) fields.at(key).fail("applies to a Python function only, but this method is a command");
   out.command = words_of(fields.at("command"));
-  if (!names_output(out.command)) fields.at("command").fail("no word names {output}, where the result is looked for");
+  if (!names_output(out.command))
+    fields.at("command").fail("no word of the command contains {output}, the path of the result");
   out.output = out.kind == Kind::rate ? ExternalDescription::Output::rates : ExternalDescription::Output::tum;
   if (fields.contains("output")) out.output = output_named(fields.at("output"));
   if ((out.output == ExternalDescription::Output::rates) != (out.kind == Kind::rate) &&
       out.output != ExternalDescription::Output::estimate)
-    fields.at("output").fail("rates are the output of kind rate, and a TUM file is that of the others");
+    fields.at("output").fail("kind rate needs the output 'rates'; the other kinds need a TUM file");
   if (fields.contains("version")) out.version = words_of(fields.at("version"));
 }
 
 void read_python(const std::map<std::string, YamlNode>& fields, ExternalDescription& out) {
   for (const char* key : kOfCommands)
-    if (fields.contains(key)) fields.at(key).fail("is of a command, and this is a function of Python");
+    if (fields.contains(key)) fields.at(key).fail("applies to a command only, but this method is a Python function");
   out.python = out.file.parent_path() / fields.at("python").text();
   if (!std::filesystem::is_regular_file(out.python))
-    fields.at("python").fail("'" + out.python.string() + "' is no file");
+    fields.at("python").fail("'" + out.python.string() + "' is not a file");
   out.function = fields.contains("function") ? fields.at("function").text() : to_string(out.kind);
   if (fields.contains("interpreter"))
     for (const YamlNode& item : fields.at("interpreter").items()) out.interpreter.push_back(item.text());
@@ -169,9 +169,10 @@ Kind kind_of_function(const std::string& text, const std::string& file) {
   std::vector<Kind> found = kinds_found(text, defined);
   if (found.empty()) found = kinds_found(text, assigned);
   if (found.size() != 1)
-    throw BadInput(file + ": defines " + std::to_string(found.size()) +
-                   " functions named rate, attitude, position or slam, must be one (a NAME.yaml can name another, and "
-                   "whatever else can be called)");
+    throw BadInput(
+        fmt::format("{}: defines {} functions named rate, attitude, position or slam; it must define exactly one (a "
+                    "file NAME.yaml can name another function)",
+                    file, found.size()));
   return found.front();
 }
 
@@ -205,9 +206,9 @@ std::vector<std::string> placeholders_in(const std::string& word) {
     const std::string name = (*it)[1];
     if (std::find(known.begin(), known.end(), name) == known.end())
       throw BadInput("unknown placeholder '{" + name + "}'" +
-                     (sim::nearest_name(name, known).empty()
-                          ? suggestion(name, known)
-                          : suggestion(name, known) + " (there are " + fmt::format("{}", fmt::join(known, " ")) + ")"));
+                     (sim::nearest_name(name, known).empty() ? suggestion(name, known)
+                                                             : suggestion(name, known) + " (known placeholders: " +
+                                                                   fmt::format("{}", fmt::join(known, " ")) + ")"));
     out.push_back(name);
   }
   return out;
@@ -234,7 +235,7 @@ ExternalDescription read_external(const std::filesystem::path& file) {
       "version", "frame",  "environment", "output",      "time_limit_s", "memory_limit_mib"};
   const auto fields = root.fields(required, optional);
   const auto given = [&](const char* key) { return fields.contains(key); };
-  if (given("command") == given("python")) root.fail("must have one of the keys 'command' and 'python'");
+  if (given("command") == given("python")) root.fail("must have exactly one of the keys 'command' and 'python'");
 
   ExternalDescription out;
   out.file = std::filesystem::absolute(file);

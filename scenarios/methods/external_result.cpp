@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "scenarios/methods/external_result.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -27,7 +29,7 @@ constexpr const char* kWithCovariance = "time_ns,wx_rad_s,wy_rad_s,wz_rad_s,cxx,
 
 std::string header_line(const std::filesystem::path& file) {
   std::ifstream stream(file);
-  if (!stream) throw BadInput(file.filename().string() + ": the command did not leave it");
+  if (!stream) throw BadInput(file.filename().string() + ": the command did not write this file");
   std::string line;
   std::getline(stream, line);
   while (!line.empty() && (line.back() == '\r' || line.back() == ' ')) line.pop_back();
@@ -44,24 +46,24 @@ Eigen::Matrix3d covariance(const Table& table, const Table::Row& row) {
 
 /// Reads one row per sample of the first IMU, in order.
 std::vector<RateState> read_rates(const std::filesystem::path& file, const sim::Sensors& sensors) {
-  if (sensors.imus.empty()) throw BadInput("the recording has no IMU, whose samples rates belong to");
+  if (sensors.imus.empty()) throw BadInput("the recording has no IMU; a rate method needs the samples of an IMU");
   const std::vector<std::int64_t>& stamps = sensors.imus.front().time_ns;
   const std::string header = header_line(file);
   const bool with_covariance = header == kWithCovariance;
   if (!with_covariance && header != kRateColumns)
-    throw BadInput(file.filename().string() + ":1: header '" + header.substr(0, 120) + "', must be '" + kRateColumns +
-                   "', or that with ',cxx,cxy,cxz,cyy,cyz,czz'");
+    throw BadInput(fmt::format("{}:1: header '{}', must be '{}' or the same with ',cxx,cxy,cxz,cyy,cyz,czz' added",
+                               file.filename().string(), header.substr(0, 120), kRateColumns));
   const Table table = Table::read(file, ',', header, with_covariance ? 10 : 4);
   if (table.rows.size() != stamps.size())
-    throw BadInput(file.filename().string() + ": " + std::to_string(table.rows.size()) + " rows, must be " +
-                   std::to_string(stamps.size()) + ", one per sample of " + sensors.imus.front().name);
+    throw BadInput(fmt::format("{}: {} rows, must be {}, one per sample of {}", file.filename().string(),
+                               table.rows.size(), stamps.size(), sensors.imus.front().name));
   std::vector<RateState> rates(stamps.size());
   for (std::size_t k = 0; k < rates.size(); ++k) {
     const Table::Row& row = table.rows[k];
     const std::int64_t time_ns = table.integer(row, 0);
     if (time_ns < stamps[k] - kStampTolerance_ns || time_ns > stamps[k] + kStampTolerance_ns)
-      throw BadInput(file.filename().string() + ":" + std::to_string(row.line) + ": time " + std::to_string(time_ns) +
-                     " ns, sample " + std::to_string(k) + " is of " + std::to_string(stamps[k]) + " ns");
+      throw BadInput(fmt::format("{}:{}: time {} ns, but sample {} has the time {} ns", file.filename().string(),
+                                 row.line, time_ns, k, stamps[k]));
     rates[k].time_ns = stamps[k];
     rates[k].w_WI_I_rad_s = {table.number(row, 1), table.number(row, 2), table.number(row, 3)};
     if (with_covariance) rates[k].covariance_rad2_s2 = covariance(table, row);
@@ -90,7 +92,7 @@ std::vector<double> stamps_of(const std::filesystem::path& file) {
 /// Reads poses of the stated frame from a TUM file.
 Estimate read_poses(const ExternalDescription& description, const std::filesystem::path& file) {
   if (!std::filesystem::is_regular_file(file))
-    throw BadInput(file.filename().string() + ": the command did not leave it");
+    throw BadInput(file.filename().string() + ": the command did not write this file");
   Kind kind{};
   std::string method;
   Estimate estimate = read_estimate(file, kind, method, description.frame);
@@ -107,8 +109,8 @@ Estimate read_folder(const ExternalDescription& description, const std::filesyst
   std::string method;
   Estimate estimate = read_estimate(folder, kind, method, description.frame);
   if (kind != description.kind)
-    throw BadInput(std::string("the command left an estimate of kind ") + to_string(kind) + ", " +
-                   description.file.filename().string() + " states " + to_string(description.kind));
+    throw BadInput(fmt::format("the command wrote an estimate of kind {}, but {} states kind {}", to_string(kind),
+                               description.file.filename().string(), to_string(description.kind)));
   return estimate;
 }
 
@@ -157,7 +159,7 @@ std::vector<MapPoint> read_points(const std::filesystem::path& file) {
   const auto given = [](const auto& columns) {
     return std::ranges::all_of(columns, [](const auto* each) { return each != nullptr; });
   };
-  if (!given(place)) throw BadInput(file.filename().string() + ": must have x, y and z");
+  if (!given(place)) throw BadInput(file.filename().string() + ": columns x, y and z are needed");
   std::vector<MapPoint> points(cloud.points);
   for (std::size_t k = 0; k < points.size(); ++k) {
     const auto vector = [k](const auto& columns) -> Eigen::Vector3f {

@@ -137,7 +137,8 @@ Status check_imus(const sim::Sensors& sensors, const MergedImus& imus, Estimate&
   if (std::abs(*imus.arm_share - 1.0) > kArmShareOff && !gyros_right) add_doubt({Doubt::About::readings}, estimate);
   if (!own.ok() || *imus.arm_share >= kArmShareMin) return own;
   return told(
-      {Trouble::out_of_range, "differences of the IMUs' forces as a share of what the turning makes of their places",
+      {Trouble::out_of_range,
+       "difference between the forces of the IMUs, relative to the value predicted from rotation and lever arms",
        *imus.arm_share, kArmShareMin},
       estimate);
 }

@@ -22,7 +22,7 @@ class JsonMembers {
   }
   std::string text(const char* key) const {
     const nlohmann::json& found = member(key);
-    if (!found.is_string()) complain(key, "a text");
+    if (!found.is_string()) complain(key, "text");
     return found.get<std::string>();
   }
   const nlohmann::json& object(const char* key) const {

@@ -59,8 +59,9 @@ Method position_observer() {
   info.name = "observer";
   info.kind = Kind::position;
   info.doc =
-      "Rolling plus a contact velocity, integrated from what acceleration and rolling disagree in during events.";
-  info.source = "ours, kept to compare with: superseded by position/tumble";
+      "Rolling velocity plus a contact velocity. During slip events, the contact velocity integrates the difference "
+      "between measured and rolling acceleration.";
+  info.source = "our own, for comparison only; superseded by position/tumble";
   info.settings = {&rest_settings(), &position_observer_settings()};
   info.robots = {"sphere"};
   return make_method(std::move(info), run_position_observer);

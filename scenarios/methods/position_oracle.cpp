@@ -47,7 +47,7 @@ Estimate run_exact_attitude(const sim::Sensors& sensors, const sim::Values& para
   const sim::Truth& truth = *oracle.truth;
   const std::vector<std::int64_t>& times_ns = sensors.imus.front().time_ns;
   if (truth.imus.empty() || truth.imus.front().rate_rad_s.size() != times_ns.size() || truth.q_WB.empty()) {
-    throw BadInput("the truth does not belong to the recording: rates of the primary IMU are missing");
+    throw BadInput("the truth does not belong to this recording: it has no rates of the primary IMU");
   }
   const Eigen::Matrix3d R_BI = truth.imus.front().T_BI.linear();
   std::size_t next = 0;
@@ -110,7 +110,7 @@ Estimate run_exact_contact(const sim::Sensors& sensors, const sim::Values& param
   Estimate estimate;
   MergedImus imus;
   if (!prepare("position/oracle_contact", sensors, imus, estimate)) return estimate;
-  if (oracle.truth->label.empty()) throw BadInput("the truth holds no state of contact");
+  if (oracle.truth->label.empty()) throw BadInput("the truth has no contact states");
   RollingSmoother::Params params = rolling_smoother_params(sensors, imus, settings_with_contact(), parameters);
   smooth(params, imus, true_modes(*oracle.truth, imus.samples), estimate);
   return estimate;
@@ -122,7 +122,9 @@ Method position_oracle() {
   MethodInfo info;
   info.name = "oracle";
   info.kind = Kind::position;
-  info.doc = "Our smoother given the exact attitude at all times: what the other sensors and the contact leave.";
+  info.doc =
+      "Bound: our smoother with the exact attitude at all times; shows the error of the other sensors and of the "
+      "contact.";
   info.ours = true;
   info.settings = {&settings_with_attitude()};
   info.needs_truth = true;
@@ -134,7 +136,9 @@ Method position_oracle_contact() {
   MethodInfo info;
   info.name = "oracle_contact";
   info.kind = Kind::position;
-  info.doc = "Our smoother told at each instant whether the contact grips, slips or is lost: what the sensors leave.";
+  info.doc =
+      "Bound: our smoother with the true contact state (grip, slip or none) at all times; shows the error of the "
+      "sensors.";
   info.ours = true;
   info.settings = {&settings_with_contact()};
   info.needs_truth = true;

@@ -53,7 +53,7 @@ struct LiveParams {
     visit.group("", p.filter);
     visit(p.slip_claimed_from,
           {"slip_claimed_from", "1", 0.0, 1.0,
-           "probability of slip or bump, over all hypotheses, from which on the likelier of them is claimed",
+           "probability of slip or bump, over all hypotheses, from which the more probable one is reported",
            Rank::first});
   }
 };
@@ -284,8 +284,8 @@ Method position_tumble() {
   info.name = "tumble";
   info.kind = Kind::position;
   info.doc =
-      "Rolling as a velocity measurement in an inertial filter, grip, slip, bump and slope as hypotheses; smoothed "
-      "over the run.";
+      "Inertial filter with rolling as a velocity measurement and with the hypotheses grip, slip, bump and slope; "
+      "smoothed over the whole recording.";
   info.ours = true;
   info.settings = {&position_settings()};
   info.robots = {"sphere"};
@@ -296,7 +296,7 @@ Method position_tumble_lag() {
   MethodInfo info;
   info.name = "tumble_lag";
   info.kind = Kind::position;
-  info.doc = "The same, each pose smoothed with what follows within a fixed lag.";
+  info.doc = "The method position/tumble with a fixed lag: each pose is smoothed with the data of that lag.";
   info.ours = true;
   info.settings = {&lag_settings()};
   info.robots = {"sphere"};
@@ -307,7 +307,7 @@ Method position_tumble_live() {
   MethodInfo info;
   info.name = "tumble_live";
   info.kind = Kind::position;
-  info.doc = "The same, live: each pose with what came before it alone.";
+  info.doc = "The method position/tumble live: each pose uses past data only.";
   info.ours = true;
   info.settings = {&live_settings()};
   info.robots = {"sphere"};

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "scenarios/methods/python_exchange.hpp"
 
+#include <fmt/format.h>
+
 #include <bit>
 #include <cmath>
 #include <cstring>
@@ -147,10 +149,10 @@ class Answer {
     // The function can make the memory larger than the size that it was given.
     const std::uintmax_t most = bounds.table_bytes() + bounds.map_bytes();
     if (memory.size() > most)
-      throw BadInput("the answer has " + std::to_string(memory.size()) + " bytes, must be at most " +
-                     std::to_string(most) + " for this recording");
+      throw BadInput(
+          fmt::format("the answer has {} bytes, must be at most {} for this recording", memory.size(), most));
     bytes_ = memory.contents();
-    if (bytes_.empty()) throw BadInput("the function ended the interpreter and left no answer");
+    if (bytes_.empty()) throw BadInput("the function ended the interpreter without an answer");
     std::uint64_t length = 0;
     if (bytes_.size() >= sizeof(length)) std::memcpy(&length, bytes_.data(), sizeof(length));
     if (length == 0 || length > bytes_.size() - sizeof(length)) fail();
@@ -191,7 +193,7 @@ class Answer {
 
  private:
   [[noreturn]] static void fail() {
-    throw BadInput("the answer in memory is damaged: did the function write into it?");
+    throw BadInput("the answer in memory is damaged; check whether the function wrote into it");
   }
 
   std::string bytes_;
@@ -204,7 +206,7 @@ Eigen::Vector3d row_of(const std::vector<double>& rows, std::size_t k) {
 }
 
 void read_rates(const Answer& answer, const sim::Sensors& sensors, Estimate& estimate) {
-  if (sensors.imus.empty()) throw BadInput("the recording has no IMU, whose samples rates belong to");
+  if (sensors.imus.empty()) throw BadInput("the recording has no IMU; a rate method needs the samples of an IMU");
   const std::vector<std::int64_t>& stamps = sensors.imus.front().time_ns;
   const std::vector<double> rates = answer.array<double>("rate", "<f8", 3, stamps.size());
   std::vector<double> covariances;
@@ -231,7 +233,7 @@ std::vector<PoseState> read_poses(const Answer& answer) {
     poses[k].p_WA_m = row_of(positions, k);
     const Eigen::Quaterniond q{Eigen::Map<const Eigen::Vector4d>(&quaternions[4 * k])};
     if (!(std::abs(q.coeffs().stableNorm() - 1.0) <= kQuaternionTolerance) || (k > 0 && times_ns[k] <= times_ns[k - 1]))
-      throw BadInput("pose " + std::to_string(k) + " of the answer has no attitude, or a time that does not rise");
+      throw BadInput(fmt::format("pose {} of the answer has no valid attitude, or its time does not increase", k));
     poses[k].q_WA = q.normalized();
   }
   return poses;
@@ -274,7 +276,7 @@ Estimate read_answer(const SharedMemory& memory, Kind kind, Frame frame, const s
     return estimate;
   }
   estimate.poses = read_poses(answer);
-  const AnswerBounds::Place place = [](std::size_t k) { return "pose " + std::to_string(k) + " of the answer"; };
+  const AnswerBounds::Place place = [](std::size_t k) { return fmt::format("pose {} of the answer", k); };
   bounds.require_unit(estimate, "nanoseconds", place);
   bounds.require_poses(estimate.poses, place);
   if (kind == Kind::attitude) {
@@ -284,7 +286,7 @@ Estimate read_answer(const SharedMemory& memory, Kind kind, Frame frame, const s
   if (kind == Kind::slam && answer.has("map")) read_map(answer, estimate);
   bounds.require_slam(estimate);
   if (const std::string complaint = turning_complaint(estimate, sensors); !complaint.empty())
-    throw BadInput("the answer: " + complaint);
+    throw BadInput("the answer is invalid: " + complaint);
   return estimate;
 }
 

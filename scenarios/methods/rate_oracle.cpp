@@ -23,7 +23,7 @@ Status unclipped_rates(const sim::Sensors& sensors, const sim::Truth& truth, std
   std::vector<ImuSample> samples;
   Status status = bridge::primary_imu_samples(sensors, samples);
   if (!status.ok()) return status;
-  if (truth.imus.empty()) throw BadInput("the truth holds no IMU");
+  if (truth.imus.empty()) throw BadInput("the truth has no IMU");
   status = bridge::unclipped_samples(sensors.imus.front(), truth.imus.front(), samples);
   if (!status.ok()) return status;
   return raw_rates(sensors, samples, out);
@@ -33,7 +33,7 @@ Method rate_oracle() {
   MethodInfo info;
   info.name = "oracle";
   info.kind = Kind::rate;
-  info.doc = "The same gyro without its rail: noise, bias and bandwidth as read, nothing clipped. The bound.";
+  info.doc = "Bound: the same gyro without saturation; noise, bias and bandwidth are unchanged.";
   info.ours = true;
   info.needs_truth = true;
   return make_method(std::move(info), at_sample_times<run_rate_oracle>);

@@ -183,7 +183,7 @@ Method learning_method(const Method& method, Learning& learning) {
   const std::string name = full_name(method.info);
   const bool batch = name == "rate/tumble";
   if (!batch && name != "rate/tumble_lag") {
-    throw BadInput("'" + name + "' learns nothing of the rig; 'rate/tumble' and 'rate/tumble_lag' do");
+    throw BadInput("'" + name + "' does not calibrate the rig; use 'rate/tumble' or 'rate/tumble_lag'");
   }
   Method out = method;
   out.run = [name, batch, info = method.info, &learning](const sim::Sensors& sensors, const sim::Values& given,
@@ -279,9 +279,9 @@ Method rate_tumble() {
   info.name = "tumble";
   info.kind = Kind::rate;
   info.doc =
-      "A smoother over the recording: bounds of clipped axes, rigid flight at the lever arm, Euler's equation, and the "
-      "constants of the rig with it; further IMUs on the body where there are any (not imu_reference); that of carried "
-      "where the readings say that a hand holds it.";
+      "Smoother over the whole recording with bounds for clipped axes, rigid-body flight at the lever arm, Euler's "
+      "equation and the rig constants. It uses further IMUs on the body (not imu_reference), and the hand-held "
+      "smoother where readings indicate hand-held motion.";
   info.ours = true;
   info.source = "ours, from Deschenes et al., Saturation-Aware Angular Velocity Estimation, ICRA 2024";
   info.settings = {&rate_tumble_settings()};

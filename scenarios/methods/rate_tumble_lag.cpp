@@ -175,8 +175,7 @@ Method rate_tumble_lag() {
   MethodInfo info;
   info.name = "tumble_lag";
   info.kind = Kind::rate;
-  info.doc =
-      "The smoother `tumble` as a stream: the same factors in a sliding window, estimates given out at a fixed age.";
+  info.doc = "The smoother of rate/tumble as a stream: the same factors in a sliding window, with a fixed lag.";
   info.ours = true;
   info.settings = {&rate_tumble_lag_settings()};
   info.robots = {"rig", "pendulum"};

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "scenarios/methods/registry.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <limits>
 #include <utility>
@@ -77,7 +79,7 @@ MethodPointer method_of_file(const std::string& file, double time_limit_s) {
   auto method = std::make_shared<const Method>(external_method(file, time_limit_s));
   for (const Method& own : methods()) {
     if (full_name(own.info) == full_name(method->info))
-      throw BadInput(file + ": " + full_name(own.info) + " is a method of this build; name yours otherwise");
+      throw BadInput(file + ": " + full_name(own.info) + " is a method of this build; choose another name for yours");
   }
   return method;
 }
@@ -109,7 +111,7 @@ std::string MethodInfo::why_not(const Subject& subject) const {
   const bool known = !robots.empty() && !subject.robot.empty();
   if (known && std::find(robots.begin(), robots.end(), subject.robot) == robots.end())
     return "does not apply to the robot '" + subject.robot + "'";
-  if (kind == Kind::slam && !subject.has_lidar) return "needs a lidar, and there is none";
+  if (kind == Kind::slam && !subject.has_lidar) return "needs a lidar, but the recording has none";
   return {};
 }
 
@@ -125,7 +127,7 @@ Method make_method(MethodInfo info, RunCore run) {
   RunMethod wrapped = [name, settings, parameters, needs_truth, run](
                           const sim::Sensors& sensors, const sim::Values& given, const OracleInput& oracle) {
     if (needs_truth && oracle.truth == nullptr) {
-      throw BadInput("method " + name + " needs the truth, and this recording has none");
+      throw BadInput(fmt::format("method {} needs the truth, but this recording has none", name));
     }
     try {
       const sim::Values resolved = resolve_settings("method " + name, given, settings);
@@ -169,7 +171,8 @@ std::vector<MethodPointer> find_methods_within(std::span<const std::string> name
       if (is_new) {
         found.push_back(std::move(method));
       } else if (is_method_file(name) && before->second != name) {
-        throw BadInput("'" + before->second + "' and '" + name + "' are both " + full_name(method->info));
+        throw BadInput(
+            fmt::format("'{}' and '{}' have the same name, {}", before->second, name, full_name(method->info)));
       }
     }
   }

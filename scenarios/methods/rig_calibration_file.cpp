@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "scenarios/methods/rig_calibration_file.hpp"
 
+#include <fmt/format.h>
+
 #include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
@@ -69,7 +71,7 @@ class CalibrationReader {
 
   const json& array(const char* key, std::size_t count) const {
     const json& values = object_.at(key);
-    if (!values.is_array() || values.size() != count) complain(key, "needs " + std::to_string(count) + " numbers");
+    if (!values.is_array() || values.size() != count) complain(key, fmt::format("needs exactly {} numbers", count));
     return values;
   }
 
@@ -77,10 +79,11 @@ class CalibrationReader {
   void read(const char* key, Array& into) const {
     const json& values = array(key, static_cast<std::size_t>(into.size()));
     for (std::size_t i = 0; i < values.size(); ++i) {
-      if (!values[i].is_number() || !std::isfinite(values[i].get<double>())) complain(key, "not a number");
+      if (!values[i].is_number() || !std::isfinite(values[i].get<double>()))
+        complain(key, "holds an element that is not a number");
       // Far beyond any rig constant; it would dominate all other numbers.
       if (std::abs(values[i].get<double>()) > kMost) {
-        complain(key, "is " + values[i].dump() + ", must be at most 1e6 in magnitude");
+        complain(key, fmt::format("is {}; its magnitude must be at most 1e6", values[i].dump()));
       }
       into.data()[i] = values[i].get<double>();
     }
@@ -90,7 +93,8 @@ class CalibrationReader {
     const json& values = array(key, 3);
     for (std::size_t j = 0; j < 3; ++j) {
       if (values[j].is_null()) continue;
-      if (!values[j].is_number() || !(values[j].get<double>() > 0.0)) complain(key, "a rail is positive, or null");
+      if (!values[j].is_number() || !(values[j].get<double>() > 0.0))
+        complain(key, "holds an invalid rail; a rail must be a positive number or null");
       rig.rail[first + j] = values[j].get<double>();
     }
   }
@@ -104,7 +108,7 @@ class CalibrationReader {
         if (rail.is_null()) continue;
         const bool sound = rail.is_number() && (i == 0 ? rail.get<double>() < 0.0 : rail.get<double>() > 0.0);
         if (!sound || std::abs(rail.get<double>()) > kMost) {
-          complain(key, "a pair is a negative and a positive rail of at most 1e6, or null");
+          complain(key, "a pair must be null, or a negative and a positive rail of magnitude at most 1e6");
         }
         planes[j][i] = rail.get<double>();
       }
@@ -243,7 +247,8 @@ RailPlanes LearntRig::planes(Triad triad) const {
 }
 
 void start_from(const LearntRig& rig, double trust, RateSmoother::Params& params) {
-  if (!(trust >= 1.0)) throw std::invalid_argument("trust is " + std::to_string(trust) + ", bound [1, inf)");
+  if (!(trust >= 1.0))
+    throw std::invalid_argument(fmt::format("trust is {}, must be at least 1", std::to_string(trust)));
   params.model.calibration = rig.calibration;
   params.model.calibration->covariance *= trust;
   params.expert.planes.known = rig.planes();

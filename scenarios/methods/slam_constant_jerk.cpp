@@ -88,15 +88,13 @@ Estimate run_slam_constant_jerk(const sim::Sensors& sensors, const sim::Values& 
 }  // namespace
 
 Method slam_constant_jerk() {
-  return rig_slam(
-      {.name = "constant_jerk",
-       .doc =
-           "Clipped gyro and accelerometer integrated with constant jerk inside of each sweep, rigid registration, "
-           "geometric observer for velocity and biases. Not modelled: keyframes and the plane-to-plane distance of the "
-           "original.",
-       .source = "the family of DLIO, Chen et al., ICRA 2023",
-       .settings = {&rigid_settings()}},
-      run_slam_constant_jerk);
+  return rig_slam({.name = "constant_jerk",
+                   .doc = "Integrates the clipped gyro and the accelerometer with constant jerk within each sweep, "
+                          "registers the sweep as a rigid body, and estimates velocity and biases by a geometric "
+                          "observer. Not modelled: keyframes and the plane-to-plane distance of the original.",
+                   .source = "the family of DLIO, Chen et al., ICRA 2023",
+                   .settings = {&rigid_settings()}},
+                  run_slam_constant_jerk);
 }
 
 }  // namespace tumble::scenarios

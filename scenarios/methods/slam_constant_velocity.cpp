@@ -91,11 +91,10 @@ Estimate run_slam_constant_velocity(const sim::Sensors& sensors, const sim::Valu
 Method slam_constant_velocity() {
   return rig_slam(
       {.name = "constant_velocity",
-       .doc =
-           "Lidar alone: the last change of pose goes on, the sweep is deskewed with it once and registered point to "
-           "plane as a rigid body. A tumble's rate changes by radians per second from sweep to sweep, which this "
-           "cannot know. Needs no IMU, nor times of the points: then nothing is deskewed. Not modelled: the adaptive "
-           "threshold and the point-to-point distance of the original.",
+       .doc = "Lidar only: predicts the pose by constant velocity, deskews the sweep once, and registers it point to "
+              "plane as a rigid body. It cannot follow the rate of a tumble, which changes by radians per second from "
+              "sweep to sweep. It needs no IMU; without point times it does not deskew. Not modelled: the adaptive "
+              "threshold and the point-to-point distance of the original.",
        .source = "the family of KISS-ICP, Vizzo et al., RA-L 2023",
        .settings = {&rigid_settings()}},
       run_slam_constant_velocity);

@@ -77,14 +77,13 @@ Estimate run_slam_floor(const sim::Sensors& sensors, const sim::Values& paramete
 }  // namespace
 
 Method slam_floor() {
-  return rig_slam(
-      {.name = "floor",
-       .doc = "Registration with the true motion inside of each sweep and the true mounting: what is left is the "
-              "registration's own error and the map's.",
-       .ours = true,
-       .settings = {&rigid_settings()},
-       .needs_truth = true},
-      run_slam_floor);
+  return rig_slam({.name = "floor",
+                   .doc = "Bound: registration with the true motion within each sweep and the true mounting. The "
+                          "remaining error is that of registration and map.",
+                   .ours = true,
+                   .settings = {&rigid_settings()},
+                   .needs_truth = true},
+                  run_slam_floor);
 }
 
 }  // namespace tumble::scenarios

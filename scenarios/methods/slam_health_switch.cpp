@@ -76,14 +76,13 @@ Estimate run_slam_health_switch(const sim::Sensors& sensors, const sim::Values& 
 }  // namespace
 
 Method slam_health_switch() {
-  return rig_slam(
-      {.name = "health_switch",
-       .doc = "Rotation from the gyro while a monitor finds it healthy, else the last rotation goes on; constant "
-              "velocity; rigid registration. A tumble leaves the monitor nothing healthy to switch to. Not modelled: "
-              "wheel and visual odometry, the other sources of the original's switch.",
-       .source = "the family of LOCUS, Palieri et al., RA-L 2021",
-       .settings = {&rigid_settings()}},
-      run_slam_health_switch);
+  return rig_slam({.name = "health_switch",
+                   .doc = "Uses the gyro's rotation while a monitor reports it as healthy, otherwise the last "
+                          "rotation; constant velocity; rigid registration. In a tumble, no healthy source remains. "
+                          "Not modelled: wheel and visual odometry, the other sources of the original.",
+                   .source = "the family of LOCUS, Palieri et al., RA-L 2021",
+                   .settings = {&rigid_settings()}},
+                  run_slam_health_switch);
 }
 
 }  // namespace tumble::scenarios

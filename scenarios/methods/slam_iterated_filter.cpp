@@ -76,15 +76,13 @@ Estimate run_slam_iterated_filter(const sim::Sensors& sensors, const sim::Values
 }  // namespace
 
 Method slam_iterated_filter() {
-  return rig_slam(
-      {.name = "iterated_filter",
-       .doc =
-           "Iterated error-state filter with the clipped gyro: back-propagation deskews to the sweep's end, all planes "
-           "update position, attitude and velocity. Not modelled: biases after the rest at the start, gravity and "
-           "mounting as states.",
-       .source = "the family of FAST-LIO2, Xu et al., T-RO 2022",
-       .settings = {&rigid_settings()}},
-      run_slam_iterated_filter);
+  return rig_slam({.name = "iterated_filter",
+                   .doc = "Iterated error-state filter with the clipped gyro. Back-propagation deskews to the end of "
+                          "the sweep; all planes update position, attitude and velocity. Not modelled: biases after "
+                          "the initial rest, gravity and mounting as states.",
+                   .source = "the family of FAST-LIO2, Xu et al., T-RO 2022",
+                   .settings = {&rigid_settings()}},
+                  run_slam_iterated_filter);
 }
 
 }  // namespace tumble::scenarios

@@ -80,9 +80,8 @@ Method slam_pointwise_reject() {
   return rig_slam(
       {.name = "pointwise_reject",
        .doc =
-           "A filter that takes each point at its own instant and each IMU reading as a measurement of a random "
-           "motion, "
-           "clipped axes left out. Not modelled: biases after the rest at the start, gravity and mounting as states.",
+           "Filter that processes each point at its own time and each IMU reading as a measurement of a random motion, "
+           "without clipped axes. Not modelled: biases after the initial rest, gravity and mounting as states.",
        .source = "the family of Point-LIO, He et al., Advanced Intelligent Systems 2023",
        .settings = {&slam_pointwise_reject_settings()}},
       run_slam_pointwise_reject);

@@ -18,7 +18,8 @@ struct MapParams {
   template <class Self, class Visitor>
   static void fields(Self& p, Visitor& visit) {
     visit.group("map_", p.map);
-    visit(p.nearest_m, {"nearest_m", "m", 0.0, 100.0, "nearer returns are the sphere's own"});
+    visit(p.nearest_m,
+          {"nearest_m", "m", 0.0, 100.0, "range below which returns belong to the sphere itself and are dropped"});
   }
 };
 
@@ -133,7 +134,7 @@ Method posed(MethodInfo info, const Method& position, RunCore run) {
 Method slam_poses_rolling() {
   MethodInfo info;
   info.name = "poses_rolling";
-  info.doc = "A map from the poses of rolling; nothing is registered.";
+  info.doc = "Maps with the poses of the rolling constraint, without registration.";
   info.source = "textbook rolling constraint";
   return posed(std::move(info), rolling(), run_poses_rolling);
 }
@@ -141,7 +142,7 @@ Method slam_poses_rolling() {
 Method slam_poses_autogain_fusion() {
   MethodInfo info;
   info.name = "poses_autogain_fusion";
-  info.doc = "A map from the poses of autogain_fusion, as published; nothing is registered.";
+  info.doc = "Maps with the published poses of autogain_fusion, without registration.";
   info.source = "Zevering et al., IMU-based pose-estimation for spherical robots, IEEE MFI 2021";
   return posed(std::move(info), autogain_fusion(), run_poses_autogain_fusion);
 }
@@ -149,7 +150,7 @@ Method slam_poses_autogain_fusion() {
 Method slam_poses_tumble() {
   MethodInfo info;
   info.name = "poses_tumble";
-  info.doc = "A map from the poses of our position method; nothing is registered.";
+  info.doc = "Maps with the poses of our position method, without registration.";
   info.ours = true;
   return posed(std::move(info), tumble(), run_poses_tumble);
 }

@@ -46,32 +46,36 @@ struct AlongParams {
   template <class Self, class Visitor>
   static void fields(Self& p, Visitor& visit) {
     visit(p.gravity_m_s2, {"along_gravity_m_s2", "m/s^2", 0.1, 20.0,
-                           "strength of gravity in the readings that are made along the rolled poses: enough to level "
-                           "by, and little, as in them it answers each correction of the attitude with an acceleration "
-                           "that is not there"});
+                           "gravity in the accelerometer readings that are computed along the rolled poses; large "
+                           "enough for levelling, small enough that attitude corrections cause no false acceleration"});
     visit(p.grip_sigma_share,
-          {"along_grip_sigma_share", "1", 1e-6, 1.0, "of the velocity by rolling, while it grips: its error of scale"});
-    visit(p.still_sigma_m_s,
-          {"along_still_sigma_m_s", "m/s", 1e-9, 10.0, "of the velocity by rolling at rest, and at the least"});
-    visit(p.loose_sigma_share, {"along_loose_sigma_share", "1", 1e-6, 10.0,
-                                "of the velocity in an event and while the radius is in doubt: loose enough to go "
-                                "where the surfaces lead"});
-    visit(p.loose_sigma_m_s, {"along_loose_sigma_m_s", "m/s", 1e-9, 10.0, "the same, while it moves, at the least"});
-    visit(p.moving_m_s, {"along_moving_m_s", "m/s", 1e-6, 10.0, "from this speed on it moves"});
-    visit(p.correction_m, {"along_correction_m", "m", 1e-6, 100.0,
-                           "a registration that asks for more is a false one: from sweep to sweep rolling errs by less "
-                           "than a millimetre"});
-    visit(p.correction_rad, {"along_correction_rad", "rad", 1e-6, 3.0, "and one that turns it by more"});
-    visit(p.loose_correction_m,
-          {"along_loose_correction_m", "m", 0.0, 100.0, "so much more is believed while the radius is in doubt"});
+          {"along_grip_sigma_share", "1", 1e-6, 1.0,
+           "standard deviation of the rolling velocity while gripping, as a share of it (scale error)"});
+    visit(p.still_sigma_m_s, {"along_still_sigma_m_s", "m/s", 1e-9, 10.0,
+                              "least standard deviation of the rolling velocity, and its value at rest"});
+    visit(p.loose_sigma_share,
+          {"along_loose_sigma_share", "1", 1e-6, 10.0,
+           "standard deviation of the velocity during an event or while the radius is uncertain, as a share of it"});
+    visit(p.loose_sigma_m_s, {"along_loose_sigma_m_s", "m/s", 1e-9, 10.0,
+                              "least standard deviation of the velocity in that case while moving"});
+    visit(p.moving_m_s, {"along_moving_m_s", "m/s", 1e-6, 10.0, "speed from which the sphere counts as moving"});
+    visit(p.correction_m,
+          {"along_correction_m", "m", 1e-6, 100.0,
+           "largest accepted position correction by registration; the rolling error per sweep is below 1 mm"});
+    visit(p.correction_rad,
+          {"along_correction_rad", "rad", 1e-6, 3.0, "largest accepted rotation correction by registration"});
+    visit(p.loose_correction_m, {"along_loose_correction_m", "m", 0.0, 100.0,
+                                 "additional accepted position correction while the radius is uncertain"});
     visit(p.segment_m,
-          {"along_segment_m", "m", 0.01, 100.0, "of rolled path, over which the lidar measures the radius"});
+          {"along_segment_m", "m", 0.01, 100.0, "length of the rolled path over which the lidar measures the radius"});
     visit(p.segment_sigma_m, {"along_segment_sigma_m", "m", 1e-6, 10.0,
-                              "of a segment at the least: neither the centre nor the registration is better known"});
+                              "least standard deviation of this length, from the centre and the registration"});
     visit(p.mended_sigmas, {"along_mended_sigmas", "1", 0.0, 1e3,
-                            "standard deviations, beyond which the lidar's radius takes the place of the stated one"});
+                            "difference between the lidar's and the stated radius, in standard deviations, above which "
+                            "the lidar's radius is used"});
     visit(p.mended_share, {"along_mended_share", "1", 0.0, 1.0,
-                           "and share of the radius, at the least: registration has an error of scale of its own"});
+                           "least difference between the lidar's and the stated radius, as a share, above which the "
+                           "lidar's radius is used"});
   }
 };
 
@@ -256,7 +260,7 @@ Method slam_rolling_prior() {
   MethodInfo info;
   info.name = "rolling_prior";
   info.kind = Kind::slam;
-  info.doc = "The registration of the rig, with the poses of our position method as its prior between two sweeps.";
+  info.doc = "Rig registration with the poses of our position method as the prior between two sweeps.";
   info.ours = true;
   info.settings = stages_after({&prior_settings(), &along_settings()}, followed());
   info.robots = {"sphere"};

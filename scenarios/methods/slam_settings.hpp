@@ -21,8 +21,8 @@ struct SlamParams {
   static void fields(Self& p, Visitor& visit) {
     visit.group("", p.odometry);
     visit(p.flight_arc, on_off("flight_arc",
-                               "1: in flight the ballistic arc of the centre of mass, as calibrated, gives the "
-                               "position; 0: the accelerometer",
+                               "1: in flight, the position follows the ballistic arc of the calibrated centre of mass; "
+                               "0: it follows the accelerometer",
                                Rank::first));
   }
 };

@@ -81,9 +81,8 @@ Method slam_tumble_gyro_only() {
   return rig_slam(
       {.name = "tumble_gyro_only",
        .doc =
-           "The chain of tumble with the clipped gyro and nothing of the accelerometer in its rates: the saturation "
-           "deficit of clipped axes comes from the registration, which starts from guesses of the gaps in turn until "
-           "a map holds.",
+           "The chain of tumble with the clipped gyro and without the accelerometer in its rates. The registration "
+           "estimates the saturation deficit and tries several initial values in each gap until a map is consistent.",
        .ours = true,
        .settings = {&slam_tumble_gyro_only_settings()}},
       at_sample_times<run_slam_tumble_gyro_only>);

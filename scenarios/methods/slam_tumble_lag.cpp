@@ -184,19 +184,19 @@ Estimate run_slam_tumble_lag(const sim::Sensors& sensors, const sim::Values& par
 }  // namespace
 
 Method slam_tumble_lag() {
-  return rig_slam(
-      {.name = "tumble_lag",
-       .doc = "TumblingOdometry, the library's door: one causal pass, each sweep's last word 0.3 s after it.",
-       .ours = true,
-       .settings = {&slam_tumble_lag_settings()}},
-      [](const sim::Sensors& sensors, const sim::Values& parameters, const OracleInput&) {
-        return run_slam_tumble_lag(sensors, parameters, Word::last);
-      });
+  return rig_slam({.name = "tumble_lag",
+                   .doc = "TumblingOdometry, the public API of the library: one causal pass; the final pose of a sweep "
+                          "follows 0.3 s later.",
+                   .ours = true,
+                   .settings = {&slam_tumble_lag_settings()}},
+                  [](const sim::Sensors& sensors, const sim::Values& parameters, const OracleInput&) {
+                    return run_slam_tumble_lag(sensors, parameters, Word::last);
+                  });
 }
 
 Method slam_tumble_live() {
   return rig_slam({.name = "tumble_live",
-                   .doc = "The same pass, live: the pose at each sample of the IMU by what came before it alone.",
+                   .doc = "The same pass, live: the pose at each IMU sample uses past data only.",
                    .ours = true,
                    .settings = {&slam_tumble_lag_settings()}},
                   [](const sim::Sensors& sensors, const sim::Values& parameters, const OracleInput&) {

@@ -213,13 +213,12 @@ std::optional<TimeNs> silent_since(const std::vector<ImuSample>& unit) {
 }
 
 Status frozen_in_all(const FrozenAxis& axis) {
-  constexpr const char* kFields[2][3] = {
-      {"seconds for which gyro x repeats one reading, and no IMU is without the like,",
-       "seconds for which gyro y repeats one reading, and no IMU is without the like,",
-       "seconds for which gyro z repeats one reading, and no IMU is without the like,"},
-      {"seconds for which accel x repeats one reading, and no IMU is without the like,",
-       "seconds for which accel y repeats one reading, and no IMU is without the like,",
-       "seconds for which accel z repeats one reading, and no IMU is without the like,"}};
+  constexpr const char* kFields[2][3] = {{"repeat time of gyro x in s, with no healthy IMU available",
+                                          "repeat time of gyro y in s, with no healthy IMU available",
+                                          "repeat time of gyro z in s, with no healthy IMU available"},
+                                         {"repeat time of accel x in s, with no healthy IMU available",
+                                          "repeat time of accel y in s, with no healthy IMU available",
+                                          "repeat time of accel z in s, with no healthy IMU available"}};
   const char* field = kFields[axis.triad == Triad::gyro ? 0 : 1][axis.axis];
   return {Trouble::out_of_range, field, seconds(axis.to_ns - axis.from_ns), FrozenAxes::Params{}.frozen_s};
 }

@@ -34,12 +34,15 @@ std::optional<Eigen::Quaterniond> q_AI(Frame frame, const sim::Sensors& sensors)
 
 std::string text_of(const TurningFit& fit, const std::string& frame) {
   std::string out;
-  if (fit.written == Written::w_first) out = "the quaternions had w first (x y z w is asked)";
-  if (fit.written == Written::w_first_inverse) out = "the quaternions had w first and were of the world in the sensor";
+  if (fit.written == Written::w_first) out = "the quaternions had w first (expected order: x y z w)";
+  if (fit.written == Written::w_first_inverse)
+    out =
+        "the quaternions had w first and described the world in sensor axes (expected: x y z w, the sensor in world "
+        "axes)";
   if (fit.written == Written::inverse)
-    out = "the quaternions were of the world in the sensor (of the sensor in the world is asked)";
+    out = "the quaternions described the world in sensor axes (expected: the sensor in world axes)";
   if (fit.frame == 0) return out;
-  return out + (out.empty() ? "the poses" : " and the poses") + " were of the frame " + frame;
+  return out + (out.empty() ? "the poses" : " and the poses") + " belonged to the frame " + frame;
 }
 
 }  // namespace
@@ -57,8 +60,8 @@ std::string turning_complaint(const Estimate& estimate, const sim::Sensors& sens
   const TurningFit& best = check.reading.undelayed;
   if (check.pairs == 0 || check.stated.difference <= kTurnsOtherwise || best.difference >= kTurnsAsSaid) return "";
   return fmt::format(
-      "the attitudes in the frame {} do not turn as the gyro says (off by {:.0f} % over {} pairs), but "
-      "would (by {:.0f} %) if {}",
+      "the attitudes in frame {} do not rotate as the gyro does (difference {:.0f} % over {} pairs), but would "
+      "(difference {:.0f} %) if {}",
       to_string(estimate.frame), 100.0 * check.stated.difference, check.pairs, 100.0 * best.difference,
       text_of(best, frames[best.frame].name));
 }

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "scenarios/recordings/export_names.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cctype>
 
@@ -40,8 +42,9 @@ void add_claims(const std::vector<Record>& records, const std::string& kind, con
 
 std::string why_another(const Claim& claim) {
   const bool sensors = !own_names().contains(claim.name) && !frames_of_no_sensor().contains(claim.name);
-  return "'" + claim.name + "' is " + (sensors ? "another sensor's name too" : "a topic or frame that is no sensor's") +
-         ": " + claim.sensor + " is written as '" + claim.given + "'";
+  return fmt::format("'{}' is {}: {} is written as '{}'", claim.name,
+                     sensors ? "also the name of another sensor" : "a topic or frame that does not belong to a sensor",
+                     claim.sensor, claim.given);
 }
 
 /// For sensors or their truth.

@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <array>
 
@@ -144,7 +146,7 @@ std::size_t Group::count_rows(const Handle& dataset, const std::string& name, st
   const std::uint64_t row_bytes = columns * size_of(scalar);
   const std::uint64_t most_rows = H5Dget_storage_size(dataset.get()) * kBestDeflation / row_bytes;
   if (extent[0] > most_rows) {
-    fail(name, "claims " + std::to_string(extent[0]) + " rows, but the file does not hold them");
+    fail(name, fmt::format("states {} rows, but the file is shorter", extent[0]));
   }
   return extent[0];
 }

@@ -69,12 +69,12 @@ Handle create_file(const std::string& name, const std::string& label, const Hand
   // Format 1.10 has a checksum on all metadata, so that the library detects flipped bytes.
   if (H5Pset_fclose_degree(access.get(), H5F_CLOSE_STRONG) < 0 ||
       H5Pset_libver_bounds(access.get(), H5F_LIBVER_V110, H5F_LIBVER_V110) < 0) {
-    throw BadInput(name + ": cannot be prepared" + last_error());
+    throw BadInput(name + ": cannot be prepared for writing" + last_error());
   }
   const Handle creation(H5Pcreate(H5P_FILE_CREATE), H5Pclose);
   H5Pset_obj_track_times(creation.get(), false);  // equal recordings give equal files
   Handle file(H5Fcreate(label.c_str(), H5F_ACC_TRUNC, creation.get(), access.get()), H5Fclose);
-  if (!file.valid()) throw BadInput(name + ": cannot be prepared" + last_error());
+  if (!file.valid()) throw BadInput(name + ": cannot be prepared for writing" + last_error());
   return file;
 }
 
@@ -83,7 +83,7 @@ Handle create_in_memory(const std::string& name, void** image) {
   constexpr std::size_t kGrowth = std::size_t{16} << 20;
   H5FD_file_image_callbacks_t calls = keep_image_in(image);
   if (H5Pset_fapl_core(access.get(), kGrowth, false) < 0 || H5Pset_file_image_callbacks(access.get(), &calls) < 0) {
-    throw BadInput(name + ": cannot be prepared" + last_error());
+    throw BadInput(name + ": cannot be prepared for writing" + last_error());
   }
   // Not an existing file's name: the library would read that file into memory first.
   return create_file(name, name + " in memory", access);
@@ -91,12 +91,12 @@ Handle create_in_memory(const std::string& name, void** image) {
 
 Handle create_on_disk(const std::string& name, const std::filesystem::path& path, std::uint64_t most_bytes) {
   const Handle access(H5Pcreate(H5P_FILE_ACCESS), H5Pclose);
-  if (H5Pset_fapl_sec2(access.get()) < 0) throw BadInput(name + ": cannot be prepared" + last_error());
+  if (H5Pset_fapl_sec2(access.get()) < 0) throw BadInput(name + ": cannot be prepared for writing" + last_error());
   Handle file = create_file(name, path.string(), access);
   // Reserve space after creation, which truncates the file.
   void* descriptor = nullptr;
   if (H5Fget_vfd_handle(file.get(), H5P_DEFAULT, &descriptor) < 0)
-    throw BadInput(name + ": cannot be prepared" + last_error());
+    throw BadInput(name + ": cannot be prepared for writing" + last_error());
   const int error = posix_fallocate(*static_cast<int*>(descriptor), 0, static_cast<off_t>(most_bytes));
   if (error != 0) throw BadInput(name + ": cannot be written: " + std::generic_category().message(error));
   return file;
@@ -195,7 +195,7 @@ MemoryFile::~MemoryFile() {
 std::span<const std::byte> MemoryFile::close() {
   root_ = Group();
   file_ = Handle();
-  if (image_ == nullptr) throw BadInput(name_ + ": cannot be composed");
+  if (image_ == nullptr) throw BadInput(name_ + ": cannot be assembled in memory");
   return {static_cast<const std::byte*>(image_), stated_length(image_)};
 }
 
@@ -213,12 +213,12 @@ void DiskFile::close() {
   std::array<char, kSuperblockBytes> head{};
   std::error_code error;
   if (!std::ifstream(path_, std::ios::binary).read(head.data(), head.size()))
-    throw BadInput(name_ + ": cannot be composed");
+    throw BadInput(name_ + ": cannot be assembled in memory");
   std::filesystem::resize_file(path_, stated_length(head.data()), error);
   if (error) throw BadInput(name_ + ": cannot be written: " + error.message());
   // A close that failed midway reports nothing; superblock and length agree only in a complete file.
   if (!Handle(H5Fopen(path_.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT), H5Fclose).valid())
-    throw BadInput(name_ + ": cannot be composed" + last_error());
+    throw BadInput(name_ + ": cannot be assembled in memory" + last_error());
 }
 
 }  // namespace tumble::scenarios::hdf5

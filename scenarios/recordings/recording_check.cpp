@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "scenarios/recordings/recording_check.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cctype>
 #include <cmath>
@@ -28,8 +30,7 @@ std::string length_problem(const Lengths& lengths) {
   const auto& [first_name, first] = *lengths.begin();
   for (const auto& [name, length] : lengths) {
     if (length == first) continue;
-    return std::string(name) + " has " + std::to_string(length) + " rows, " + first_name + " has " +
-           std::to_string(first);
+    return fmt::format("{} has {} rows, but {} has {}", name, length, first_name, first);
   }
   return "";
 }
@@ -39,17 +40,17 @@ std::string pose_problem(const char* name, const Eigen::Isometry3d& pose) {
   if (!pose.matrix().allFinite()) return std::string(name) + " is not finite";
   const double departure = (rotation.transpose() * rotation - Eigen::Matrix3d::Identity()).cwiseAbs().maxCoeff();
   if (!(departure <= kUnitTolerance) || rotation.determinant() < 0.0)
-    return std::string(name) + " is not a rotation and a shift";
+    return std::string(name) + " is not a rotation with a translation";
   return "";
 }
 
 std::string at_least(const char* name, double value, double bound) {
   if (std::isfinite(value) && value >= bound) return "";
-  return std::string(name) + " is " + std::to_string(value) + ", must be at least " + std::to_string(bound);
+  return fmt::format("{} is {}, must be at least {}", name, value, bound);
 }
 
 std::string positive(const char* name, std::int64_t value) {
-  return value > 0 ? "" : std::string(name) + " is " + std::to_string(value) + ", must be above 0";
+  return value > 0 ? "" : fmt::format("{} is {}; it must be greater than 0", name, value);
 }
 
 std::string first_of(std::initializer_list<std::string> problems) {
@@ -60,8 +61,7 @@ std::string first_of(std::initializer_list<std::string> problems) {
 /// For rows that a sensor may lack.
 std::string optional_length_problem(const char* name, std::size_t length, std::size_t needed) {
   if (length == 0 || length == needed) return "";
-  return std::string(name) + " has " + std::to_string(length) + " rows, must have " + std::to_string(needed) +
-         " or none";
+  return fmt::format("{} has {} rows, must have {} or none", name, length, needed);
 }
 
 /// Names must be UTF-8 without control characters, for tables.
@@ -83,8 +83,8 @@ std::string times_problem(const char* name, const std::vector<std::int64_t>& tim
   const auto far = [](std::int64_t t) { return t > kTimeMax_ns || t < -kTimeMax_ns; };
   const auto found = std::find_if(times_ns.begin(), times_ns.end(), far);
   if (found == times_ns.end()) return "";
-  return std::string(name) + " is " + std::to_string(*found) + " in row " + std::to_string(found - times_ns.begin()) +
-         ", must be within 1e17 ns of the recording's start";
+  return fmt::format("{} is {} in row {}; it must be within 1e17 ns of the start of the recording", name, *found,
+                     found - times_ns.begin());
 }
 
 std::string imu_problem(const sim::ImuRecord& imu) {
@@ -107,16 +107,16 @@ std::string sweep_problem(const sim::LidarRecord& lidar, std::size_t points) {
   const std::size_t sweeps = lidar.sweep_start_ns.size();
   if (sweeps == 0 && points == 0 && lidar.sweep_first.empty()) return "";
   if (lidar.sweep_first.size() != sweeps + 1) {
-    return "sweep_first has " + std::to_string(lidar.sweep_first.size()) +
-           " rows, must have one more than sweep_start_ns (" + std::to_string(sweeps) + ")";
+    return fmt::format("sweep_first has {} rows, must have one more than sweep_start_ns ({})", lidar.sweep_first.size(),
+                       sweeps);
   }
   if (lidar.sweep_first.front() != 0 || lidar.sweep_first.back() != points) {
-    return "sweep_first must go from 0 to the number of points, " + std::to_string(points);
+    return "sweep_first must increase from 0 to the number of points, " + std::to_string(points);
   }
-  if (!std::is_sorted(lidar.sweep_first.begin(), lidar.sweep_first.end())) return "sweep_first falls";
+  if (!std::is_sorted(lidar.sweep_first.begin(), lidar.sweep_first.end())) return "sweep_first decreases";
   const auto stuck = [](std::int64_t a, std::int64_t b) { return a >= b; };
   const auto& start = lidar.sweep_start_ns;
-  if (std::adjacent_find(start.begin(), start.end(), stuck) != start.end()) return "sweep_start_ns does not rise";
+  if (std::adjacent_find(start.begin(), start.end(), stuck) != start.end()) return "sweep_start_ns does not increase";
   return "";
 }
 
@@ -145,14 +145,13 @@ template <class Offsets>
 std::string offset_problem(const Offsets& offsets) {
   return first_wrong(offsets, [](std::uint32_t offset, std::size_t i) -> std::string {
     if (offset == 0) return "";
-    return "offset_ns is " + std::to_string(offset) + " at point " + std::to_string(i) +
-           ", must be 0 where points have no times of their own";
+    return fmt::format("offset_ns is {} at point {}; it must be 0 if points have no time stamps", offset, i);
   });
 }
 
 template <class Offsets>
 std::string point_times_problem(const sim::LidarRecord& lidar, const Offsets& offsets) {
-  if (lidar.point_times > sim::PointTimes::unknown) return "point_times is none of measured, not_skewed, unknown";
+  if (lidar.point_times > sim::PointTimes::unknown) return "point_times is not one of measured, not_skewed, unknown";
   return lidar.point_times == sim::PointTimes::measured ? "" : offset_problem(offsets);
 }
 
@@ -174,7 +173,7 @@ std::string lidar_problem(const sim::LidarRecord& lidar, const Points& points) {
 std::string column_problem(const std::string& name) {
   const auto plain = [](unsigned char c) { return std::isalnum(c) != 0 || c == '_'; };
   if (!name.empty() && std::all_of(name.begin(), name.end(), plain)) return "";
-  return "name must be letters, digits and _, at least one";
+  return "the name must consist of letters, digits and _, at least one";
 }
 
 /// Checks the unique names of a sensor's quantities or constants.
@@ -185,7 +184,7 @@ std::string names_problem(const std::string& list, const std::vector<Record>& re
   for (std::size_t i = 0; i < records.size() && problem.empty(); ++i) {
     const std::string& name = records[i].name;
     problem = in(list + "/" + std::to_string(i),
-                 first_of({column_problem(name), names.insert(name).second ? "" : "name is another's too"}));
+                 first_of({column_problem(name), names.insert(name).second ? "" : "the name is used twice"}));
   }
   return problem;
 }
@@ -206,7 +205,7 @@ std::string series_problem(const sim::SeriesRecord& series) {
                                   quantities_problem(series.quantities), names_problem("constants", series.constants)});
   for (std::size_t i = 0; i < series.constants.size() && problem.empty(); ++i) {
     if (!std::isfinite(series.constants[i].value))
-      problem = in("constants/" + std::to_string(i), "value is not finite");
+      problem = in("constants/" + std::to_string(i), "the value is not finite");
   }
   for (std::size_t i = 0; i < series.quantities.size() && problem.empty(); ++i) {
     const sim::Quantity& quantity = series.quantities[i];
@@ -256,7 +255,7 @@ std::string imu_truth_problem(const Imu& imu) {
 std::string surface_problem(std::int32_t id, std::size_t surfaces) {
   // -1: unknown, -2: the robot's own cage
   if (id >= -2 && id < static_cast<std::int64_t>(surfaces)) return "";
-  return "surface_id " + std::to_string(id) + " has no name in surfaces (" + std::to_string(surfaces) + ")";
+  return fmt::format("surface_id {} has no name in surfaces ({})", id, surfaces);
 }
 
 template <class Lidar>
@@ -271,7 +270,7 @@ std::string lidar_truth_problem(const Lidar& lidar, std::size_t surfaces) {
 class RisingTimes {
  public:
   std::string operator()(std::int64_t time_ns, std::size_t) {
-    if (time_ns < before_) return "time_ns: falls or is negative";
+    if (time_ns < before_) return "time_ns: decreases or is negative";
     before_ = time_ns;
     return "";
   }
@@ -308,7 +307,7 @@ std::string attitude_problem(const Eigen::Quaterniond& q_WB, std::size_t) {
 
 std::string label_problem(sim::ContactLabel label, std::size_t) {
   if (label <= sim::ContactLabel::slide) return "";
-  return "label " + std::to_string(static_cast<int>(label)) + " is unknown, the largest is 3";
+  return fmt::format("label {} is unknown; the largest is 3", static_cast<int>(label));
 }
 
 template <class Truth>

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "scenarios/recordings/replace_file.hpp"
 
+#include <fmt/format.h>
+
 #include <fcntl.h>
 #include <sys/stat.h>
 #include <unistd.h>
@@ -69,7 +71,7 @@ void require_replaceable(const fs::path& given, const fs::path& place) {
   const std::optional<struct stat> old = status_of(place);
   if (!old) return;
   if (S_ISDIR(old->st_mode)) fail(given, EISDIR);
-  if (!S_ISREG(old->st_mode)) fail(given, "it is no regular file, but a device, a pipe or a socket");
+  if (!S_ISREG(old->st_mode)) fail(given, "it is not a regular file but a device, a pipe or a socket");
   if (access(place.c_str(), W_OK) != 0) fail(given, errno);
 }
 
@@ -84,7 +86,7 @@ void require_outside(const fs::path& output, std::span<const fs::path> inputs) {
     if (error) continue;
     const bool within = std::mismatch(folder.begin(), folder.end(), place.begin(), place.end()).first == folder.end();
     if (within && place != folder)
-      fail(output, "it is a file of " + input.string() + ", which is read; name another output");
+      fail(output, fmt::format("the output is a file of the input {}; name another output", input.string()));
   }
 }
 
@@ -133,7 +135,7 @@ void OutputFile::move_into_place() {
     const std::optional<struct stat> own = status_of(unfinished_);
     const bool same_owner = own && own->st_uid == old->st_uid && own->st_gid == old->st_gid;
     if (!same_owner && fchown(file.get(), old->st_uid, old->st_gid) != 0) {
-      fail(given_, "it belongs to somebody else, and its owner cannot be kept");
+      fail(given_, "the file belongs to another user, and its owner cannot be kept");
     }
     if (fchmod(file.get(), old->st_mode & 07777) != 0) fail(given_, errno);
   }
@@ -153,8 +155,9 @@ OutputFolder::OutputFolder(const fs::path& folder) : folder_(folder) {
   const bool empty = fs::is_empty(folder, error);
   if (error) fail(folder, error.message());
   if (!empty) {
-    throw BadInput(folder.string() +
-                   ": holds files already, which would be taken for this run's; name a new folder or empty this one");
+    throw BadInput(
+        folder.string() +
+        ": contains files already, which would mix with those of this run; name a new folder or empty this one");
   }
   on_signal_.emplace(folder, made_ ? Unfinished::Kind::folder : Unfinished::Kind::contents);
 }
@@ -189,7 +192,7 @@ void require_not_an_input(const fs::path& output, std::span<const fs::path> inpu
   for (const fs::path& input : inputs) {
     const std::optional<struct stat> other = input.empty() ? std::nullopt : status_of(input);
     if (other && other->st_dev == own->st_dev && other->st_ino == own->st_ino) {
-      throw BadInput(output.string() + ": is both read and written; name another output");
+      throw BadInput(output.string() + ": is both input and output; name another output");
     }
   }
 }

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "scenarios/recordings/table_file.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <charconv>
 #include <cmath>
@@ -48,8 +50,8 @@ bool read_line(std::istream& file, const std::filesystem::path& path, int number
     if (c == '\n') return true;
     line += static_cast<char>(c);
     if (line.size() > kLineMax)
-      throw BadInput(path.string() + ":" + std::to_string(number) + ": has more than " + std::to_string(kLineMax) +
-                     " bytes: no line of a table");
+      throw BadInput(fmt::format("{}:{}: the line has more than {} bytes; it is not a line of a table", path.string(),
+                                 number, kLineMax));
   }
   return !line.empty();
 }
@@ -124,7 +126,7 @@ Table Table::read(const std::filesystem::path& path, char separator, const std::
     if (separator == ' ') std::replace(line.begin(), line.end(), '\t', ' ');
     if (header_due) {
       if (line != header)
-        throw BadInput(path.string() + ":1: header is '" + shortened(line) + "', must be '" + header + "'");
+        throw BadInput(fmt::format("{}:1: header is '{}', must be '{}'", path.string(), shortened(line), header));
       header_due = false;
       continue;
     }
@@ -136,7 +138,7 @@ Table Table::read(const std::filesystem::path& path, char separator, const std::
     }
     table.rows.push_back(std::move(row));
   }
-  if (header_due) throw BadInput(path.string() + ": empty, must begin with '" + header + "'");
+  if (header_due) throw BadInput(path.string() + ": the file is empty; it must begin with '" + header + "'");
   return table;
 }
 

@@ -32,7 +32,7 @@ struct Entry {
 // signal handlers may only use static storage
 std::array<Entry, kPlaces> entries;
 static_assert(std::atomic<pid_t>::is_always_lock_free && std::atomic<bool>::is_always_lock_free,
-              "a signal handler must not lock");
+              "a signal handler must not wait for a lock");
 
 std::atomic<int> waiting{0}, pending{0};  // number of SignalsWait objects, and the signal received meanwhile
 

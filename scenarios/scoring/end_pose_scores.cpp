@@ -112,20 +112,18 @@ std::vector<std::size_t> registered_sweeps(const Estimate& estimate) {
 std::vector<Metric> end_pose_metrics() {
   return {
       {{"translation_error_end_m", Unit::m,
-        "error of the motion from the sixth registered sweep to the last sweep (of a trajectory without sweeps, from "
-        "its "
-        "first pose to its last): translation",
+        "translation error of the motion from the sixth registered sweep to the last sweep; without sweeps, from the "
+        "first pose to the last",
         Sense::lower, Place::headline},
        Kind::slam,
        translation_error_end},
       {{"rotation_error_end_rad", Unit::rad,
-        "error of the motion from the sixth registered sweep to the last sweep: rotation, up to pi", Sense::lower,
+        "rotation error of the motion from the sixth registered sweep to the last sweep, up to pi", Sense::lower,
         Place::headline},
        Kind::slam,
        rotation_error_end},
-      {{"pose_nees", Unit::number,
-        "squared error of the last sweep's pose over its reported covariance, per degree of freedom", Sense::two_sided,
-        Place::held, 1.0},
+      {{"pose_nees", Unit::number, "normalised squared error (NEES) of the last sweep's pose, per degree of freedom",
+        Sense::two_sided, Place::held, 1.0},
        Kind::slam,
        pose_nees},
   };

@@ -17,7 +17,8 @@ constexpr float kErrorLimitM = 0.5f;     // the distance of outliers is limited 
 constexpr float kSamePointM = 1e-3f;     // points in one cell of this size are duplicates
 constexpr double kSeenRangeM = 100.0;    // farther hits from the start are not expected in maps
 
-static_assert(kErrorLimitM > kToleranceM && kErrorLimitM > kFineToleranceM, "what lies at the limit is within none");
+static_assert(kErrorLimitM > kToleranceM && kErrorLimitM > kFineToleranceM,
+              "an error at the limit must be outside both tolerances");
 
 // Returns the map points in W, aligned by position and yaw at the start.
 std::vector<Eigen::Vector3f> map_in_world(const ScoredEstimate& scored) {
@@ -115,25 +116,27 @@ std::vector<Metric> map_metrics() {
         Place::headline, kNoTarget, Compared::by_difference},
        Kind::slam,
        overlap},
-      {{"map_overlap_0_10", Unit::share, "the same within 0.10 m", Sense::higher, Place::held, kNoTarget,
-        Compared::by_difference},
+      {{"map_overlap_0_10", Unit::share, "share of map points within 0.10 m of the true surface", Sense::higher,
+        Place::held, kNoTarget, Compared::by_difference},
        Kind::slam,
        fine_overlap},
-      {{"map_coverage", Unit::share, "share of the truly seen surface (cells of 0.1 m) within 0.25 m of a map point",
+      {{"map_coverage", Unit::share, "share of the visible true surface (cells of 0.1 m) within 0.25 m of a map point",
         Sense::higher, Place::held, kNoTarget, Compared::by_difference},
        Kind::slam,
        map_coverage},
-      {{"map_error_mean_m", Unit::m, "mean distance of map points to the true surface, each at most 0.5 m",
-        Sense::lower, Place::held},
+      {{"map_error_mean_m", Unit::m,
+        "mean distance of map points to the true surface, with each distance limited to 0.5 m", Sense::lower,
+        Place::held},
        Kind::slam,
        mean_error},
-      {{"map_unique_share", Unit::share, "map points that are left with one per cell of 1 mm: below 1, drawn twice",
+      {{"map_unique_share", Unit::share,
+        "number of 1 mm cells with a map point, over the number of map points; below 1 if points are inserted twice",
         Sense::higher, Place::held, kNoTarget, Compared::by_difference},
        Kind::slam,
        unique_share},
       {{"map_failed", Unit::verdict,
-        "1 when more than 15 % of the map lies off the surface, or sweeps were taken and there is none", Sense::lower,
-        Place::held},
+        "1 if more than 15 % of the map is off the surface, or if there were sweeps but no map; otherwise 0",
+        Sense::lower, Place::held},
        Kind::slam,
        failed},
   };

@@ -106,7 +106,7 @@ std::string sense_text(const MetricInfo& metric) {
     case Sense::none:
       break;
   }
-  return "no contest";
+  return "not compared";
 }
 
 bool is_better(const MetricInfo& metric, double a, double b) {

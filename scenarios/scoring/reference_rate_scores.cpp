@@ -133,7 +133,7 @@ void add_pair(const std::string& name, const std::string& doc, std::vector<Metri
   all.push_back({{"rate_" + name + "_clipped_median_rad_s", Unit::rad_s, "median " + doc, Sense::lower},
                  Kind::rate,
                  clipped_error<kError, 50, kAxes>});
-  all.push_back({{"rate_" + name + "_clipped_p90_rad_s", Unit::rad_s, "90th percentile of the same", Sense::lower},
+  all.push_back({{"rate_" + name + "_clipped_p90_rad_s", Unit::rad_s, "90th percentile of the " + doc, Sense::lower},
                  Kind::rate,
                  clipped_error<kError, 90, kAxes>});
 }
@@ -144,7 +144,7 @@ void add_reference(const std::string& name, const std::string& doc, std::vector<
   all.push_back({{"rate_" + name + "_median_rad_s", Unit::rad_s, "median " + doc, Sense::none},
                  Kind::rate,
                  reference_error<kError, 50>});
-  all.push_back({{"rate_" + name + "_p90_rad_s", Unit::rad_s, "90th percentile of the same", Sense::none},
+  all.push_back({{"rate_" + name + "_p90_rad_s", Unit::rad_s, "90th percentile of the " + doc, Sense::none},
                  Kind::rate,
                  reference_error<kError, 90>});
 }
@@ -153,37 +153,39 @@ void add_reference(const std::string& name, const std::string& doc, std::vector<
 
 std::vector<Metric> reference_rate_metrics() {
   std::vector<Metric> all;
-  all.push_back(
-      {{"rate_error_clipped_p90_rad_s", Unit::rad_s,
-        "against a reference: 90th percentile of the norm of the rate error at clipped samples", Sense::lower},
-       Kind::rate,
-       clipped_error<error_norm, 90, 7u>});
-  add_pair<error_speed, 7u>("speed_error", "error of the size of the rate at clipped samples, against a reference",
+  all.push_back({{"rate_error_clipped_p90_rad_s", Unit::rad_s,
+                  "90th percentile of the rate error (norm) over clipped samples, against a reference", Sense::lower},
+                 Kind::rate,
+                 clipped_error<error_norm, 90, 7u>});
+  add_pair<error_speed, 7u>("speed_error", "error of the rate's magnitude over clipped samples, against a reference",
                             all);
-  add_pair<error_axis<0>, 1u>("error_x", "error of axis x where it clips, against a reference", all);
-  add_pair<error_axis<1>, 2u>("error_y", "error of axis y where it clips, against a reference", all);
-  add_pair<error_axis<2>, 4u>("error_z", "error of axis z where it clips, against a reference", all);
+  add_pair<error_axis<0>, 1u>("error_x", "error of axis x while clipped, against a reference", all);
+  add_pair<error_axis<1>, 2u>("error_y", "error of axis y while clipped, against a reference", all);
+  add_pair<error_axis<2>, 4u>("error_z", "error of axis z while clipped, against a reference", all);
   add_reference<error_norm>(
-      "reference_error", "norm of the difference between a reference's rates and the gyro where it is free and turns",
-      all);
-  add_reference<error_speed>("reference_speed_error", "difference between the sizes of the same", all);
+      "reference_error",
+      "norm of the difference between the reference's rates and the gyro, in motion without clipping", all);
+  add_reference<error_speed>(
+      "reference_speed_error",
+      "difference between the magnitudes of the reference's rates and of the gyro, in motion without clipping", all);
   all.push_back(
       {{"rate_reference_coverage_3sigma", Unit::share,
-        "share of clipped axes whose error lies within three standard deviations of method and reference together",
+        "share of clipped axes whose error is within three standard deviations of method and reference combined",
         Sense::two_sided, Place::detail, kNormal3Sigma, Compared::by_difference},
        Kind::rate,
        reference_coverage});
-  all.push_back(
-      {{"rate_clipped_called_measured", Unit::share,
-        "share of axes that clip by a reference and that the method calls neither clipped nor doubtful", Sense::lower},
-       Kind::rate,
-       called_measured});
-  all.push_back({{"rate_reference_clipped_samples", Unit::number, "samples with an axis that clips by the reference",
-                  Sense::none},
+  all.push_back({{"rate_clipped_called_measured", Unit::share,
+                  "share of axes clipped according to the reference that the method reports as measured, neither "
+                  "clipped nor suspect",
+                  Sense::lower},
+                 Kind::rate,
+                 called_measured});
+  all.push_back({{"rate_reference_clipped_samples", Unit::number,
+                  "number of samples with an axis that is clipped according to the reference", Sense::none},
                  Kind::rate,
                  clipped_samples});
   all.push_back({{"rate_reference_unknown_samples", Unit::number,
-                  "samples that are not scored, because the reference does not know their rate", Sense::none},
+                  "number of samples that are not scored because the reference has no rate", Sense::none},
                  Kind::rate,
                  unknown_samples});
   return all;

@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <optional>
 #include <string>
@@ -60,8 +62,7 @@ class Events {
 
 std::vector<SlipSpan> true_spans(const sim::Truth& truth) {
   if (truth.label.size() != truth.q_WB.size()) {
-    throw BadInput("truth.label has " + std::to_string(truth.label.size()) + " entries, must have " +
-                   std::to_string(truth.q_WB.size()));
+    throw BadInput(fmt::format("truth.label has {} entries, must have {}", truth.label.size(), truth.q_WB.size()));
   }
   Events events;
   for (std::size_t k = 0; k < truth.label.size(); ++k) {
@@ -84,8 +85,8 @@ bool counts(const SlipSpan& span, const sim::Truth& truth) {
 /// A label holds from its own instant to the next one's.
 std::vector<SlipSpan> claimed_spans(const Estimate& estimate) {
   if (estimate.contacts.size() != estimate.poses.size()) {
-    throw BadInput("the estimate has " + std::to_string(estimate.contacts.size()) + " contacts for " +
-                   std::to_string(estimate.poses.size()) + " poses");
+    throw BadInput(
+        fmt::format("the estimate has {} contacts for {} poses", estimate.contacts.size(), estimate.poses.size()));
   }
   Events events;
   for (std::size_t k = 0; k + 1 < estimate.contacts.size(); ++k) {
@@ -221,26 +222,26 @@ bool flagged_share(const ScoredEstimate& scored, double& value) {
 
 std::vector<Metric> slip_metrics() {
   return {
-      {{"slip_precision", Unit::share,
-        "share of the claimed events of slip and slide that are right; 1 when none is claimed", Sense::higher,
-        Place::held, kNoTarget, Compared::by_difference},
+      {{"slip_precision", Unit::share, "share of reported slip and slide events that are true; 1 if none is reported",
+        Sense::higher, Place::held, kNoTarget, Compared::by_difference},
        Kind::position,
        precision},
-      {{"slip_recall", Unit::share, "share of the true events that are found", Sense::higher, Place::held, kNoTarget,
-        Compared::by_difference},
+      {{"slip_recall", Unit::share, "share of true slip events that are detected", Sense::higher, Place::held,
+        kNoTarget, Compared::by_difference},
        Kind::position,
        recall},
       {{"slip_delay_s", Unit::s,
-        "median over the found events: from their true begin until they are claimed, 0 when claimed before",
-        Sense::lower},
+        "median delay from the true start of a detected event to its report; 0 if reported earlier", Sense::lower},
        Kind::position,
        delay},
       {{"slip_flag_recall", Unit::share,
-        "share of the true events that lose the position by more than 0.1 m whose stated sigma grows by 0.03 m",
+        "share of true events with a position error above 0.1 m during which the reported standard deviation grows by "
+        "at least 0.03 m",
         Sense::higher, Place::detail, kNoTarget, Compared::by_difference},
        Kind::position,
        flag_recall},
-      {{"slip_flagged_share", Unit::share, "share of all true events whose stated sigma grows so", Sense::none},
+      {{"slip_flagged_share", Unit::share,
+        "share of all true events during which the reported standard deviation grows by at least 0.03 m", Sense::none},
        Kind::position,
        flagged_share},
   };

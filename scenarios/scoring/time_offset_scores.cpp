@@ -85,15 +85,14 @@ Metric offset_metric(const char* name, const char* doc, Kind kind, bool (*comput
 
 std::vector<Metric> time_offset_metrics() {
   constexpr const char* kPoses =
-      "how late the poses' attitudes are, below 0 early: least squares of their errors over the true rate";
+      "delay of the poses' attitudes, negative if early: least squares of the errors over the true rate";
   return {
-      offset_metric(
-          "rate_time_offset_s",
-          "how late the rates are, below 0 early: least squares of the errors of samples without a clipped axis over "
-          "the true angular acceleration",
-          Kind::rate, rate_offset),
+      offset_metric("rate_time_offset_s",
+                    "delay of the rates, negative if early: least squares of the errors without clipped axes over the "
+                    "true angular acceleration",
+                    Kind::rate, rate_offset),
       offset_metric("attitude_time_offset_s",
-                    "how late the attitudes are, below 0 early: least squares of their errors over the true rate",
+                    "delay of the attitudes, negative if early: least squares of the errors over the true rate",
                     Kind::attitude, attitude_offset),
       offset_metric("pose_time_offset_s", kPoses, Kind::position, pose_offset),
       offset_metric("pose_time_offset_s", kPoses, Kind::slam, pose_offset),

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "scenarios/statistics/bootstrap.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <array>
 #include <boost/math/distributions/normal.hpp>
@@ -56,9 +58,8 @@ double acceleration(std::span<const double> sorted) {
 }  // namespace
 
 MedianBootstrap::MedianBootstrap(std::size_t size, std::size_t resamples) : size_(size) {
-  if (size == 0) throw BadInput("bootstrap: there is no value");
-  if (resamples < 100)
-    throw BadInput("bootstrap: resamples is " + std::to_string(resamples) + ", must be at least 100");
+  if (size == 0) throw BadInput("bootstrap: there are no values");
+  if (resamples < 100) throw BadInput(fmt::format("bootstrap: resamples is {}, must be at least 100", resamples));
   // statistics.md (S1): the lower middle of n uniform numbers, and the one above, conditional on it
   sim::Stream stream(size, "statistics.bootstrap");
   const auto n = static_cast<double>(size);
@@ -76,9 +77,9 @@ MedianBootstrap::MedianBootstrap(std::size_t size, std::size_t resamples) : size
 
 Interval MedianBootstrap::interval(std::span<const double> values, double risk) const {
   if (values.size() != size_)
-    throw BadInput("bootstrap: " + std::to_string(values.size()) + " values, made for " + std::to_string(size_));
+    throw BadInput(fmt::format("bootstrap: {} values, but the bootstrap was made for {}", values.size(), size_));
   if (!(risk > 0.0 && risk < 1.0))
-    throw BadInput("bootstrap: risk is " + std::to_string(risk) + ", must be within (0, 1)");
+    throw BadInput(fmt::format("bootstrap: risk is {}, must be within (0, 1)", std::to_string(risk)));
   std::vector<double> sorted(values.begin(), values.end());
   if (std::any_of(sorted.begin(), sorted.end(), [](double v) { return std::isnan(v); }))
     throw BadInput("bootstrap: a value is NaN");

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "scenarios/statistics/dependence.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <boost/math/distributions/chi_squared.hpp>
 #include <boost/math/distributions/students_t.hpp>
@@ -23,7 +25,8 @@ using CompletePairs = std::vector<std::pair<double, double>>;
 
 CompletePairs complete_pairs(std::span<const double> x, std::span<const double> y) {
   if (x.size() != y.size())
-    throw BadInput("dependence: " + std::to_string(x.size()) + " numbers beside " + std::to_string(y.size()));
+    throw BadInput(fmt::format("dependence: {} first numbers; the second set must be as long, but its length is {}",
+                               x.size(), y.size()));
   CompletePairs pairs;
   for (std::size_t i = 0; i < x.size(); ++i) {
     if (!std::isnan(x[i]) && !std::isnan(y[i])) pairs.emplace_back(x[i], y[i]);
@@ -76,7 +79,8 @@ Interval centre_of(std::span<const double> values, Centre centre) {
   if (centre == Centre::median) return median_interval(values);
   for (const double value : values) {
     if (value != 0.0 && value != 1.0)
-      throw BadInput("dependence: a share of values with " + std::to_string(value) + ", must be 0 or 1");
+      throw BadInput(
+          fmt::format("dependence: a value is {}; for a share, each value must be 0 or 1", std::to_string(value)));
   }
   const auto count = static_cast<std::int64_t>(std::count(values.begin(), values.end(), 1.0));
   return share_interval(count, static_cast<std::int64_t>(values.size()));

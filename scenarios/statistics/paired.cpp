@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "scenarios/statistics/paired.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <boost/math/distributions/binomial.hpp>
 #include <boost/math/distributions/normal.hpp>
@@ -94,8 +96,7 @@ double sign_test(std::span<const double> differences) {
 
 double paired_failures_test(std::int64_t only_first, std::int64_t only_second) {
   if (only_first < 0 || only_second < 0)
-    throw BadInput("paired failures: " + std::to_string(std::min(only_first, only_second)) +
-                   " draws, must be at least 0");
+    throw BadInput(fmt::format("paired failures: {} draws, must be at least 0", std::min(only_first, only_second)));
   const auto n = static_cast<double>(only_first + only_second);
   if (n == 0.0) return 1.0;
   const boost::math::binomial fair(n, 0.5);

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "scenarios/statistics/statistics.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <boost/math/special_functions/beta.hpp>
 #include <cmath>
@@ -43,7 +45,7 @@ struct RankPlace {
 
 double quantile(std::span<const double> values, double share) {
   if (!(share >= 0.0 && share <= 1.0))
-    throw BadInput("quantile: share is " + std::to_string(share) + ", must be within [0, 1]");
+    throw BadInput(fmt::format("quantile: share is {}, must be within [0, 1]", std::to_string(share)));
   std::vector<double> numbers = numbers_of(values);
   if (numbers.empty()) return kNaN;
   // Two ranks are sufficient, and reports compute quantiles of millions of values: avoid a full sort.
@@ -126,8 +128,7 @@ std::vector<double> with_failures(std::vector<double> values, std::size_t failed
 Interval share_interval(std::int64_t count, std::int64_t total) {
   if (total <= 0) return {kNaN, 0.0, 1.0};
   if (count < 0 || count > total) {
-    throw BadInput("share_interval: count is " + std::to_string(count) + ", must be within [0, " +
-                   std::to_string(total) + "]");
+    throw BadInput(fmt::format("share_interval: count is {}, must be within [0, {}]", count, total));
   }
   const auto k = static_cast<double>(count);
   const auto n = static_cast<double>(total);

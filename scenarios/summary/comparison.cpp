@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "scenarios/summary/comparison.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -26,14 +28,14 @@ struct ValuePair {
 
 void require_share(const char* name, double value) {
   if (!(value > 0.0 && value < 1.0))
-    throw BadInput(std::string(name) + " is " + std::to_string(value) + ", must be within (0, 1)");
+    throw BadInput(fmt::format("{} is {}, must be within (0, 1)", name, std::to_string(value)));
 }
 
 void require_sound(const Summary& summary, const ComparisonOptions& options) {
   require_share("risk", options.risk);
   require_share("power", options.power);
   if (options.margin && !(options.margin->value >= 0.0 && std::isfinite(options.margin->value)))
-    throw BadInput("margin is " + std::to_string(options.margin->value) + ", must be finite and at least 0");
+    throw BadInput(fmt::format("margin is {}, must be finite and at least 0", std::to_string(options.margin->value)));
   std::vector<std::string> methods = options.methods;
   if (!options.against.empty()) methods.push_back(options.against);
   require_held(summary, methods, options.metrics);

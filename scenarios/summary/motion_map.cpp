@@ -88,9 +88,9 @@ std::vector<MotionPoint> thinned(const std::vector<MotionPoint>& points) {
 /// Deschênes and others: the first publication reports rates and forces. The second, by its abstract, reports forces;
 /// its other number is an angular acceleration.
 std::vector<PublishedExtreme> published() {
-  return {{"rig down a hill, 32 tumbles", "Deschênes and others, ICRA 2024: 18.6 rad/s, 157.8 m/s² (a part of 16 g)",
+  return {{"rig down a hill, 32 tumbles", "Deschênes and others, ICRA 2024: 18.6 rad/s, 157.8 m/s² (a device of 16 g)",
            18.6, 157.8},
-          {"collisions of a rig", "Deschênes and others, CRV 2021: 200 m/s², its rates are not stated",
+          {"collisions of a rig", "Deschênes and others, CRV 2021: 200 m/s²; rates are not stated",
            std::numeric_limits<double>::quiet_NaN(), 200.0}};
 }
 

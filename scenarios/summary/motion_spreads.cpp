@@ -36,14 +36,15 @@ constexpr std::array kQuantities = {
              25.0},
     Quantity{"motion_clipped_share", "share of the moving samples with a clipped gyro axis", "%", 100.0, "", kNone,
              kNone},
-    Quantity{"motion_several_axes_share", "two axes or more clipped, of the clipped samples of a draw", "%", 100.0, "",
-             kNone, kNone},
-    Quantity{"motion_several_axes_share", "two axes or more clipped, of the clipped samples of all draws", "%", 100.0,
-             "aim: 10 to 40", kNone, kNone, Over::clipped_samples},
+    Quantity{"motion_several_axes_share", "share of a draw's clipped samples with at least two clipped axes", "%",
+             100.0, "", kNone, kNone},
+    Quantity{"motion_several_axes_share", "share of all draws' clipped samples with at least two clipped axes", "%",
+             100.0, "aim: 10 to 40", kNone, kNone, Over::clipped_samples},
     Quantity{"motion_path_m", "path", "m", 1.0, "5 to 10", 5.0, 10.0},
     Quantity{"motion_peak_accel_m_s2", "largest specific force", "m/s²", 1.0,
-             "up to 157.8; a part of 16 g ends at 156.9", 157.8, 157.8},
-    Quantity{"motion_clips", "draws that clip the gyro", "%", 100.0, "aim: 90", kNone, kNone, Over::share_of_draws},
+             "up to 157.8; a 16 g device saturates at 156.9", 157.8, 157.8},
+    Quantity{"motion_clips", "share of draws that clip the gyro", "%", 100.0, "aim: 90", kNone, kNone,
+             Over::share_of_draws},
 };
 
 /// Returns the mean weighted by each draw's clipped samples, with its 95 % interval: the ratio estimator of a cluster

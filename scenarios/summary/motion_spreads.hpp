@@ -29,7 +29,7 @@ struct Spread {
 
 /// Source of the `published` values; follows the word "beside" in the text.
 inline constexpr const char* kPublishedMotion =
-    "the published campaign of the rig (32 tumbles down a hill) and the aim of the scenario hill";
+    "the published campaign of the rig (32 tumbles down a hill) and the target of the scenario hill";
 
 /// Returns one spread per quantity and scenario, scenarios in the order of the draws. For a share of draws ("draws that
 /// clip the gyro") values are 0 or 1. The median is then the share, and the quantiles are its 95 % interval. The same

@@ -41,7 +41,7 @@ std::string who_we_are() {
   const std::time_t now = std::time(nullptr);
   std::tm parts{};
   std::strftime(since.data(), since.size(), "%Y-%m-%d %H:%M:%S UTC", gmtime_r(&now, &parts));
-  return "process " + std::to_string(getpid()) + " on " + host.data() + " since " + since.data();
+  return "process " + std::to_string(getpid()) + " on " + host.data() + " on " + since.data();
 }
 
 std::string who_holds(int fd) {
@@ -72,7 +72,8 @@ DatabaseOwner::DatabaseOwner(const fs::path& database) : database_(database), lo
       const std::string holder = who_holds(fd);
       close(fd);
       if (error != EWOULDBLOCK) fail_to_lock(lock_, error);
-      throw BadInput(database.string() + ": " + holder + " is writing to it; name another file, or wait for its end");
+      throw BadInput(database.string() + ": " + holder +
+                     " is writing to this database; name another file, or wait until that process ends");
     }
     if (is_at(lock_, fd)) {
       fd_ = fd;

@@ -174,9 +174,9 @@ std::unique_ptr<MadeDraw> made_draw(const DataRoot& data, const DrawTask& task, 
   } catch (const sim::SimulationFailure& error) {
     reject(task, error, fd);
   } catch (const std::bad_alloc&) {
-    give_up(task, OutcomeStatus::killed, "no memory was left to simulate the draw", fd);
+    give_up(task, OutcomeStatus::killed, "not enough memory to simulate the draw", fd);
   } catch (const std::exception& error) {
-    give_up(task, OutcomeStatus::crashed, std::string("the simulation: ") + error.what(), fd);
+    give_up(task, OutcomeStatus::crashed, std::string("simulation error: ") + error.what(), fd);
   }
   return nullptr;
 }
@@ -194,7 +194,7 @@ Outcome run_one(const DrawTask& task, const DrawTask::Run& run, const MadeDraw& 
                      run.setting.is_plain() ? files.estimate(run.method->info) : std::filesystem::path(), &not_kept);
     if (!not_kept.empty()) files.miss(not_kept);
   } catch (const std::bad_alloc&) {
-    outcome = unanswered(task, run, OutcomeStatus::killed, "no memory was left for it");
+    outcome = unanswered(task, run, OutcomeStatus::killed, "not enough memory for the method");
   } catch (const std::system_error& error) {
     outcome = unanswered(task, run, OutcomeStatus::killed, error.what());
   }

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "scenarios/sweep/gate.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -100,8 +102,8 @@ void hold_worst_draw(const MetricInfo& info, const std::vector<GatePair>& pairs,
   const double slack = by_difference(info) ? margin_of(info, policy) : 0.0;
   if (!(badness(info, now.now) > policy.worst * badness(info, before.before) + slack)) return;
   result.seed = now.seed;
-  result.fault = "worst draw: " + three_digits(now.now) + " at seed " + std::to_string(now.seed) + ", was " +
-                 three_digits(before.before) + " at most as bad";
+  result.fault = fmt::format("worst draw: {} at seed {}; the worst draw of the accepted run had {}",
+                             three_digits(now.now), now.seed, three_digits(before.before));
 }
 
 /// Each metric counts as one test; two-sided ones use twice the smaller p-value. Adds the shift and any fault to the
@@ -139,7 +141,7 @@ GateResult hold_metric(const GatePairs& found, const MethodRun& before, const Me
   hold_middle(found.pairs, info, policy, tests, result);
   if (!found.lost.empty()) {
     result.seed = found.lost.front();
-    result.fault = "has no value any more: seed " + std::to_string(found.lost.front());
+    result.fault = "no longer has a value at seed " + std::to_string(found.lost.front());
     if (found.lost.size() > 1) result.fault += " and " + std::to_string(found.lost.size() - 1) + " more";
   } else if (result.passes()) {
     hold_worst_draw(info, found.pairs, policy, result);
@@ -231,11 +233,13 @@ const MethodRun* GateRun::find(const std::string& scenario, Kind kind, const std
 }
 
 std::vector<GateResult> hold_to_gate(const GateRun& run, const Gate& gate) {
-  if (gate.accepted.methods.empty()) throw BadInput("the gate of " + gate.suite + " has accepted nothing");
+  if (gate.accepted.methods.empty())
+    throw BadInput(fmt::format("the gate of {} has no accepted results; run 'tumble gate SUITE --accept'", gate.suite));
   if (run.seeds != gate.accepted.seeds) {
-    throw BadInput("the gate of " + gate.suite + " has accepted " + std::to_string(gate.accepted.seeds.size()) +
-                   " draws of other seeds than the " + std::to_string(run.seeds.size()) + " given; 'tumble gate " +
-                   gate.suite + " --accept' accepts anew");
+    throw BadInput(
+        fmt::format("the gate of {} accepted {} draws with other seeds than the {} of this run; run 'tumble gate {} "
+                    "--accept' to accept this run",
+                    gate.suite, gate.accepted.seeds.size(), run.seeds.size(), gate.suite));
   }
   std::vector<Pooled> all = pooled_metrics(gate.accepted);
   std::size_t tests = all.size();
@@ -268,7 +272,7 @@ std::vector<GateResult> hold_to_gate(const GateRun& run, const Gate& gate) {
 }
 
 void require_acceptable(const GateRun& run) {
-  if (run.methods.empty()) throw BadInput("cannot accept this run: it has no outcome");
+  if (run.methods.empty()) throw BadInput("cannot accept this run: it has no outcomes");
   for (const MethodRun& method : run.methods) {
     const std::string what =
         "cannot accept this run: " + method.scenario + ", " + to_string(method.kind) + "/" + method.method;
@@ -276,7 +280,7 @@ void require_acceptable(const GateRun& run) {
       if (!method.status[k]) throw BadInput(what + " has no outcome at seed " + std::to_string(run.seeds[k]));
     }
     if (std::find(method.status.begin(), method.status.end(), OutcomeStatus::ok) == method.status.end()) {
-      throw BadInput(what + " is nowhere ok");
+      throw BadInput(what + " has no outcome with status ok");
     }
   }
 }

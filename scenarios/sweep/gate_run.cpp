@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <limits>
 #include <tuple>
@@ -41,8 +43,7 @@ void add(const Outcome& outcome, GateRun& run) {
 
 GateRun gate_run(std::span<const Outcome> outcomes, std::uint64_t first, std::uint64_t last) {
   if (last < first || last - first >= kDrawsMax) {
-    throw BadInput("a gate holds 1 to " + std::to_string(kDrawsMax) + " seeds, not " + std::to_string(first) + " to " +
-                   std::to_string(last));
+    throw BadInput(fmt::format("a gate has 1 to {} seeds; given were seeds {} to {}", kDrawsMax, first, last));
   }
   GateRun run;
   for (std::uint64_t seed = first; seed <= last; ++seed) run.seeds.push_back(seed);

@@ -25,7 +25,8 @@ Eigen::Vector3d direction(const sim::Situation& situation, const char* name) {
 }
 
 sim::ImuRecord& primary(sim::Sensors& sensors, const sim::Truth& truth) {
-  if (sensors.imus.empty() || truth.imus.empty()) throw BadInput("the recording has no IMU to put an error into");
+  if (sensors.imus.empty() || truth.imus.empty())
+    throw BadInput("the recording has no IMU; this error cannot be applied");
   return sensors.imus.front();
 }
 
@@ -43,7 +44,8 @@ void lever_arm(sim::Sensors& sensors, const sim::Truth& truth, const sim::Situat
 /// Rotates the stated mounting between primary IMU and lidar. Replaces the scenario's own error.
 void extrinsic_rotation(sim::Sensors& sensors, const sim::Truth& truth, const sim::Situation& situation, double size) {
   const Eigen::Matrix3d R_BI_given = primary(sensors, truth).T_BI.linear();
-  if (sensors.lidars.empty() || truth.lidars.empty()) throw BadInput("the recording has no lidar");
+  if (sensors.lidars.empty() || truth.lidars.empty())
+    throw BadInput("the recording has no lidar; this error cannot be applied");
   const Eigen::Matrix3d R_IL_true = truth.imus.front().T_BI.linear().transpose() * truth.lidars.front().T_BL.linear();
   const Eigen::AngleAxisd error(size, direction(situation, "extrinsic_rotation"));
   sensors.lidars.front().T_BL.linear() = R_BI_given * R_IL_true * error.toRotationMatrix();
@@ -58,8 +60,8 @@ void time_offset(sim::Sensors& sensors, const sim::Truth& truth, const sim::Situ
 
 /// Increases the stated radius of the sphere by this.
 void radius(sim::Sensors& sensors, const sim::Truth&, const sim::Situation&, double size) {
-  if (!(sensors.sphere_radius_m > 0.0)) throw BadInput("the recording is not one of a sphere: it has no radius");
-  if (!(sensors.sphere_radius_m + size > 0.0)) throw BadInput("radius_error_m leaves no radius");
+  if (!(sensors.sphere_radius_m > 0.0)) throw BadInput("the recording has no sphere radius; this error needs a sphere");
+  if (!(sensors.sphere_radius_m + size > 0.0)) throw BadInput("radius_error_m makes the radius zero or negative");
   sensors.sphere_radius_m += size;
 }
 
@@ -109,25 +111,26 @@ void tell_rail(std::span<const sim::Parameter> known, double size, sim::Values& 
 std::span<const GivenError> given_errors() {
   static const std::array kErrors = {
       GivenError{{"lever_arm_error_m", 0.0, 0.0, 1.0, "m",
-                  "the lever arm is off by this, in a direction drawn once per draw; at 0 it is exact"},
+                  "error of the lever arm, in a direction drawn once per draw; 0: exact"},
                  false,
                  lever_arm},
       GivenError{{"extrinsic_rotation_rad", 0.0, 0.0, 3.14, "rad",
-                  "the rotation between IMU and lidar is off by this, about an axis drawn once per draw"},
+                  "rotation error between IMU and lidar, about an axis drawn once per draw"},
                  true,
                  extrinsic_rotation},
       GivenError{
-          {"time_offset_s", 0.0, -1.0, 1.0, "s", "the stamps of the primary IMU are late by this"}, false, time_offset},
-      GivenError{{"radius_error_m", 0.0, -1.0, 1.0, "m", "the radius of the sphere is given too large by this"},
+          {"time_offset_s", 0.0, -1.0, 1.0, "s", "delay of the time stamps of the primary IMU"}, false, time_offset},
+      GivenError{{"radius_error_m", 0.0, -1.0, 1.0, "m",
+                  "error of the sphere's radius; positive: the stated radius is too large"},
                  false,
                  radius},
       GivenError{{"rate_error_rad_s", 0.0, 0.0, 1000.0, "rad/s",
-                  "clipped readings give way to unclipped ones with an error of this size, constant over each segment "
-                  "of clipping; every method takes them for readings"},
+                  "clipped readings are replaced by unclipped ones with an error of this magnitude, constant over each "
+                  "clipped segment; methods see them as valid readings"},
                  false,
                  rate_error},
       GivenError{{"stated_rail_error", 0.0, -0.9, 9.0, "1",
-                  "the stated range is off the gyro's rail by this share of it, and the device's flags are kept back"},
+                  "error of the stated gyro range, as a share of the true rail; the device's clip flags are withheld"},
                  false,
                  stated_rail,
                  tell_rail},

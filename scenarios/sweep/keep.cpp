@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "scenarios/sweep/keep.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -90,8 +92,9 @@ Keep parse_keep(const std::string& text) {
     if (read_number(std::string_view(text).substr(kWorst.size()), count) && count >= 1 && count <= kCountMax)
       return {Keep::Which::worst, count};
   }
-  throw BadInput("which draws to keep is '" + text + "', must be none, failed, all, or worst:N with N from 1 to " +
-                 std::to_string(kCountMax));
+  throw BadInput(
+      fmt::format("the selection of draws to keep is '{}', must be none, failed, all, or worst:N with N from 1 to {}",
+                  text, kCountMax));
 }
 
 std::string to_string(const Keep& keep) {

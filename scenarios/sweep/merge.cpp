@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "scenarios/sweep/merge.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <map>
 #include <string>
@@ -29,12 +31,12 @@ std::string text_of(const Notes& notes, const std::string& key) {
 
 /// Outcomes of another program, or of other models and scenarios, are not comparable.
 void require_same_origin(const Notes& first, const Notes& other, const fs::path& path) {
-  const std::pair<const char*, const char*> origins[] = {{"build", "written by build"},
-                                                         {"data", "made from models and scenarios"}};
+  const std::pair<const char*, const char*> origins[] = {{"build", "was written by build"},
+                                                         {"data", "was made from models and scenarios"}};
   for (const auto& [key, words] : origins) {
     if (text_of(first, key) == text_of(other, key)) continue;
-    throw BadInput(path.string() + ": " + words + " '" + text_of(other, key) + "', the first database by '" +
-                   text_of(first, key) + "'; --mixed-builds joins them all the same");
+    throw BadInput(fmt::format("{}: {} '{}', but the first database by '{}'; --mixed-builds joins them anyway",
+                               path.string(), words, text_of(other, key), text_of(first, key)));
   }
 }
 
@@ -44,8 +46,8 @@ void join_method_notes(const Notes& shard, const fs::path& path, bool mixed, Res
     if (!is_method_note(key)) continue;
     const std::string known = into.note(key);
     if (!known.empty() && known != theirs && !mixed)
-      throw BadInput(path.string() + ": " + key + " is '" + theirs + "', elsewhere '" + known +
-                     "'; --mixed-builds joins them all the same");
+      throw BadInput(fmt::format("{}: {} is '{}', but in another database '{}'; --mixed-builds joins them anyway",
+                                 path.string(), key, theirs, known));
     into.set_note(key, known.empty() || known == theirs ? theirs : "mixed");
   }
 }

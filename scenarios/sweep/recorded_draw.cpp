@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "scenarios/sweep/recorded_draw.hpp"
 
+#include <fmt/format.h>
+
 #include <glob.h>
 
 #include <algorithm>
@@ -32,8 +34,8 @@ std::vector<std::filesystem::path> matches(const std::string& pattern, const std
   for (std::size_t i = 0; status == 0 && i < found.gl_pathc; ++i) paths.emplace_back(found.gl_pathv[i]);
   globfree(&found);
   if (paths.empty()) {
-    throw BadInput("no recording fits '" + pattern + "' in " + folder.string() +
-                   "; --data names the folder of the recordings");
+    throw BadInput(fmt::format("no recording matches '{}' in {}; set --data to the folder of the recordings", pattern,
+                               folder.string()));
   }
   return paths;
 }
@@ -61,8 +63,9 @@ std::vector<RecordedDraw> find_recordings(std::span<const std::string> patterns,
   std::vector<RecordedDraw> recordings;
   for (const std::filesystem::path& path : paths) {
     if (!recordings.empty() && recordings.back().name == path.stem().string()) {
-      throw BadInput(path.string() + ": a recording of that name is " + recordings.back().path.string() +
-                     "; results tell them apart by their names alone");
+      throw BadInput(fmt::format(
+          "{}: there is another recording with this name, {}; results identify recordings by name only, so rename one",
+          path.string(), recordings.back().path.string()));
     }
     const RecordingInfo info = read_info(path);
     const sim::Sensors sensors = read_sensors(path);
@@ -94,8 +97,8 @@ SimulatedDraw read_draw(const RecordedDraw& recording) {
   if (draw.has_truth) draw.recording.truth = read_truth(recording.path);
   draw.recording_digest = digest(draw.recording.sensors, draw.has_truth ? &draw.recording.truth : nullptr);
   if (draw.recording_digest != recording.digest) {
-    throw BadInput(recording.path.string() + ": has digest " + draw.recording_digest + ", was " + recording.digest +
-                   " when the sweep began");
+    throw BadInput(fmt::format("{}: has digest {}, but it had {} when the sweep began", recording.path.string(),
+                               draw.recording_digest, recording.digest));
   }
   return draw;
 }

@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include <fmt/format.h>
+
 #include <SQLiteCpp/SQLiteCpp.h>
 
 #include <array>
@@ -181,7 +183,8 @@ class Joining {
     held_.bindNoCopy(4, row.method);
     held_.bindNoCopy(5, row.varied);
     held_.bind(6, row.setting);
-    if (!held_.executeStep()) throw BadInput(path_.string() + ": a row of draw " + row.scenario + " is not unique");
+    if (!held_.executeStep())
+      throw BadInput(fmt::format("{}: a row of draw {} is stored more than once", path_.string(), row.scenario));
     const std::int64_t id = held_.getColumn(0).getInt64();
     const std::string status_text = held_.getColumn(1).getString(), recording = held_.getColumn(2).getString(),
                       estimate = held_.getColumn(3).getString();
@@ -204,8 +207,9 @@ class Joining {
   }
 
   [[noreturn]] void complain(const ShardRow& row, const std::string& known, const std::string& digest) const {
-    throw BadInput(path_.string() + ": " + words(row) + ": is " + row.status + " with digest '" + row.estimate_digest +
-                   "', elsewhere " + known + " with digest '" + digest + "'; one build gives one answer");
+    throw BadInput(fmt::format(
+        "{}: {}: status is {} with digest '{}', but elsewhere {} with digest '{}'; one build must give one result",
+        path_.string(), words(row), row.status, row.estimate_digest, known, digest));
   }
 
   /// Rows with one digest must have bit-identical scores, except costs.
@@ -238,8 +242,8 @@ class Joining {
 
   [[noreturn]] void differ(const ShardRow& row, const std::string& metric, const std::string& here,
                            const std::string& elsewhere) const {
-    throw BadInput(path_.string() + ": " + words(row) + ": " + metric + " is " + here + ", elsewhere " + elsewhere +
-                   "; one build gives one answer");
+    throw BadInput(fmt::format("{}: {}: {} is {}, but elsewhere {}; one build must give one result", path_.string(),
+                               words(row), metric, here, elsewhere));
   }
 
   /// Visits the scores of a row of the shard, sorted by name; rows must be requested in order.

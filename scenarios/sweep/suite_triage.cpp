@@ -35,7 +35,7 @@ void tell_rows(const DataRoot& data, const Scenario& scenario, std::uint64_t see
     triage(data, scenario, seed, method, telling);
     write_all(fd, "\n");
   } catch (const std::bad_alloc&) {
-    tell_trouble("no memory was left for it");
+    tell_trouble("not enough memory for the method");
   } catch (const std::exception& error) {
     tell_trouble(error.what());
   }
@@ -45,7 +45,7 @@ std::string doc_of(const std::string& input) {
   for (const TrueInput& each : true_inputs()) {
     if (each.name == input) return each.doc;
   }
-  return "the recording as it is";
+  return "unchanged recording";
 }
 
 /// Reads the rows of a process. Returns false if it did not complete.
@@ -80,7 +80,7 @@ void conclude(Worker& worker, bool late, const Failure& failure, DrawTriage& dra
   if (late) worker.process.kill();
   const Process::End end = worker.process.wait();
   if (read_rows(worker.said, failure, draw)) return;
-  draw.trouble = late ? "the draw did not end in time" : "the draw's process " + end.describe();
+  draw.trouble = late ? "the draw did not finish within its time limit" : "the draw's process " + end.describe();
 }
 
 /// Starts the process of a draw. Returns false if another process must end first.
@@ -89,7 +89,7 @@ bool begin(std::list<Worker>& workers, std::size_t index, double deadline_s, con
     workers.push_back({index, deadline_s, Process(work, true), {}});
     return true;
   } catch (const std::system_error& error) {
-    if (workers.empty()) throw BadInput(std::string("no process can be made: ") + error.what());
+    if (workers.empty()) throw BadInput(std::string("cannot start a worker process: ") + error.what());
     return false;
   }
 }

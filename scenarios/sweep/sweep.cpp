@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "scenarios/sweep/sweep.hpp"
 
+#include <fmt/format.h>
+
 #include <poll.h>
 
 #include <algorithm>
@@ -29,8 +31,10 @@ void claim(Results& results, const DataRoot& data, const Suite& suite, const std
   if (known.empty()) {
     results.set_note("data", digest);
   } else if (known != digest) {
-    throw BadInput(database.string() + ": made from other models or scenarios (digest " + known + ", now " + digest +
-                   "); outcomes of two catalogues do not mix: name another file");
+    throw BadInput(
+        fmt::format("{}: was made from other models or scenarios (digest {}, now {}); outcomes of two catalogues "
+                    "cannot be mixed; name another file",
+                    database.string(), known, digest));
   }
   results.set_note("suite", suite.name);
   if (!suite.recordings.empty()) results.set_note("source", kRecordingsSource);
@@ -53,8 +57,9 @@ void claim_methods(Results& results, std::span<const MethodPointer> methods) {
     const std::string key = method_note(method->info.kind, method->info.name);
     const std::string known = results.note(key);
     if (!known.empty() && known != method->info.version)
-      throw BadInput("the database holds rows of another " + key + " ('" + known + "', now '" + method->info.version +
-                     "'): name another file, or another method");
+      throw BadInput(fmt::format(
+          "the database holds rows of another version of {} ('{}', now '{}'); name another file or another method", key,
+          known, method->info.version));
     results.set_note(key, method->info.version);
   }
 }
@@ -142,7 +147,7 @@ class Sweep {
     try {
       workers_.emplace_back(terms_);
     } catch (const std::system_error& error) {
-      if (workers_.empty()) throw BadInput(std::string("no process can be made: ") + error.what());
+      if (workers_.empty()) throw BadInput(std::string("cannot start a worker process: ") + error.what());
       return false;  // retry after another process has ended
     }
     return workers_.back().give(task, deadline_s);
@@ -197,7 +202,8 @@ class Sweep {
 
   // The process of a draw died: its remaining runs have no answer.
   void account_for_death(const DrawTask& draw, bool late, const Process::End& end) {
-    const std::string what = late ? "the draw did not end in time" : "the draw's process " + end.describe();
+    const std::string what =
+        late ? "the draw did not finish within its time limit" : "the draw's process " + end.describe();
     if (updating_kept_) {
       progress_.not_kept = what;
       return;
@@ -291,7 +297,7 @@ std::uint64_t SweepProgress::not_ok() const {
 void require_worker_memory(double mib) {
   constexpr double kMinMib = 64.0, kMaxMib = 1e7;
   if (!(mib >= kMinMib && mib <= kMaxMib))
-    throw BadInput("memory is " + std::to_string(mib) + " MiB, must be within [64, 1e7]");
+    throw BadInput(fmt::format("memory is {} MiB, must be within [64, 1e7]", std::to_string(mib)));
 }
 
 Results open_results(const DataRoot& data, const Suite& suite, const std::filesystem::path& database) {
@@ -307,17 +313,16 @@ SweepProgress sweep(const DataRoot& data, const Suite& suite, const std::filesys
 
 void require_sound(const Suite& suite, const SweepOptions& options) {
   if (options.jobs < 1 || options.jobs > kJobsMax) {
-    throw BadInput("jobs is " + std::to_string(options.jobs) + ", must be within [1, " + std::to_string(kJobsMax) +
-                   "]");
+    throw BadInput(fmt::format("jobs is {}, must be within [1, {}]", options.jobs, kJobsMax));
   }
   require_seeds(suite);
   for (const OutcomeStatus status : options.again) {
     if (!may_run_again(status)) {
-      throw BadInput(std::string("'") + to_string(status) + "' is not run again; what may be: crashed timeout killed");
+      throw BadInput(std::string("'") + to_string(status) + "' cannot be run again; possible: crashed timeout killed");
     }
   }
   if (!suite.recordings.empty() && options.keep.which != Keep::Which::none)
-    throw BadInput("suite " + suite.name + ": its draws are recordings, which are there already; none is kept");
+    throw BadInput(fmt::format("suite {}: its draws are recordings, which exist already; set --keep none", suite.name));
   require_worker_memory(options.memory_mib);
 }
 

@@ -44,7 +44,7 @@ SweepPlan::SweepPlan(const DataRoot& data, const Suite& suite, const SweepOption
   const auto idle = [](const auto& each) { return each.methods.empty(); };
   if (std::all_of(scenarios_.begin(), scenarios_.end(), idle) &&
       std::all_of(recordings_.begin(), recordings_.end(), idle)) {
-    throw BadInput("suite " + suite.name + ": none of its methods applies to any of its scenarios");
+    throw BadInput("suite " + suite.name + ": none of its methods applies to its scenarios");
   }
   // A catalogue that cannot be drawn from is the caller's error, not an outcome.
   for (const Planned& each : scenarios_) draw(data, each.scenario, suite.first_seed);
@@ -62,7 +62,8 @@ void SweepPlan::require_same_recordings(const Results& results) const {
     for (const Outcome& row : results.outcomes_of(each.recording.name, kRecordingSeed)) {
       if (row.recording_digest.empty() || row.recording_digest == each.recording.digest) continue;
       throw BadInput(each.recording.path.string() + ": has digest " + each.recording.digest +
-                     ", the results were made of one with " + row.recording_digest + ": name another database");
+                     ", but the results were made from a recording with digest " + row.recording_digest +
+                     "; name another database");
     }
   }
 }

@@ -48,7 +48,7 @@ std::vector<TriageRow> triage(const DataRoot& data, const Scenario& scenario, st
     rows.push_back(std::move(row));
   };
   if (options.on_run) options.on_run("none");
-  add(row_of("none", "the recording as it is", run_isolated(method, draw, draw, true_surface, options.timeout_s),
+  add(row_of("none", "unchanged recording", run_isolated(method, draw, draw, true_surface, options.timeout_s),
              options.failure));
   for (const TrueInput& input : true_inputs()) {
     SimulatedDraw cured = draw;

@@ -185,16 +185,16 @@ bool everything(sim::Sensors& sensors, const sim::Truth& truth) {
 
 std::span<const TrueInput> true_inputs() {
   static const std::array kInputs = {
-      TrueInput{"gyro_unclipped", "gyros without their rail, all other errors kept", unclipped_gyro},
-      TrueInput{"gyro_exact", "the true mean rate of each window", exact_gyro},
-      TrueInput{"accel_unclipped", "accelerometers without their rail, all other errors kept", unclipped_accel},
-      TrueInput{"accel_exact", "the true mean specific force of each window", exact_accel},
+      TrueInput{"gyro_unclipped", "gyros without saturation, all other errors kept", unclipped_gyro},
+      TrueInput{"gyro_exact", "true mean rate of each sample", exact_gyro},
+      TrueInput{"accel_unclipped", "accelerometers without saturation, all other errors kept", unclipped_accel},
+      TrueInput{"accel_exact", "true mean specific force of each sample", exact_accel},
       TrueInput{"mounting_exact", "true lever arms and orientations of all sensors", exact_mounting},
       TrueInput{"stamps_exact", "true times of the IMU samples", exact_stamps},
-      TrueInput{"lidar_ranges_exact", "returns where the beams truly hit", exact_ranges},
-      TrueInput{"lidar_unbent", "sweeps as if cast within a microsecond, ranges as measured", unbent_sweeps},
-      TrueInput{"series_exact", "readings of other sensors without any error", exact_series},
-      TrueInput{"all", "all of these at once", everything},
+      TrueInput{"lidar_ranges_exact", "true ranges of all lidar returns", exact_ranges},
+      TrueInput{"lidar_unbent", "sweeps without skew (cast within a microsecond), ranges as measured", unbent_sweeps},
+      TrueInput{"series_exact", "readings of other sensors without errors", exact_series},
+      TrueInput{"all", "all of these together", everything},
   };
   return kInputs;
 }

@@ -141,7 +141,7 @@ TEST(Sweep, OnADatabaseThatIsWrittenToSaysSoAndLeaves) {
       const Ended second = run_program(arguments);
       EXPECT_EQ(second.status, 2);
       EXPECT_EQ(line_count(second.err), 1u) << second.err;
-      EXPECT_THAT(second.err, HasSubstr("is writing to it"));
+      EXPECT_THAT(second.err, HasSubstr("is writing to this database"));
     }
   }
   EXPECT_FALSE(fs::exists(database)) << "nothing was made";

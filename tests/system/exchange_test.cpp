@@ -218,7 +218,8 @@ TEST(Exchange, AnMcapIsToldByItsNameAndHoldsEstimates) {
   const Ended imported = run_program(with_reference);
   ASSERT_EQ(imported.status, 0) << imported.err;
   EXPECT_EQ(json_of(imported)["has_reference"], true);
-  EXPECT_THAT(json_of(imported)["notes"].dump(), HasSubstr("/position_rolling/points: its points lie in 'world'"));
+  EXPECT_THAT(json_of(imported)["notes"].dump(),
+              HasSubstr("/position_rolling/points: its points are in frame 'world'"));
   const Ended tum = run_program({"export", back, "-o", (folder / "rolled.tum").string(), "--quiet"});
   ASSERT_EQ(tum.status, 0) << tum.err;
   const Ended again = run_program({"score", (folder / "rolled.tum").string(), recording, "--frame", "body", "--json"});
@@ -317,7 +318,7 @@ TEST(Exchange, HostileSweepsAreOneLine) {
   std::ofstream(folder / "cut" / "1.ply") << "ply\nformat binary_little_endian 1.0\nelement vertex 4000000000\n"
                                              "property float x\nproperty float y\nproperty float z\nend_header\n";
   for (const auto& [path, complaint] : {std::pair{"empty", "contains no .ply, .pcd, .vtk or .bin file"},
-                                        {"cut", "1.ply:7: promises 4000000000 points"}}) {
+                                        {"cut", "1.ply:7: states 4000000000 points"}}) {
     const Ended ended = run_program({"import", (folder / path).string(), "-o", (folder / "x.h5").string()});
     EXPECT_EQ(ended.status, 2);
     EXPECT_EQ(line_count(ended.err), 1u) << ended.err;
@@ -372,7 +373,7 @@ TEST_P(ExchangeOfRealData, TheLogOfASphereIsRead) {
   const Ended wrong = run_program({"import", log.string(), "-o", recording});
   EXPECT_EQ(wrong.status, 2);
   EXPECT_EQ(line_count(wrong.err), 1u) << wrong.err;
-  EXPECT_THAT(wrong.err, HasSubstr("is the file in g?"));
+  EXPECT_THAT(wrong.err, HasSubstr("The file may be in g"));
   const Ended ended = run_program({"import", log.string(), "--accel-unit", "g", "--robot", "sphere", "--radius",
                                    "0.145", "-o", recording, "--json"});
   ASSERT_EQ(ended.status, 0) << ended.err;
@@ -389,7 +390,7 @@ TEST(Exchange, ADamagedCsvIsOneLine) {
   const Ended ended = run_program({"import", (folder / "bad.csv").string(), "-o", (folder / "x.h5").string()});
   EXPECT_EQ(ended.status, 2);
   EXPECT_EQ(line_count(ended.err), 1u) << ended.err;
-  EXPECT_THAT(ended.err, HasSubstr("bad.csv:1: names no column that is known"));
+  EXPECT_THAT(ended.err, HasSubstr("bad.csv:1: contains no known column name"));
   EXPECT_FALSE(fs::exists(folder / "x.h5"));
 }
 

@@ -228,8 +228,7 @@ TEST(Sweep, NamedDrawsAreNoSeedsInARow) {
           "--until");
   refused({"triage", suite.string(), "--method", "rate/raw", "--seeds", "1..2"}, "--seeds");
   refused({"sweep", suite.string(), "--db", database, "--scenario", "roll"}, "--scenario");
-  refused({"gate", suite.string(), "--against", (folder / "g.yaml").string(), "--accept"},
-          "a gate needs a range of seeds");
+  refused({"gate", suite.string(), "--against", (folder / "g.yaml").string(), "--accept"}, "a gate has");
 }
 
 TEST(Sweep, RefusesWhatItCannotKeepOrAsk) {
@@ -250,9 +249,9 @@ TEST(Sweep, RefusesWhatItCannotKeepOrAsk) {
   refused({"--until", "rate/raw:rate/raw:rate_error_clipped_median_rad_s", "--shard", "1/2"},
           "a shard does not see all draws");
   // what is met once the database is open: one that the sweep made goes again
-  refused({"--again", "ok"}, "'ok' is not run again");
-  refused({}, "take them in parts", "1..20000000");
-  refused({"--shard", "1/2"}, "take them in parts", "0..18446744073709551615");
+  refused({"--again", "ok"}, "'ok' cannot be run again");
+  refused({}, "split the range into parts", "1..20000000");
+  refused({"--shard", "1/2"}, "split the range into parts", "0..18446744073709551615");
   EXPECT_TRUE(fs::is_empty(database.parent_path())) << fs::directory_iterator(database.parent_path())->path();
 }
 

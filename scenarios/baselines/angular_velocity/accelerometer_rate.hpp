@@ -47,21 +47,23 @@ class AccelerometerRate {
     static void fields(Self& p, Visitor& visit) {
       visit.group("rails_", p.rails);
       visit(p.tilted_rails,
-            on_off("tilted_rails", "1: rails are looked for as tilted planes too; 0: axis by axis, as published",
+            on_off("tilted_rails", "1: search tilted rails too; 0: treat each axis separately, as published",
                    Rank::first));
       visit(p.use_gyro,
-            on_off("use_gyro", "1: axes of the primary gyro that are not clipped are read too; 0: none", Rank::first));
+            on_off("use_gyro", "1: also use the axes of the primary gyro that are not clipped; 0: do not use the gyro",
+                   Rank::first));
       visit(p.gyro_noise_density, {"gyro_noise_density", "rad/s/sqrt(Hz)", 1e-9, 1.0, "noise density of the gyro"});
       visit(p.accel_noise_density,
             {"accel_noise_density", "m/s^2/sqrt(Hz)", 1e-9, 10.0, "noise density of the accelerometer"});
-      visit(p.accel_floor_m_s2,
-            {"accel_floor_m_s2", "m/s^2", 0.0, 100.0, "bias of a difference, one standard deviation"});
-      visit(p.accel_scale_error,
-            {"accel_scale_error", "1", 0.0, 1.0, "scale and misalignment, as a share of the force"});
-      visit(p.jerk_psd, {"jerk_psd_rad2_s5", "rad^2/s^5", 1.0, 1e12, "density of the white angular jerk", Rank::first});
-      visit(p.rate_max_rad_s, {"rate_max_rad_s", "rad/s", 1.0, 1e4, "no answer lies beyond"});
-      visit(p.gap_max_s,
-            {"gap_max_s", "s", 1e-6, 3600.0, "longest time between two samples before the run is refused"});
+      visit(p.accel_floor_m_s2, {"accel_floor_m_s2", "m/s^2", 0.0, 100.0,
+                                 "standard deviation of the bias of a difference between two accelerometers"});
+      visit(p.accel_scale_error, {"accel_scale_error", "1", 0.0, 1.0,
+                                  "scale and misalignment error of the accelerometers, as a share of the force"});
+      visit(p.jerk_psd, {"jerk_psd_rad2_s5", "rad^2/s^5", 1.0, 1e12, "power spectral density of the white angular jerk",
+                         Rank::first});
+      visit(p.rate_max_rad_s, {"rate_max_rad_s", "rad/s", 1.0, 1e4, "largest estimated rate"});
+      visit(p.gap_max_s, {"gap_max_s", "s", 1e-6, 3600.0,
+                          "longest allowed time between two samples; a longer gap ends the run with an error"});
     }
   };
 

@@ -48,22 +48,24 @@ class MagnetometerRate {
     static void fields(Self& p, Visitor& visit) {
       visit.group("rails_", p.rails);
       visit(p.tilted_rails,
-            on_off("tilted_rails", "1: rails are looked for as tilted planes too; 0: axis by axis, as published",
+            on_off("tilted_rails", "1: search tilted rails too; 0: treat each axis separately, as published",
                    Rank::first));
       visit(p.gyro_noise_density, {"gyro_noise_density", "rad/s/sqrt(Hz)", 1e-9, 1.0, "noise density of the gyro"});
       visit(p.field_noise_t, {"field_noise_t", "T", 1e-12, 1e-3,
                               "noise of one reading: 0.5 mG, MTi-300 sheet of May 2023", Rank::first});
       visit(p.hard_iron_t,
-            {"hard_iron_t", "T", 0.0, 1e-3, "offset of the magnetometer, one standard deviation", Rank::first});
-      visit(p.earth_field_t, {"earth_field_t", "T", 0.0, 1e-3, "length of the undisturbed field; 0: unknown"});
+            {"hard_iron_t", "T", 0.0, 1e-3, "standard deviation of the magnetometer's offset", Rank::first});
+      visit(p.earth_field_t, {"earth_field_t", "T", 0.0, 1e-3, "magnitude of the undisturbed field; 0: unknown"});
       visit(p.disturbance_t_sqrt_s,
-            {"disturbance_t_sqrt_s", "T/sqrt(s)", 0.0, 1.0, "change of the field along the path", Rank::first});
-      visit(p.disturbed_share, {"disturbed_share", "1", 1e-4, 10.0,
-                                "deviation of the field's length that doubles that change in power", Rank::first});
-      visit(p.jerk_psd, {"jerk_psd_rad2_s5", "rad^2/s^5", 1.0, 1e12, "density of the white angular jerk", Rank::first});
-      visit(p.rate_max_rad_s, {"rate_max_rad_s", "rad/s", 1.0, 1e4, "no answer lies beyond"});
-      visit(p.gap_max_s,
-            {"gap_max_s", "s", 1e-6, 3600.0, "longest time between two samples before the run is refused"});
+            {"disturbance_t_sqrt_s", "T/sqrt(s)", 0.0, 1.0, "random walk of the field along the path", Rank::first});
+      visit(p.disturbed_share,
+            {"disturbed_share", "1", 1e-4, 10.0,
+             "relative deviation of the field's magnitude at which this random walk doubles in power", Rank::first});
+      visit(p.jerk_psd, {"jerk_psd_rad2_s5", "rad^2/s^5", 1.0, 1e12, "power spectral density of the white angular jerk",
+                         Rank::first});
+      visit(p.rate_max_rad_s, {"rate_max_rad_s", "rad/s", 1.0, 1e4, "largest estimated rate"});
+      visit(p.gap_max_s, {"gap_max_s", "s", 1e-6, 3600.0,
+                          "longest allowed time between two samples; a longer gap ends the run with an error"});
     }
   };
 

@@ -23,9 +23,10 @@ class Complementary {
     static void fields(Self& p, Visitor& visit) {
       visit(p.tau_s,
             {"tau_s", "s", 1e-3, 1e4,
-             "time in which the accelerometer takes over: 0.02 per sample at 125 Hz (Zevering et al., MFI 2021)",
+             "time constant of the accelerometer correction: 0.02 per sample at 125 Hz (Zevering et al., MFI 2021)",
              Rank::first});
-      visit(p.gap_max_s, {"gap_max_s", "s", 1e-9, 1e4, "longest time between two samples before the run is refused"});
+      visit(p.gap_max_s, {"gap_max_s", "s", 1e-9, 1e4,
+                          "longest allowed time between two samples; a longer gap ends the run with an error"});
     }
   };
   struct State {

@@ -22,11 +22,12 @@ class Mahony {
     /// Describes every parameter once.
     template <class Self, class Visitor>
     static void fields(Self& p, Visitor& visit) {
-      visit(p.proportional_rad_s,
-            {"proportional_rad_s", "rad/s", 0.0, 100.0, "gain kp on the tilt error (eq. 32)", Rank::first});
-      visit(p.integral_rad_s2,
-            {"integral_rad_s2", "rad/s^2", 0.0, 100.0, "gain ki: takes up the gyro's bias (eq. 32)", Rank::first});
-      visit(p.gap_max_s, {"gap_max_s", "s", 1e-9, 1e4, "longest time between two samples before the run is refused"});
+      visit(p.proportional_rad_s, {"proportional_rad_s", "rad/s", 0.0, 100.0,
+                                   "proportional gain kp on the tilt error (eq. 32)", Rank::first});
+      visit(p.integral_rad_s2, {"integral_rad_s2", "rad/s^2", 0.0, 100.0,
+                                "integral gain ki, which estimates the gyro bias (eq. 32)", Rank::first});
+      visit(p.gap_max_s, {"gap_max_s", "s", 1e-9, 1e4,
+                          "longest allowed time between two samples; a longer gap ends the run with an error"});
     }
   };
   struct State {

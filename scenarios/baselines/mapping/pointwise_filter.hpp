@@ -49,25 +49,32 @@ class PointwiseFilter {
     template <class Self, class Visitor>
     static void fields(Self& p, Visitor& visit) {
       visit(p.gravity_m_s2, {"gravity_m_s2", "m/s^2", 0.0, 100.0, "strength of gravity"});
-      visit(p.range_min_m, {"range_min_m", "m", 0.0, 10.0, "nearer returns are dropped"});
-      visit(p.range_max_m, {"range_max_m", "m", 0.0, 1e4, "farther returns are dropped"});
+      visit(p.range_min_m, {"range_min_m", "m", 0.0, 10.0, "returns nearer than this are dropped"});
+      visit(p.range_max_m, {"range_max_m", "m", 0.0, 1e4, "returns farther than this are dropped"});
       visit(p.own_body_L.min(), {"own_body_min_m", "m", -kUnbounded, kUnbounded,
-                                 "least corner of the box that holds the robot's own returns, lidar axes"});
-      visit(p.own_body_L.max(), {"own_body_max_m", "m", -kUnbounded, kUnbounded, "and its largest corner"});
-      visit(p.sweep_voxel_m,
-            {"sweep_voxel_m", "m", 0.01, 10.0, "one point per voxel of a sweep updates the state", Rank::first});
-      visit(p.map_voxel_m, {"map_voxel_m", "m", 0.01, 100.0, "cell of the map's hash"});
-      visit(p.map_spacing_m, {"map_spacing_m", "m", 0.0, 100.0, "edge of the cube that holds one map point; 0: all"});
-      visit(p.neighbours, {"neighbours", "1", 3, 32, "map points per plane fit"});
-      visit(p.match_distance_m, {"match_distance_m", "m", 1e-3, 4.0, "farther map points are no match"});
+                                 "smallest corner of the box around the robot's own returns, lidar axes"});
+      visit(p.own_body_L.max(), {"own_body_max_m", "m", -kUnbounded, kUnbounded,
+                                 "largest corner of the box around the robot's own returns, lidar axes"});
+      visit(p.sweep_voxel_m, {"sweep_voxel_m", "m", 0.01, 10.0,
+                              "edge of the voxel from which one point per sweep updates the state", Rank::first});
+      visit(p.map_voxel_m, {"map_voxel_m", "m", 0.01, 100.0, "edge of a voxel of the map's hash table"});
+      visit(p.map_spacing_m,
+            {"map_spacing_m", "m", 0.0, 100.0, "edge of the cube that stores at most one map point; 0: store all"});
+      visit(p.neighbours, {"neighbours", "1", 3, 32, "number of map points per plane fit"});
+      visit(p.match_distance_m,
+            {"match_distance_m", "m", 1e-3, 4.0, "largest distance between a point and its matches in the map"});
       visit(p.rate_walk_rad_s_sqrt_s,
             {"rate_walk_rad_s_sqrt_s", "rad/s/sqrt(s)", 1e-9, 1e6, "random walk of the rate", Rank::first});
       visit(p.force_walk_m_s2_sqrt_s,
             {"force_walk_m_s2_sqrt_s", "m/s^2/sqrt(s)", 1e-9, 1e6, "random walk of the specific force", Rank::first});
-      visit(p.gyro_sigma_rad_s, {"gyro_sigma_rad_s", "rad/s", 1e-9, 1e3, "of one reading", Rank::first});
-      visit(p.accel_sigma_m_s2, {"accel_sigma_m_s2", "m/s^2", 1e-9, 1e3, "of one reading", Rank::first});
-      visit(p.plane_sigma_m, {"plane_sigma_m", "m", 1e-9, 10.0, "of a point's distance to its plane", Rank::first});
-      visit(p.updates_min, {"updates_min", "1", 0, 1e9, "points accepted; fewer reject a sweep"});
+      visit(p.gyro_sigma_rad_s,
+            {"gyro_sigma_rad_s", "rad/s", 1e-9, 1e3, "standard deviation of a gyro reading", Rank::first});
+      visit(p.accel_sigma_m_s2,
+            {"accel_sigma_m_s2", "m/s^2", 1e-9, 1e3, "standard deviation of an accelerometer reading", Rank::first});
+      visit(p.plane_sigma_m,
+            {"plane_sigma_m", "m", 1e-9, 10.0, "standard deviation of a point's distance to its plane", Rank::first});
+      visit(p.updates_min,
+            {"updates_min", "1", 0, 1e9, "least number of accepted points per sweep; a sweep with fewer is rejected"});
     }
   };
   static constexpr int kErrors = 15;

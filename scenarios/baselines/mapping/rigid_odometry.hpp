@@ -39,19 +39,21 @@ class RigidOdometry {
     /// Describes every parameter once.
     template <class Self, class Visitor>
     static void fields(Self& p, Visitor& visit) {
-      visit(p.range_min_m, {"range_min_m", "m", 0.0, 10.0, "nearer returns are dropped"});
-      visit(p.range_max_m, {"range_max_m", "m", 0.0, 1e4, "farther returns are dropped"});
+      visit(p.range_min_m, {"range_min_m", "m", 0.0, 10.0, "returns nearer than this are dropped"});
+      visit(p.range_max_m, {"range_max_m", "m", 0.0, 1e4, "returns farther than this are dropped"});
       visit(p.own_body_L.min(), {"own_body_min_m", "m", -kUnbounded, kUnbounded,
-                                 "least corner of the box that holds the robot's own returns, lidar axes"});
-      visit(p.own_body_L.max(), {"own_body_max_m", "m", -kUnbounded, kUnbounded, "and its largest corner"});
-      visit(p.sweep_voxel_m,
-            {"sweep_voxel_m", "m", 0.01, 10.0, "one point per voxel of a sweep is registered", Rank::first});
-      visit(p.map_voxel_m, {"map_voxel_m", "m", 0.01, 100.0, "cell of the map's hash", Rank::first});
+                                 "smallest corner of the box around the robot's own returns, lidar axes"});
+      visit(p.own_body_L.max(), {"own_body_max_m", "m", -kUnbounded, kUnbounded,
+                                 "largest corner of the box around the robot's own returns, lidar axes"});
+      visit(p.sweep_voxel_m, {"sweep_voxel_m", "m", 0.01, 10.0,
+                              "edge of the voxel from which one point per sweep is registered", Rank::first});
+      visit(p.map_voxel_m, {"map_voxel_m", "m", 0.01, 100.0, "edge of a voxel of the map's hash table", Rank::first});
       visit(p.map_spacing_m,
-            {"map_spacing_m", "m", 0.0, 100.0, "edge of the cube that holds one map point", Rank::first});
-      visit(p.extend_always, on_off("extend_always", "1: a sweep that could not be registered still extends the map"));
-      visit(p.degenerate_sigma_m, {"degenerate_sigma_m", "m", 1e-6, 1e3,
-                                   "a sweep that its surfaces hold less surely in some direction is degenerate"});
+            {"map_spacing_m", "m", 0.0, 100.0, "edge of the cube that stores at most one map point", Rank::first});
+      visit(p.extend_always, on_off("extend_always", "1: extend the map with sweeps that could not be registered"));
+      visit(p.degenerate_sigma_m,
+            {"degenerate_sigma_m", "m", 1e-6, 1e3,
+             "standard deviation of the pose from the surfaces alone above which a sweep is degenerate"});
       visit.group("", p.registration);
     }
   };

@@ -41,23 +41,22 @@ class TrimmedIcp {
     /// Describes every parameter once.
     template <class Self, class Visitor>
     static void fields(Self& p, Visitor& visit) {
-      visit(p.neighbours, {"neighbours", "1", 1, 32, "matches per point"});
-      visit(p.match_distance_m, {"match_distance_m", "m", 1e-3, 4.0, "farther map points are no match", Rank::first});
-      visit(p.normal_neighbours, {"normal_neighbours", "1", 3, 32, "map points per normal"});
-      visit(p.trim_min, {"trim_min", "1", 1e-3, 1.0, "least share of matches kept"});
-      visit(p.trim_max, {"trim_max", "1", 1e-3, 1.0, "largest share of matches kept"});
-      visit(p.trim_lambda, {"trim_lambda", "1", 0.0, 100.0, "exponent of the share in the cost that chooses it"});
-      visit(
-          p.count_unmatched_slots,
-          on_off("trim_counts_unmatched",
-                 "1: the share kept is one of all slots, unmatched ones too (as launched, where it read past the end)",
-                 Rank::first));
-      visit(p.iterations_max, {"iterations_max", "1", 1, 1000, "most steps of Gauss-Newton"});
-      visit(p.step_m, {"step_m", "m", 0.0, 1.0, "converged when a step is below this and its turn below step_rad"});
-      visit(p.step_rad, {"step_rad", "rad", 0.0, 1.0, "converged when a step turns by less"});
-      visit(p.correction_max_m, {"correction_max_m", "m", 0.0, 1e6, "a larger correction of the prior is refused"});
-      visit(p.correction_max_rad,
-            {"correction_max_rad", "rad", 0.0, 3.15, "a larger correction of the prior is refused"});
+      visit(p.neighbours, {"neighbours", "1", 1, 32, "number of matches per point"});
+      visit(p.match_distance_m, {"match_distance_m", "m", 1e-3, 4.0,
+                                 "largest distance between a point and its matches in the map", Rank::first});
+      visit(p.normal_neighbours, {"normal_neighbours", "1", 3, 32, "number of map points per normal"});
+      visit(p.trim_min, {"trim_min", "1", 1e-3, 1.0, "least share of matches that trimming keeps"});
+      visit(p.trim_max, {"trim_max", "1", 1e-3, 1.0, "largest share of matches that trimming keeps"});
+      visit(p.trim_lambda, {"trim_lambda", "1", 0.0, 100.0, "exponent of the share in the cost that selects it"});
+      visit(p.count_unmatched_slots, on_off("trim_counts_unmatched",
+                                            "1: compute the share over all match slots, including unmatched ones (as "
+                                            "launched, with its read beyond the array)",
+                                            Rank::first));
+      visit(p.iterations_max, {"iterations_max", "1", 1, 1000, "largest number of Gauss-Newton steps"});
+      visit(p.step_m, {"step_m", "m", 0.0, 1.0, "position step below which the registration has converged"});
+      visit(p.step_rad, {"step_rad", "rad", 0.0, 1.0, "rotation step below which the registration has converged"});
+      visit(p.correction_max_m, {"correction_max_m", "m", 0.0, 1e6, "largest accepted correction of the prior"});
+      visit(p.correction_max_rad, {"correction_max_rad", "rad", 0.0, 3.15, "largest accepted correction of the prior"});
     }
   };
   struct Point {

@@ -21,9 +21,10 @@ class RollingOdometry {
     /// Describes every parameter once.
     template <class Self, class Visitor>
     static void fields(Self& p, Visitor& visit) {
-      visit(p.radius_m, {"radius_m", "m", 1e-9, 10.0, "of the sphere"});
-      visit(p.normal_W, {"normal_W", "1", -1.0, 1.0, "unit normal of the floor, from the contact to the centre"});
-      visit(p.gap_max_s, {"gap_max_s", "s", 1e-9, 1e4, "longest time between two samples before the run is refused"});
+      visit(p.radius_m, {"radius_m", "m", 1e-9, 10.0, "radius of the sphere"});
+      visit(p.normal_W, {"normal_W", "1", -1.0, 1.0, "unit normal of the floor, from contact point to centre"});
+      visit(p.gap_max_s, {"gap_max_s", "s", 1e-9, 1e4,
+                          "longest allowed time between two samples; a longer gap ends the run with an error"});
     }
   };
   struct State {

@@ -43,22 +43,25 @@ class SlipObserver {
     /// Describes every parameter once.
     template <class Self, class Visitor>
     static void fields(Self& p, Visitor& visit) {
-      visit(p.radius_m, {"radius_m", "m", 1e-9, 10.0, "of the sphere"});
+      visit(p.radius_m, {"radius_m", "m", 1e-9, 10.0, "radius of the sphere"});
       visit(p.gravity_m_s2, {"gravity_m_s2", "m/s^2", 1e-9, 100.0, "strength of gravity"});
-      visit(p.lever_arm_m, {"lever_arm_m", "m", -10.0, 10.0, "from the centre to the IMU, sensor axes"});
-      visit(p.open_m_s2, {"open_m_s2", "m/s^2", 1e-9, 100.0, "residual that opens an event", Rank::first});
+      visit(p.lever_arm_m, {"lever_arm_m", "m", -10.0, 10.0, "lever arm from the centre to the IMU, sensor axes"});
+      visit(p.open_m_s2, {"open_m_s2", "m/s^2", 1e-9, 100.0, "residual above which an event starts", Rank::first});
       visit(p.quiet_m_s2, {"quiet_m_s2", "m/s^2", 1e-9, 100.0, "residual below which an event may end", Rank::first});
-      visit(p.quiet_time_s, {"quiet_time_s", "s", 0.0, 10.0, "quiet for so long ends an event"});
+      visit(p.quiet_time_s, {"quiet_time_s", "s", 0.0, 10.0, "time below quiet_m_s2 after which an event ends"});
       visit(p.closing_speed_m_s,
             {"closing_speed_m_s", "m/s", 1e-9, 10.0, "contact speed below which an event may end", Rank::first});
-      visit(p.timeout_s, {"timeout_s", "s", 1e-9, 100.0, "an event longer than this is undone", Rank::first});
+      visit(p.timeout_s, {"timeout_s", "s", 1e-9, 100.0, "longest event; a longer one is undone", Rank::first});
       visit(p.ignore_time_s,
-            {"ignore_time_s", "s", 0.0, 100.0, "quiet for so long after a time-out before the next event"});
+            {"ignore_time_s", "s", 0.0, 100.0, "quiet time after a time-out before the next event may start"});
       visit(p.closed_decay_per_s,
-            {"closed_decay_per_s", "1/s", 0.0, 1e3, "decay of the contact velocity while closed"});
-      visit(p.bias_tau_s, {"bias_tau_s", "s", 1e-9, 1e3, "of the residual's mean outside of events", Rank::first});
-      visit(p.blend_tau_s, {"blend_tau_s", "s", 1e-9, 1e3, "in which a correction of the position enters"});
-      visit(p.gap_max_s, {"gap_max_s", "s", 1e-9, 1e4, "longest time between two samples before the run is refused"});
+            {"closed_decay_per_s", "1/s", 0.0, 1e3, "decay rate of the contact velocity outside events"});
+      visit(p.bias_tau_s,
+            {"bias_tau_s", "s", 1e-9, 1e3, "time constant of the residual's mean outside events", Rank::first});
+      visit(p.blend_tau_s,
+            {"blend_tau_s", "s", 1e-9, 1e3, "time constant with which a position correction is applied"});
+      visit(p.gap_max_s, {"gap_max_s", "s", 1e-9, 1e4,
+                          "longest allowed time between two samples; a longer gap ends the run with an error"});
     }
   };
   struct State {

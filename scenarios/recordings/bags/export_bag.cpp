@@ -118,7 +118,7 @@ class Export {
         imus_(names_of_imus(sensors, writing.names)),
         lidars_(names_of_lidars(sensors, writing.names)),
         body_(writing.names ? writing.names->body_frame : kBody) {
-    if (origin_ns_ < 0) throw BadInput("the recording begins before 1970: a bag has no such stamps");
+    if (origin_ns_ < 0) throw BadInput("the recording begins before 1970; bags cannot store such time stamps");
   }
 
   void all() {
@@ -138,7 +138,7 @@ class Export {
 
  private:
   std::int64_t stamp_of(std::int64_t time_ns) const {
-    if (origin_ns_ + time_ns < 0) throw BadInput("a reading lies before 1970: a bag has no such stamps");
+    if (origin_ns_ + time_ns < 0) throw BadInput("a reading is from before 1970; bags cannot store such time stamps");
     return origin_ns_ + time_ns;
   }
 

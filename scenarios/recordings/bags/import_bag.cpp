@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <sstream>
@@ -25,7 +27,7 @@ constexpr const char* kImu = "sensor_msgs/Imu";
 constexpr const char* kCloud = "sensor_msgs/PointCloud2";
 constexpr const char *kTransforms = "tf2_msgs/TFMessage", *kOldTransforms = "tf/tfMessage";
 constexpr const char* kStaticTopic = "/tf_static";
-constexpr const char* kNoMessage = ": is declared and has no message: left out";
+constexpr const char* kNoMessage = ": the topic is declared but has no messages; it is left out";
 /// Differences between header and record stamps above this are noted.
 constexpr double kClocksApart_s = 1e-3;
 /// Points later than their record by more are noted; smaller differences are normal between hosts' clocks.
@@ -63,14 +65,16 @@ AccelUnit take_in_g(const std::string& topic, const BagReading& reading, sim::Im
                     std::vector<std::string>& notes) {
   if (reading.accel_unit || !is_in_g(imu)) return reading.accel_unit.value_or(AccelUnit::m_s2);
   for (Eigen::Vector3d& force : imu.accel_m_s2) force *= scale_of(AccelUnit::g);
-  notes.push_back(topic + ": caution: by its definition it is in m/s^2, by its size at rest, 1, in g: taken in g" +
-                  " ('--accel-unit m/s^2' holds it to its definition)");
+  notes.push_back(
+      fmt::format("{}: caution: the message definition requires m/s^2, but the magnitude at rest is 1, so it is read "
+                  "in g (set '--accel-unit m/s^2' to use the definition)",
+                  topic));
   return AccelUnit::g;
 }
 
 std::string repeats_text(std::size_t repeated) {
   if (repeated == 0) return "";
-  return "messages that are there twice, stamp and content, and were taken once: " + std::to_string(repeated);
+  return "number of duplicate messages (same stamp and content) that were read once: " + std::to_string(repeated);
 }
 
 sim::ImuRecord read_imu(const OpenedBag& bag, SensorPlaces& places, const std::string& topic, const BagReading& reading,
@@ -150,8 +154,9 @@ CloudHeaders read_headers(const OpenedBag& bag, const std::string& topic, const 
   out.follow_records = !stamps.other_clock();
   if (reading.stamps == StampSource::record) {
     for (std::int64_t& stamp : out.stamps) stamp -= out.period_ns;
-    out.remark += (out.remark.empty() ? "" : "; ") + std::string("a sweep is taken to start ") +
-                  std::to_string(1e-9 * static_cast<double>(out.period_ns)) + " s before it was recorded";
+    out.remark +=
+        fmt::format("{}assumption: each sweep starts {} s before its record stamp", out.remark.empty() ? "" : "; ",
+                    std::to_string(1e-9 * static_cast<double>(out.period_ns)));
   }
   return out;
 }
@@ -166,9 +171,11 @@ void note_points_to_come(const std::string& topic, const BuiltSweeps& built, con
   if (ahead_s.empty()) return;
   const double middle_s = upper_median(std::move(ahead_s));
   if (middle_s < kAhead_s) return;
-  notes.push_back(topic + ": caution: the last points of a sweep, by their times from its stamp, lie " +
-                  std::to_string(middle_s) + " s after the bag took them: does the stamp tell the sweep's end? It is " +
-                  "read as the start ('--stamps record' lets a sweep start a period before it was recorded)");
+  notes.push_back(
+      fmt::format("{}: caution: the last points of a sweep, by their times after the stamp, are {} s later than the "
+                  "record stamp; the stamp may be the end of the sweep. It is read as the start (set '--stamps record' "
+                  "to start each sweep one period before its record stamp)",
+                  topic, std::to_string(middle_s)));
 }
 
 BuiltSweeps read_lidar(const OpenedBag& bag, SensorPlaces& places, const std::string& topic,
@@ -180,7 +187,7 @@ BuiltSweeps read_lidar(const OpenedBag& bag, SensorPlaces& places, const std::st
   std::size_t number = 0, read = 0;
   std::vector<std::int64_t> records;
   read_clouds(bag, topic, [&]<class Message>(const Message& message, const MessageOrigin& origin) {
-    if (read == headers.repeats.size()) throw BadInput(origin.where + ": lies in another frame than the last one");
+    if (read == headers.repeats.size()) throw BadInput(origin.where + ": uses another frame than the previous message");
     if (headers.repeats[read++]) return;
     if constexpr (std::is_same_v<Message, ros::LivoxCustomMsg>) {
       const double apart_ns = static_cast<double>(message.timebase) - static_cast<double>(stamp_of(message.header));
@@ -194,8 +201,10 @@ BuiltSweeps read_lidar(const OpenedBag& bag, SensorPlaces& places, const std::st
   if (reading.stamps == StampSource::header && headers.follow_records)
     note_points_to_come(topic, built, records, notes);
   if (clocks_apart_s > kClocksApart_s) {
-    notes.push_back(topic + ": caution: the messages' timebase and the stamps of their headers are up to " +
-                    std::to_string(clocks_apart_s) + " s apart; the times of points count from the headers'");
+    notes.push_back(
+        fmt::format("{}: caution: the messages' timebase and their header stamps differ by up to {} s; point times are "
+                    "counted from the header stamps",
+                    topic, std::to_string(clocks_apart_s)));
   }
   places.place(topic, headers.frame, "--T-body-lidar", built.lidar.T_BL, notes);
   return built;
@@ -206,8 +215,9 @@ void note_packets(const OpenedBag& bag, std::vector<std::string>& notes) {
   for (const BagTopic& topic : bag.topics) {
     const auto has = [&](const char* word) { return topic.type.find(word) != std::string::npos; };
     if (!has("Packet") && !has("packet") && !has("VelodyneScan") && !has("PandarScan")) continue;
-    notes.push_back(topic.name + ": caution: raw packets (" + topic.type + "), not read: points are made of them by " +
-                    "the lidar's driver");
+    notes.push_back(
+        fmt::format("{}: caution: raw packets ({}) are not read; convert them to points with the lidar's driver",
+                    topic.name, topic.type));
   }
 }
 
@@ -229,16 +239,17 @@ void require_one_clock(const sim::Sensors& sensors, bool by_headers, const std::
     for (const Span& late : spans) {
       if (late.first_ns <= early.last_ns) continue;
       throw BadInput(
-          path.string() + ": the clocks of '" + early.name + "' and '" + late.name + "' do not meet: one ends " +
-          std::to_string((static_cast<double>(late.first_ns) - static_cast<double>(early.last_ns)) * 1e-9) +
-          " s before the other begins" + (by_headers ? " ('--stamps record' takes when the bag took them)" : ""));
+          fmt::format("{}: the time ranges of '{}' and '{}' do not overlap: one ends {} s before the other begins{}",
+                      path.string(), early.name, late.name,
+                      std::to_string((static_cast<double>(late.first_ns) - static_cast<double>(early.last_ns)) * 1e-9),
+                      by_headers ? "; set '--stamps record' to use the record stamps" : ""));
     }
   }
 }
 
 /// Rethrows an error of an automatically chosen topic, with advice how to skip it if there are others.
 [[noreturn]] void fail_of_several(const BadInput& error, const char* option) {
-  throw BadInput(std::string(error.what()) + " (" + option + " takes those alone that it names)");
+  throw BadInput(std::string(error.what()) + " (" + option + " selects which topics are read)");
 }
 
 void add_imus(const OpenedBag& bag, SensorPlaces& places, const BagReading& reading, Imported& out) {
@@ -258,14 +269,16 @@ void add_imus(const OpenedBag& bag, SensorPlaces& places, const BagReading& read
   }
   if (out.sensors.imus.size() > 1 && reading.imu_topics.empty())
     out.notes.push_back("'" + out.sensors.imus.front().name +
-                        "' is the primary IMU, as its topic stands first (--imu-topic says another)");
+                        "' is the primary IMU because its topic comes first (set --imu-topic to choose another)");
 }
 
 void add_lidars(const OpenedBag& bag, SensorPlaces& places, const BagReading& reading, Imported& out) {
   for (const std::string& topic : bag.chosen(reading.lidar_topics, is_cloud_type, kCloud)) {
     const CloudHeaders headers = read_headers(bag, topic, reading);
     if (headers.left_out(reading)) {
-      out.notes.push_back(topic + ": its points lie in '" + headers.frame + "', in no sensor's frame: left out");
+      out.notes.push_back(
+          fmt::format("{}: its points are in frame '{}', which is not the frame of a sensor; they are left out", topic,
+                      headers.frame));
     } else if (headers.stamps.empty() && reading.lidar_topics.empty()) {
       out.notes.push_back(topic + kNoMessage);
     } else {
@@ -284,8 +297,8 @@ Imported import_bag(BagReader& reader, const std::filesystem::path& path, const 
   add_lidars(bag, places, reading, out);
   note_packets(bag, out.notes);
   if (out.sensors.imus.empty() && out.sensors.lidars.empty()) {
-    throw BadInput(path.string() + ": holds no topic of type " + kImu + ", " + kCloud +
-                   " or CustomMsg with messages among " + std::to_string(bag.topics.size()));
+    throw BadInput(fmt::format("{}: has no topic of type {}, {} or CustomMsg with messages; number of topics: {}",
+                               path.string(), kImu, kCloud, bag.topics.size()));
   }
   out.info.attribution = "imported from " + path.filename().string();
   require_one_clock(out.sensors, reading.stamps == StampSource::header, path);

@@ -68,7 +68,8 @@ class Take {
   }
   std::string_view cut(std::uint64_t size) {
     if (size > left.size()) {
-      throw BadRecord("promises " + std::to_string(size) + " bytes where " + std::to_string(left.size()) + " are left");
+      throw BadRecord("needs " + std::to_string(size) + " bytes, but only " + std::to_string(left.size()) +
+                      " are left");
     }
     const std::string_view out = left.substr(0, size);
     left.remove_prefix(size);

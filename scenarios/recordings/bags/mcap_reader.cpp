@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <map>
 #include <set>
@@ -42,8 +44,8 @@ class TopicWalk {
     for (const std::uint16_t channel : channels_) {
       const std::optional<std::uint64_t> stated = file_.stated_messages(channel);
       if (stated && *stated != counts_[channel]) {
-        file_.fail(0, "channel " + std::to_string(channel) + " holds " + std::to_string(counts_[channel]) +
-                          " messages, the summary states " + std::to_string(*stated) + ": damaged");
+        file_.fail(0, fmt::format("channel {} holds {} messages, but the summary states {}: the file is damaged",
+                                  channel, counts_[channel], *stated));
       }
     }
   }
@@ -69,9 +71,8 @@ class TopicWalk {
 
   void require_time(const Segment& segment, std::uint64_t time_ns) const {
     if (time_ns >= segment.first_ns && time_ns <= segment.last_ns) return;
-    file_.fail(segment.at, "a message at " + std::to_string(time_ns) + " ns in a chunk from " +
-                               std::to_string(segment.first_ns) + " to " + std::to_string(segment.last_ns) +
-                               " ns: damaged");
+    file_.fail(segment.at, fmt::format("a message at {} ns in a chunk from {} to {} ns: the file is damaged", time_ns,
+                                       segment.first_ns, segment.last_ns));
   }
 
   /// Checks that the index after the chunk lists exactly its messages.
@@ -84,15 +85,15 @@ class TopicWalk {
     std::sort(index->entries.begin(), index->entries.end());
     std::sort(found.begin(), found.end());
     if (index->entries == found) return;
-    file_.fail(segment.at, "the index of the chunk names " + std::to_string(index->entries.size()) +
-                               " messages of channel " + std::to_string(channel) + ", not the " +
-                               std::to_string(found.size()) + " that are there: damaged");
+    file_.fail(segment.at,
+               fmt::format("the chunk index names {} messages of channel {}, but the chunk has {}: the file is damaged",
+                           index->entries.size(), channel, found.size()));
   }
 
   void hold(const Segment& segment, std::uint64_t time_ns, std::string_view bytes) {
     waiting_bytes_ += bytes.size();
     if (waiting_bytes_ > kWaitingMax) {
-      file_.fail(segment.at, "chunks overlap in time so that more than 1 GiB of messages would have to wait");
+      file_.fail(segment.at, "the chunks overlap in time; more than 1 GiB of messages would have to be buffered");
     }
     const auto* first = reinterpret_cast<const std::uint8_t*>(bytes.data());
     waiting_.emplace(time_ns, ros::Bytes(first, first + bytes.size()));
@@ -134,7 +135,7 @@ class McapReader : public BagReader {
         if (found == topics.end()) {
           topics.push_back(topic);
         } else if (found->type != topic.type) {
-          file->fail(0, "topic " + topic.name + " is of type " + found->type + " and of type " + topic.type);
+          file->fail(0, fmt::format("topic {} has the types {} and {}", topic.name, found->type, topic.type));
         }
       }
     }

@@ -31,7 +31,8 @@ struct OpenedBag {
       names.push_back(each.name);
     }
     const std::string near = sim::nearest_name(name, names);
-    throw BadInput(place + ": no topic '" + name + "'" + (near.empty() ? "" : "; did you mean '" + near + "'?"));
+    throw BadInput(place + ": there is no topic '" + name + "'" +
+                   (near.empty() ? "" : "; did you mean '" + near + "'?"));
   }
 
   /// Returns the named topics, which must have a matching type; without names, all that match.

@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include <fmt/format.h>
+
 #include <console_bridge/console.h>
 #include <geometry_msgs/TransformStamped.h>
 #include <nav_msgs/Odometry.h>
@@ -253,8 +255,9 @@ class Ros1BagReader : public BagReader {
   void require_room(const std::filesystem::path& folder) const {
     const std::uint64_t needed = bytes_unpacked(file_), free = std::filesystem::space(folder).available;
     if (needed <= free) return;
-    throw BadInput(file_.string() + ": its LZ4 chunks unpack to a bag of " + std::to_string(needed) + " bytes, and " +
-                   folder.string() + " has " + std::to_string(free) + " free; TMPDIR names another folder");
+    throw BadInput(fmt::format(
+        "{}: its unpacked LZ4 chunks need {} bytes, but {} has only {} bytes free; set TMPDIR to another folder",
+        file_.string(), needed, folder.string(), free));
   }
 
   void open(const std::filesystem::path& file) {

@@ -133,7 +133,8 @@ class Copy {
     stream_.write(text.data(), static_cast<std::streamsize>(text.size()));
   }
   void finish() {
-    if (!stream_.flush()) throw BadInput(path_.string() + ": cannot be written: no room for the unpacked bag?");
+    if (!stream_.flush())
+      throw BadInput(path_.string() + ": cannot be written; the disk may lack space for the unpacked bag");
   }
 
  private:
@@ -193,14 +194,14 @@ void copy_ros1_bag(const std::filesystem::path& from, const std::filesystem::pat
     }
     if (record.op() == ros1::kChunkInfo) {
       const auto chunk = places.find(record.number<std::uint64_t>("chunk_pos"));
-      if (chunk == places.end()) records.fail(before, "names a chunk that does not stand before it");
+      if (chunk == places.end()) records.fail(before, "refers to a chunk that does not precede it");
       record.set("chunk_pos", chunk->second);
     }
     places[before] = copy.write(record, data);
     if (record.op() == ros1::kFile && !first) first = record, first_at = places[before];
   }
   const auto index = first ? places.find(first->number<std::uint64_t>("index_pos")) : places.end();
-  if (index == places.end()) records.fail(kMagicBytes, "the place of the index is no record");
+  if (index == places.end()) records.fail(kMagicBytes, "the stated start of the index is not a record");
   copy.overwrite(first_at + 4 + first->find("index_pos")->first, bytes_of(index->second));
   copy.finish();
 }

@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include <fmt/format.h>
+
 #include <SQLiteCpp/SQLiteCpp.h>
 #include <unistd.h>
 #include <yaml-cpp/yaml.h>
@@ -160,8 +162,9 @@ std::string packed_by(const YAML::Node& root, const path& metadata) {
   const std::string format = text("compression_format"), mode = text("compression_mode");
   if (format.empty() || mode == "none") return "";
   if (format != "zstd" || (mode != "file" && mode != "message"))
-    fail_at(metadata, "the bag is compressed by '" + format + "' in mode '" + mode +
-                          "', must be zstd in mode file or message ('ros2 bag convert' makes a plain one)");
+    fail_at(metadata, fmt::format("the bag has the compression format '{}' and mode '{}'; supported: zstd with mode "
+                                  "file or message (convert it with 'ros2 bag convert')",
+                                  format, mode));
   return mode;
 }
 
@@ -172,13 +175,13 @@ StoredBag storage_of(const path& bag) {
     return {name.extension() == ".mcap" ? "mcap" : "sqlite3", {bag}, packed ? "file" : ""};
   }
   const path metadata = bag / "metadata.yaml";
-  if (!std::filesystem::is_regular_file(metadata)) fail_at(bag, "holds no metadata.yaml: no ROS 2 bag");
+  if (!std::filesystem::is_regular_file(metadata)) fail_at(bag, "has no metadata.yaml: not a ROS 2 bag");
   StoredBag out;
   try {
     const YAML::Node root = YAML::LoadFile(metadata.string())["rosbag2_bagfile_information"];
     out.kind = root["storage_identifier"].as<std::string>();
     if (out.kind != "sqlite3" && out.kind != "mcap")
-      fail_at(metadata, "the storage is '" + out.kind + "', must be sqlite3 or mcap");
+      fail_at(metadata, fmt::format("the storage is '{}', must be sqlite3 or mcap", out.kind));
     out.packed = packed_by(root, metadata);
     for (const YAML::Node& each : root["relative_file_paths"]) {
       const path name = path(each.as<std::string>()).filename();  // only files within the folder
@@ -187,9 +190,9 @@ StoredBag storage_of(const path& bag) {
   } catch (const YAML::Exception& error) {
     std::string what = error.what();
     std::replace(what.begin(), what.end(), '\n', ' ');
-    fail_at(metadata, "no metadata of a ROS 2 bag: " + what);
+    fail_at(metadata, "not the metadata of a ROS 2 bag: " + what);
   }
-  if (out.files.empty()) fail_at(metadata, "relative_file_paths names no file");
+  if (out.files.empty()) fail_at(metadata, "relative_file_paths lists no file");
   return out;
 }
 
@@ -206,7 +209,8 @@ class Ros2BagReader : public BagReader {
       while (query.executeStep()) {
         const std::string format = query.getColumn(2).getString();
         const BagTopic topic = {query.getColumn(0).getString(), ros1_type(query.getColumn(1).getString())};
-        if (format != "cdr") fail_at(file, "topic " + topic.name + " is serialized as '" + format + "', must be cdr");
+        if (format != "cdr")
+          fail_at(file, fmt::format("topic {} has the serialization format '{}', must be cdr", topic.name, format));
         const auto same = [&](const BagTopic& each) { return each.name == topic.name; };
         if (std::none_of(topics.begin(), topics.end(), same)) topics.push_back(topic);
       }

@@ -77,7 +77,7 @@ std::string ros1_type(std::string type) {
 
 std::string ros2_definition(const std::string& type) {
   const auto found = definitions().find(type);
-  if (found == definitions().end()) throw std::logic_error("no definition of " + type);
+  if (found == definitions().end()) throw std::logic_error("there is no message definition for type " + type);
   std::set<std::string> there = {type};
   std::string out = found->second;
   append_inner(found->second, there, out);

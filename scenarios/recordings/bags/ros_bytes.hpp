@@ -46,8 +46,8 @@ Message from_cdr(Bytes& bytes) {
     CdrReader reader(bytes);
     fields(reader, message);
   } catch (const eprosima::fastcdr::exception::Exception&) {  // thrown for truncated input
-    throw BadMessage("its " + std::to_string(bytes.size()) +
-                     " bytes end before its fields do, or hold no such message");
+    throw BadMessage("the message has " + std::to_string(bytes.size()) +
+                     " bytes; this does not fit its fields, or the type is wrong");
   }
   return message;
 }

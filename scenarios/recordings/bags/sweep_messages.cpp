@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "scenarios/recordings/bags/sweep_messages.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <cstring>
@@ -125,9 +127,8 @@ ros::LivoxCustomMsg livox_of(const sim::LidarRecord& lidar, const std::vector<st
                              std::int64_t start_ns, const ros::Header& header) {
   constexpr double kFull = 255.0;
   if (!has_timed_points(lidar)) {
-    throw BadInput("the points of '" + lidar.name +
-                   "' have no times of their own: a CustomMsg has one for each, and a made-up one would pass for "
-                   "measured");
+    throw BadInput(
+        fmt::format("the points of '{}' have no time stamps; a CustomMsg needs measured time stamps", lidar.name));
   }
   ros::LivoxCustomMsg out;
   out.header = header;
@@ -136,13 +137,13 @@ ros::LivoxCustomMsg livox_of(const sim::LidarRecord& lidar, const std::vector<st
   out.points.reserve(points.size());
   for (const std::size_t k : points) {
     if (lidar.ring[k] > std::numeric_limits<std::uint8_t>::max()) {
-      throw BadInput("a point of '" + lidar.name + "' is of ring " + std::to_string(lidar.ring[k]) +
-                     ": a CustomMsg has lines 0 to 255");
+      throw BadInput(fmt::format("a point of '{}' has ring {}; a CustomMsg stores lines 0 to 255 only", lidar.name,
+                                 lidar.ring[k]));
     }
     const Eigen::Vector3f& p = lidar.position_L_m[k];
     if (!p.allFinite() || !std::isfinite(lidar.intensity[k])) {
-      throw BadInput("point " + std::to_string(k) + " of '" + lidar.name +
-                     "' is not finite: a CustomMsg has no word for a return that is none");
+      throw BadInput(
+          fmt::format("point {} of '{}' is not finite; a CustomMsg cannot store a missing return", k, lidar.name));
     }
     // tag 0: single return with full confidence
     out.points.push_back({lidar.offset_ns[k], p.x(), p.y(), p.z(), as<std::uint8_t>(lidar.intensity[k] * kFull), 0,

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "scenarios/recordings/clouds/cloud_file.hpp"
 
+#include <fmt/format.h>
+
 #include <pcl/PCLPointCloud2.h>
 
 #include <algorithm>
@@ -102,8 +104,8 @@ void require_numbers(const std::filesystem::path& path, const CloudHeader& heade
     for (std::size_t begin = 0; (begin = line.find_first_not_of(" \t\r", begin)) != std::string::npos;) {
       const std::size_t end = std::min(line.find_first_of(" \t\r", begin), line.size());
       if (!is_number_of_pcl(std::string_view(line).substr(begin, end - begin))) {
-        throw BadInput(path.string() + ":" + std::to_string(number) + ": word " + std::to_string(words + 1) +
-                       " is no number (decimals are written with a point)");
+        throw BadInput(
+            fmt::format("{}:{}: word {} is not a number (use a decimal point)", path.string(), number, words + 1));
       }
       ++words;
       begin = end;
@@ -124,8 +126,9 @@ Cloud read_points(const std::filesystem::path& path, const CloudHeader& header, 
   const bool read = read_by_pcl(path, format, cloud);
   const std::size_t found = std::size_t{cloud.width} * cloud.height;
   if (!read || found != header.points || cloud.data.size() < found * cloud.point_step) {
-    throw BadInput(path.string() + ": cannot be read as " + (format == PclFormat::ply ? "PLY" : "PCD") +
-                   " after its header of " + std::to_string(header.header_bytes) + " bytes: damaged or truncated");
+    throw BadInput(
+        fmt::format("{}: cannot be read as {} after its header of {} bytes: the file is damaged or truncated",
+                    path.string(), format == PclFormat::ply ? "PLY" : "PCD", header.header_bytes));
   }
   Cloud out = to_columns(cloud, found);
   out.viewpoint = header.viewpoint;
@@ -214,7 +217,7 @@ Cloud read_cloud(const std::filesystem::path& path, const std::string& bin_colum
   if (ending == ".pcd") return read_points(path, read_pcd_header(path), PclFormat::pcd);
   if (ending == ".bin") return read_bin(path, bin_columns);
   if (ending == ".vtk") return read_vtk(path);
-  throw BadInput(path.string() + ": must end in .ply, .pcd, .vtk or .bin");
+  throw BadInput(path.string() + ": the file name must end in .ply, .pcd, .vtk or .bin");
 }
 
 }  // namespace tumble::scenarios

@@ -29,7 +29,8 @@ PclRead* load() {
   void* read = module != nullptr ? dlsym(module, kPclRead) : nullptr;
   if (read == nullptr) {
     const char* reason = dlerror();
-    throw BadInput("clouds: PCL cannot be loaded: " + (reason != nullptr ? std::string(reason) : file.string()));
+    throw BadInput("clouds: the PCL library cannot be loaded: " +
+                   (reason != nullptr ? std::string(reason) : file.string()));
   }
   return reinterpret_cast<PclRead*>(read);
 }

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "scenarios/recordings/clouds/sweep_stamps.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cctype>
 #include <charconv>
@@ -113,13 +115,14 @@ std::vector<std::filesystem::path> sweep_files(const std::filesystem::path& fold
     if (fits && (stem.empty() || stem_of(path) == stem)) files.push_back(path);
   }
   if (files.empty()) {
-    throw BadInput(folder.string() + ": holds no file that ends in " + ending +
+    throw BadInput(folder.string() + ": contains no file that ends in " + ending +
                    (stem.empty() ? "" : " and begins with '" + stem + "'"));
   }
   std::sort(files.begin(), files.end(), natural_less);
   if (stem_of(files.front()) != stem_of(files.back())) {
-    throw BadInput(folder.string() + ": holds files of several lidars, '" + stem_of(files.front()) + "' and '" +
-                   stem_of(files.back()) + "': say which stem");
+    throw BadInput(
+        fmt::format("{}: contains files of several lidars, '{}' and '{}'; select one by its file name prefix",
+                    folder.string(), stem_of(files.front()), stem_of(files.back())));
   }
   return files;
 }
@@ -135,8 +138,8 @@ std::vector<std::int64_t> stamps_in_names(const std::vector<std::filesystem::pat
       without = &file;
   }
   if (stamps.empty() || without == nullptr) return stamps;
-  throw BadInput(without->string() + ": its name holds no stamp, those of " + std::to_string(stamps.size()) +
-                 " other files do");
+  throw BadInput(fmt::format("{}: its file name has no time stamp, but those of {} other files have one",
+                             without->string(), stamps.size()));
 }
 
 std::vector<std::int64_t> read_stamps(const std::filesystem::path& file) {
@@ -148,8 +151,8 @@ std::vector<std::int64_t> read_stamps(const std::filesystem::path& file) {
     const std::optional<std::int64_t> whole = digits ? epoch_ns(text) : std::nullopt;
     const std::int64_t stamp = whole ? *whole : table.time_ns(row, 0);
     if (!stamps.empty() && stamp <= stamps.back()) {
-      throw BadInput(file.string() + ":" + std::to_string(row.line) + ": stamp " + std::to_string(stamp) +
-                     " ns does not rise, the one before is " + std::to_string(stamps.back()) + " ns");
+      throw BadInput(fmt::format("{}:{}: the time stamp {} ns does not increase; the previous one is {} ns",
+                                 file.string(), row.line, stamp, stamps.back()));
     }
     stamps.push_back(stamp);
   }

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "scenarios/recordings/clouds/vtk_file.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cstdint>
 #include <fstream>
@@ -48,14 +50,14 @@ class VtkWords {
   /// Returns the next word; throws at the end of the file.
   std::string_view need(const char* what) {
     const std::string_view word = next();
-    if (word.empty()) fail(std::string("ends before ") + what + ": truncated?");
+    if (word.empty()) fail(fmt::format("the file ends before {}; it may be truncated", what));
     return word;
   }
 
   std::uint64_t whole(const char* what) {
     const std::string_view word = need(what);
     std::uint64_t value = 0;
-    if (!read_number(word, value)) fail(std::string(what) + " is '" + shortened(word) + "', no whole number");
+    if (!read_number(word, value)) fail(fmt::format("{} is '{}'; it must be a whole number", what, shortened(word)));
     return value;
   }
 
@@ -65,7 +67,7 @@ class VtkWords {
     if (word.starts_with('+')) word.remove_prefix(1);
     double value = 0.0;
     if (!read_number(word, value))
-      fail("'" + shortened(word) + "' is no number that a double holds, decimals behind a point");
+      fail("'" + shortened(word) + "' is not a number that fits a double (use a decimal point)");
     return value;
   }
 
@@ -82,17 +84,16 @@ class VtkWords {
 /// Checks a stated number of values against the remaining file before any allocation.
 void require_room(const VtkWords& words, std::uint64_t count, std::uint64_t each) {
   if (count > kCloudPointsMax) {
-    words.fail("promises " + std::to_string(count) + " points, at most " + std::to_string(kCloudPointsMax) +
-               " are read from a file");
+    words.fail(fmt::format("states {} points; at most {} can be read from a file", count, kCloudPointsMax));
   }
   if (count * each * 2 > words.left() + 1) {
-    words.fail("promises " + std::to_string(count) + " times " + std::to_string(each) + " numbers, but " +
-               std::to_string(words.left()) + " bytes follow: truncated?");
+    words.fail(fmt::format("states {} times {} numbers, but {} bytes follow; the file may be truncated", count, each,
+                           words.left()));
   }
 }
 
 void read_points(VtkWords& words, Cloud& cloud) {
-  if (!cloud.names.empty()) words.fail("POINTS stands twice");
+  if (!cloud.names.empty()) words.fail("POINTS occurs twice");
   cloud.points = words.whole("the number of points");
   words.need("the points' type");
   require_room(words, cloud.points, 3);
@@ -122,13 +123,14 @@ void read_scalars(VtkWords& words, Cloud& cloud) {
   std::string_view word = words.need("LOOKUP_TABLE");
   if (word != "LOOKUP_TABLE") {
     if (!read_number(word, each) || each < 1 || each > 4)
-      words.fail("scalars '" + shortened(name) + "' of '" + shortened(word) + "' numbers a point, must be 1 to 4");
+      words.fail(fmt::format("scalars '{}' of '{}' numbers per point; there must be 1 to 4", shortened(name),
+                             shortened(word)));
     word = words.need("LOOKUP_TABLE");
   }
-  if (word != "LOOKUP_TABLE") words.fail("'" + shortened(word) + "' in the place of LOOKUP_TABLE");
+  if (word != "LOOKUP_TABLE") words.fail("'" + shortened(word) + "' instead of LOOKUP_TABLE");
   words.need("the name of the lookup table");
   if (each != 1) return pass_over(words, cloud.points, each);
-  if (cloud.find(name) != nullptr) words.fail("scalars '" + shortened(name) + "' stand twice");
+  if (cloud.find(name) != nullptr) words.fail(fmt::format("scalars '{}' occur twice", shortened(name)));
   require_room(words, cloud.points, 1);
   std::vector<double> column(cloud.points);
   for (double& value : column) value = words.number();
@@ -141,7 +143,7 @@ void pass_data(VtkWords& words, const Cloud& cloud, std::string_view section) {
   words.need("a name");
   if (section == "COLOR_SCALARS") {
     const std::uint64_t each = words.whole("the numbers of a colour");
-    if (each < 1 || each > 4) words.fail("colours of " + std::to_string(each) + " numbers, must be 1 to 4");
+    if (each < 1 || each > 4) words.fail(fmt::format("colours of {} numbers, must be 1 to 4", each));
     return pass_over(words, cloud.points, each);
   }
   words.need("a type");
@@ -149,13 +151,13 @@ void pass_data(VtkWords& words, const Cloud& cloud, std::string_view section) {
 }
 
 void read_header(VtkWords& words) {
-  if (!words.line().starts_with("# vtk DataFile Version")) words.fail("begins as no VTK file does");
+  if (!words.line().starts_with("# vtk DataFile Version")) words.fail("does not begin as a VTK file");
   words.line();  // title
   const std::string_view encoding = words.need("ASCII");
-  if (encoding == "BINARY") words.fail("is binary: VTK files are read as text (ASCII) alone");
-  if (encoding != "ASCII") words.fail("'" + shortened(encoding) + "' in the place of ASCII");
+  if (encoding == "BINARY") words.fail("is a binary file; only text (ASCII) VTK files are supported");
+  if (encoding != "ASCII") words.fail("'" + shortened(encoding) + "' instead of ASCII");
   if (words.need("DATASET") != "DATASET" || words.need("POLYDATA") != "POLYDATA")
-    words.fail("holds no POLYDATA, which clouds are");
+    words.fail("has no POLYDATA dataset; point clouds need one");
 }
 
 }  // namespace
@@ -173,7 +175,7 @@ Cloud read_vtk(const std::filesystem::path& path) {
     } else if (section == "POINT_DATA") {
       const std::uint64_t points = words.whole("the number of point data");
       if (points != cloud.points)
-        words.fail("POINT_DATA of " + std::to_string(points) + " points, POINTS has " + std::to_string(cloud.points));
+        words.fail(fmt::format("POINT_DATA has {} points, but POINTS has {}", points, cloud.points));
       of_points = true;
     } else if (of_points && section == "SCALARS") {
       read_scalars(words, cloud);
@@ -181,10 +183,10 @@ Cloud read_vtk(const std::filesystem::path& path) {
                (section == "NORMALS" || section == "VECTORS" || section == "TENSORS" || section == "COLOR_SCALARS")) {
       pass_data(words, cloud, section);
     } else {
-      words.fail("section '" + shortened(section) + "' is not read there");
+      words.fail(fmt::format("section '{}' is not supported at this position", shortened(section)));
     }
   }
-  if (cloud.names.empty()) words.fail("holds no POINTS");
+  if (cloud.names.empty()) words.fail("has no POINTS section");
   return cloud;
 }
 

@@ -95,11 +95,11 @@ HoldReport undo_hold(const LoggedReadings& log, sim::ImuRecord& imu) {
 std::string HoldReport::text() const {
   if (!gyro_held && !accel_held) return "";
   std::string out = fmt::format(
-      "sample and hold: {:.1f} % of the gyro's and {:.1f} % of the accelerometer's rows repeat the "
-      "one before: {} readings of the gyro and {} of the accelerometer in {} rows",
+      "sample and hold: {:.1f} % of the gyro's and {:.1f} % of the accelerometer's rows repeat the previous row: {} "
+      "readings of the gyro and {} of the accelerometer in {} rows",
       100.0 * gyro_repeated, 100.0 * accel_repeated, gyro_held ? readings : rows, accel_readings, rows);
-  if (gyro_held) out += "; repetitions are left out, the rest is put on the gyro's own beat";
-  if (accel_held) out += "; the accelerometer is interpolated between its own readings";
+  if (gyro_held) out += "; repeated rows are left out, and the remaining readings get the sample times of the gyro";
+  if (accel_held) out += "; the accelerometer is interpolated between its distinct readings";
   return out;
 }
 
@@ -122,7 +122,7 @@ std::string accel_rail_text(const std::vector<Eigen::Vector3d>& logged) {
                          "xyz"[axis], sign * extreme, top);
     }
   }
-  return out.empty() ? "" : "accelerometer: readings gather at their extreme, as at a rail: " + out;
+  return out.empty() ? "" : "accelerometer: many readings are at the largest value, as if saturated: " + out;
 }
 
 }  // namespace tumble::scenarios

@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -50,7 +52,7 @@ std::vector<Eigen::Quaterniond> attitudes(const hdf5::Group& root) {
     Eigen::Quaterniond q(row[0], row[1], row[2], row[3]);
     if (row.allFinite()) {
       if (std::abs(q.norm() - 1.0) > 1e-2)
-        root.fail("opt_quat", "row " + std::to_string(q_WB.size()) + " is not of unit length");
+        root.fail("opt_quat", fmt::format("row {} is not of unit length", q_WB.size()));
       q.normalize();
     } else {
       q.coeffs().setConstant(kNaN);
@@ -79,7 +81,7 @@ std::optional<sim::Truth> read_reference(const hdf5::Group& root, const sim::Imu
   for (const auto& [name, rows] :
        {std::pair{"opt_quat", truth.q_WB.size()}, std::pair{"opt_pos", truth.p_WB_m.size()}}) {
     if (rows != imu.time_ns.size()) {
-      root.fail(name, "has " + std::to_string(rows) + " rows, imu_gyr has " + std::to_string(imu.time_ns.size()));
+      root.fail(name, fmt::format("has {} rows, but imu_gyr has {}", rows, imu.time_ns.size()));
     }
   }
   differentiate(truth, kSlopeReach);
@@ -96,7 +98,7 @@ Imported import_broad(const std::filesystem::path& path) {
   const hdf5::InputFile file(path);
   const hdf5::Group& root = file.root();
   if (root.has_attribute("format") && root.text_attribute("format") == kRecordingFormat)
-    throw BadInput(path.string() + ": is a recording already, which every verb reads as it is; nothing to import");
+    throw BadInput(path.string() + ": this file is a recording already; it can be used directly and needs no import");
   const double rate_hz = root.double_attribute("sampling_rate");
   if (!(rate_hz >= 1.0 && rate_hz <= 1e5)) root.fail("sampling_rate", "must be within 1 and 100000 Hz");
   Imported out;

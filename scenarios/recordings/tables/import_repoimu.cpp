@@ -54,8 +54,8 @@ struct Log {
 /// "Vicon Orientation/W": the group's name is above its first column.
 std::vector<std::string> column_names(const CsvLine& groups, const CsvLine& names) {
   if (groups.fields.size() != names.fields.size()) {
-    fail(names, "has " + std::to_string(names.fields.size()) + " columns, the line above " +
-                    std::to_string(groups.fields.size()) + "; must be equal");
+    fail(names, fmt::format("has {} columns, but the line above has {}; must be equal", names.fields.size(),
+                            groups.fields.size()));
   }
   std::vector<std::string> full;
   std::string group;
@@ -75,7 +75,7 @@ RepoimuColumns columns_of(const CsvLine& groups, const CsvLine& second) {
   std::string missing;
   const auto take = [&](const std::string& name, std::size_t& place) {
     const auto count = std::count(names.begin(), names.end(), name);
-    if (count > 1) fail(second, "two columns are called " + name);
+    if (count > 1) fail(second, "two columns have the name " + name);
     if (count == 0) missing += " '" + name + "'";
     const auto found = std::find(names.begin(), names.end(), name);
     place = static_cast<std::size_t>(found - names.begin());
@@ -85,7 +85,7 @@ RepoimuColumns columns_of(const CsvLine& groups, const CsvLine& second) {
   for (std::size_t i = 0; i < 4; ++i) take(std::string("Vicon Orientation/") + "WXYZ"[i], columns.attitude[i]);
   for (std::size_t i = 0; i < 3; ++i) take(std::string("IMU Acceleration/") + "XYZ"[i], columns.force[i]);
   for (std::size_t i = 0; i < 3; ++i) take(std::string("IMU Gyroscope/") + "XYZ"[i], columns.rate[i]);
-  if (!missing.empty()) fail(second, "columns are missing:" + missing);
+  if (!missing.empty()) fail(second, "missing columns:" + missing);
   for (const std::string& name : names) {
     const bool magnetic = name.starts_with("IMU Magnetometer/") && name.size() == 18 && name.back() >= 'X';
     if (!name.empty() && !magnetic) fail(second, "unknown column '" + name + "'");
@@ -147,7 +147,7 @@ Log read_log(const std::filesystem::path& path) {
   CsvText text(path, ';');
   CsvLine groups, line;
   text.next(groups);
-  if (!text.next(line)) throw BadInput(path.string() + ": ends in its header");
+  if (!text.next(line)) throw BadInput(path.string() + ": the file ends within its header");
   const RepoimuColumns columns = columns_of(groups, line);
   Log log;
   std::vector<int> digits;
@@ -155,8 +155,7 @@ Log read_log(const std::filesystem::path& path) {
     const std::size_t found = line.fields.size();
     const bool trailing = columns.open_ended && found == columns.count && line.fields.back().empty();
     if (found != columns.count - (columns.open_ended ? 1 : 0) && !trailing) {
-      fail(line, "has " + std::to_string(found) + " columns, must have " +
-                     std::to_string(columns.count - (columns.open_ended ? 1 : 0)));
+      fail(line, fmt::format("has {} columns, must have {}", found, columns.count - (columns.open_ended ? 1 : 0)));
     }
     DecimalNumbers numbers(line, log.decimal_commas);
     const double time_s = numbers.at(columns.time, "Time");
@@ -164,7 +163,7 @@ Log read_log(const std::filesystem::path& path) {
       fail(line, fmt::format("Time is {} s, must be within 0 and {}", time_s, kRepoimuStampMax_s));
     const std::int64_t time_ns = std::llround(time_s * 1e9);
     if (!log.readings.time_ns.empty() && time_ns < log.readings.time_ns.back()) {
-      fail(line, fmt::format("Time goes back: {:.9g} s after {:.9g} s", time_s,
+      fail(line, fmt::format("Time decreases: {:.9g} s after {:.9g} s", time_s,
                              1e-9 * static_cast<double>(log.readings.time_ns.back())));
     }
     const auto& a = columns.attitude;
@@ -199,16 +198,16 @@ void steady(Log& log, std::vector<std::string>& notes) {
     // precise stamps do not repeat because of rounding
     const bool coarse = 2 * (log.rounding[k].before_ns + log.rounding[k].after_ns) >= mean_step;
     if (time_ns <= log.readings.time_ns[k - 1] || (same && !coarse)) {
-      throw BadInput(fmt::format("{}: Time does not rise: {:.9g} s twice, beyond what its rounding explains",
-                                 log.where[k], 1e-9 * static_cast<double>(printed[k])));
+      throw BadInput(fmt::format("{}: Time does not increase: {:.9g} s occurs twice, beyond its rounding", log.where[k],
+                                 1e-9 * static_cast<double>(printed[k])));
     }
   }
   for (std::size_t k = 0; k < printed.size(); ++k) log.poses[k].time_ns = log.readings.time_ns[k];
   const auto span = static_cast<double>(printed.back() - printed.front());
   if (static_cast<double>(most_ns) > kCoarse * span / static_cast<double>(printed.size() - 1)) {
     notes.push_back(fmt::format(
-        "stamps are printed in steps of up to {} ms: put on a steady beat within their rounding, moved "
-        "by up to {:.1f} ms ({} were equal to the one before)",
+        "time stamps are rounded to {} ms; they are replaced by equally spaced times within their rounding, shifted by "
+        "up to {:.1f} ms ({} were equal to the previous one)",
         2e-6 * static_cast<double>(log.rounding.back().before_ns), 1e-6 * static_cast<double>(most_ns), equal));
   }
 }
@@ -221,8 +220,8 @@ void require_attitudes(const std::filesystem::path& path, const Log& log) {
   }
   if (static_cast<double>(bad) <= kBadNormShareMax * static_cast<double>(log.poses.size())) return;
   throw BadInput(
-      fmt::format("{}: the quaternion's norm is {:.4f}, must be 1 within a percent; so are {} of {} in {}, at most "
-                  "a fifth may be",
+      fmt::format("{}: the quaternion's norm is {:.4f}; it must be 1 within 1 %. This is so for {} of {} in {}; at "
+                  "most a fifth is allowed",
                   log.where[first], log.poses[first].q_WA.norm(), bad, log.poses.size(), path.filename().string()));
 }
 
@@ -239,8 +238,8 @@ std::string rate_error_text(const sim::ImuRecord& imu, const std::vector<Eigen::
   if (errors.empty()) return "";
   std::sort(errors.begin(), errors.end());
   return fmt::format(
-      "reference: rates from attitudes over +-{} ms differ from the free gyro in motion by {:.3f} rad/s on the "
-      "median, {:.3f} at 90 % ({} samples)",
+      "reference: rates from attitudes over +-{} ms differ from the unclipped gyro in motion by {:.3f} rad/s (median) "
+      "and {:.3f} rad/s (90th percentile), {} samples",
       kRateWindow_ns / 1'000'000, errors[errors.size() / 2], errors[errors.size() * 9 / 10], errors.size());
 }
 
@@ -251,14 +250,14 @@ void add_reference(const std::filesystem::path& path, Log& log, bool align, Impo
   const GlitchReport glitches = leave_out_glitches(log.poses);
   out.notes.push_back(glitches.text(samples));
   if (log.poses.size() < 2) {
-    out.notes.push_back("the reference knows nothing: left out");
+    out.notes.push_back("the reference has no valid samples; it is left out");
     return;
   }
   const ReferenceAlignment alignment = align_reference(log.poses, imu);
   if (alignment.known && align) apply(alignment, log.poses);
   if (!alignment.known && align) throw BadInput(path.string() + ": --align-reference: " + alignment.text());
-  out.notes.push_back(alignment.text() + (align             ? ": taken out"
-                                          : alignment.known ? ": left in; --align-reference takes it out"
+  out.notes.push_back(alignment.text() + (align             ? ": removed"
+                                          : alignment.known ? ": not removed; set --align-reference to remove it"
                                                             : ""));
   try {
     out.reference = reference_truth(log.poses, imu.time_ns.back());
@@ -288,7 +287,7 @@ Imported import_repoimu(const std::filesystem::path& path, bool align) {
   sim::ImuRecord imu;
   imu.name = "imu";
   if (log.where.size() < 2)
-    throw BadInput(path.string() + ": holds " + std::to_string(log.where.size()) + " samples, needs 2");
+    throw BadInput(fmt::format("{}: has {} samples; it needs at least 2", path.string(), log.where.size()));
   require_attitudes(path, log);
   out.info.origin_ns = log.readings.time_ns.front();
   for (std::int64_t& time : log.readings.time_ns) time -= out.info.origin_ns;
@@ -306,8 +305,8 @@ Imported import_repoimu(const std::filesystem::path& path, bool align) {
     if (!note.empty()) out.notes.push_back(note);
   }
   if (log.decimal_commas > 0)
-    out.notes.push_back(fmt::format("{} numbers with a decimal comma, read as such", log.decimal_commas));
-  out.notes.push_back("the magnetometer's columns have no unit: left out");
+    out.notes.push_back(fmt::format("{} numbers have a decimal comma; they are read as decimals", log.decimal_commas));
+  out.notes.push_back("the magnetometer's columns have no unit; they are left out");
   out.info.attribution = kRepoimuAttribution + path.filename().string();
   out.sensors.imus.push_back(std::move(imu));
   add_reference(path, log, align, out);

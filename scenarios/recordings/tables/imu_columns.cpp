@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "scenarios/recordings/tables/imu_columns.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cctype>
 #include <charconv>
@@ -37,7 +39,7 @@ std::optional<std::size_t> find_column(const CsvLine& header, const std::string&
   std::optional<std::size_t> found;
   for (std::size_t i = 0; i < header.fields.size(); ++i) {
     if (!fits(header.fields[i])) continue;
-    if (found) fail(header, "two columns are called " + name);
+    if (found) fail(header, "two columns have the name " + name);
     found = i;
   }
   return found;
@@ -66,7 +68,7 @@ class RequiredColumns {
   /// Returns false if none exists; throws if only some do.
   bool complete() const {
     if (found_ == 0) return false;
-    if (!missing_.empty()) fail(header_, "columns are missing:" + missing_);
+    if (!missing_.empty()) fail(header_, "missing columns:" + missing_);
     return true;
   }
 
@@ -113,7 +115,7 @@ void require_exported(const CsvLine& header) {
   }
   for (const std::string& name : kExported) {
     const auto count = std::count(header.fields.begin(), header.fields.end(), name);
-    if (count > 1) fail(header, "two columns are called " + name);
+    if (count > 1) fail(header, "two columns have the name " + name);
   }
 }
 
@@ -124,8 +126,8 @@ double number(const CsvLine& line, std::size_t column) {
 std::int64_t whole_number(const CsvLine& line, std::size_t column, std::int64_t largest) {
   const double value = number(line, column);
   if (value != std::floor(value) || value < 0.0 || value > static_cast<double>(largest)) {
-    fail(line, "column " + std::to_string(column) + " must be a whole number from 0 to " + std::to_string(largest) +
-                   ", is '" + std::string(line.fields[column]) + "'");
+    fail(line, fmt::format("column {} must be a whole number from 0 to {}; it is '{}'", column, largest,
+                           std::string(line.fields[column])));
   }
   return static_cast<std::int64_t>(value);
 }
@@ -158,16 +160,15 @@ std::int64_t seconds_ns(const CsvLine& line, std::size_t column) {
   const Decimal number(text);
   const auto ns = number.whole.size() <= 10 && number.part.size() <= 9 ? scaled_ns(number, 9) : std::nullopt;
   if (ns) return *ns;
-  fail(line, "column " + std::to_string(column) + " must be seconds with at most nine decimals, is '" +
-                 std::string(text) + "'");
+  fail(line, fmt::format("column {} must be seconds with at most nine decimals; it is '{}'", column, text));
 }
 
 std::int64_t decimal_ns(const CsvLine& line, std::size_t column, int decimals) {
   const std::string_view text = line.fields[column];
   if (const auto ns = scaled_ns(Decimal(text), static_cast<std::size_t>(decimals))) return *ns;
-  fail(line, "column " + std::to_string(column) +
-                 " must be a time, digits with a point or without, up to the year 2255, is '" + std::string(text) +
-                 "'");
+  fail(line,
+       fmt::format("column {} must be a time, digits with or without a decimal point, up to the year 2255; it is '{}'",
+                   column, text));
 }
 
 /// Returns true if seconds and nanoseconds are in separate columns.
@@ -188,8 +189,7 @@ ImuColumns imu_columns(const CsvLine& first) {
     ImuColumns columns;
     columns.has_header = false;
     if (first.fields.size() < kColumnsByPlace) {
-      fail(first, "has " + std::to_string(first.fields.size()) + " columns and no header, needs " +
-                      std::to_string(kColumnsByPlace));
+      fail(first, fmt::format("has {} columns and no header; it needs {}", first.fields.size(), kColumnsByPlace));
     }
     return columns;
   }
@@ -201,9 +201,9 @@ ImuColumns imu_columns(const CsvLine& first) {
     return *columns;
   }
   fail(first,
-       "names no column that is known: stamp_s, stamp_ns, wx_rad_s, ..., fx_m_s2, ... (as 'export' writes them), "
-       ".../header/stamp, .../angular_velocity/x, ..., names of loggers (time, gyro_x, ..., accel_x, ...) or none at "
-       "all");
+       "contains no known column name: stamp_s, stamp_ns, wx_rad_s, ..., fx_m_s2, ... (as written by 'export'), "
+       ".../header/stamp, .../angular_velocity/x, ..., or logger names (time, gyro_x, ..., accel_x, ...). A file "
+       "without a header is possible too");
 }
 
 std::int64_t stamp_ns(const CsvLine& line, const ImuColumns& columns) {
@@ -221,8 +221,7 @@ std::int64_t stamp_ns(const CsvLine& line, const ImuColumns& columns) {
 
 void require_width(const CsvLine& line, std::size_t columns) {
   if (line.fields.size() == columns) return;
-  fail(line, "has " + std::to_string(line.fields.size()) + " columns, the first line " + std::to_string(columns) +
-                 "; must be equal");
+  fail(line, fmt::format("has {} columns, but the first line has {}; must be equal", line.fields.size(), columns));
 }
 
 int decimals_by_step(CsvText text, std::size_t stamp, std::size_t columns, const std::string& file) {
@@ -243,9 +242,10 @@ int decimals_by_step(CsvText text, std::size_t stamp, std::size_t columns, const
     const double step_s = step * std::pow(10.0, decimals - 9);
     if (step_s >= kLeast_s && step_s < kMost_s) return decimals;
   }
-  throw BadInput(file + ": the times step by " + std::to_string(step) +
-                 ", in no unit of s, ms, us and ns 10 to 1000 times a second: name the column with its unit, as "
-                 "time_s or 'time [ns]'");
+  throw BadInput(
+      fmt::format("{}: the time step is {}; in none of s, ms, us and ns is this a rate of 10 to 1000 Hz. Add the unit "
+                  "to the column name, as in time_s or 'time [ns]'",
+                  file, std::to_string(step)));
 }
 
 }  // namespace tumble::scenarios

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "scenarios/recordings/tables/imu_readings.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 
@@ -39,14 +41,13 @@ void require_plausible_force(const std::string& where, const sim::ImuRecord& imu
   const char* read_as = unit == AccelUnit::g ? "g" : "m/s^2";
   const std::string likely = likely_force_unit(middle, unit);
   const bool known = likely == "g" || likely == "m/s^2";
-  throw BadInput(where + ": read in " + read_as + " the median specific force is " + std::to_string(middle) +
-                 " m/s^2, must be within 3 and 30: is the file in " + likely + "?" +
-                 (known ? " ('--accel-unit " + likely + "' takes it so)" : "") +
-                 (middle < kLeastMedian_m_s2 ? " Or was gravity taken out of it?" : ""));
+  throw BadInput(fmt::format(
+      "{}: read in {}, the median specific force is {} m/s^2; it must be within 3 and 30. The file may be in {}{}{}",
+      where, read_as, std::to_string(middle), likely, known ? " (set '--accel-unit " + likely + "')" : "",
+      middle < kLeastMedian_m_s2 ? ". Or gravity may have been removed" : ""));
 }
 
-constexpr const char *kTakenInDegrees = " ('--gyro-unit deg/s' takes them so)",
-                     *kTakenInRadians = " ('--gyro-unit rad/s' takes them so)";
+constexpr const char *kTakenInDegrees = " (set '--gyro-unit deg/s')", *kTakenInRadians = " (set '--gyro-unit rad/s')";
 
 /// Limit of both triads [rad/s, m/s^2], as in the estimator.
 constexpr double kSensorReadingMax = 1e6;
@@ -62,9 +63,10 @@ constexpr double kLeastPeriod_s = 2e-5, kLargestPeriod_s = 2.0;
 void require_plausible_period(const std::string& where, const sim::ImuRecord& imu) {
   const double period_s = static_cast<double>(imu.period_ns) * 1e-9;
   if (period_s >= kLeastPeriod_s && period_s <= kLargestPeriod_s) return;
-  throw BadInput(where + ": the median step of the stamps is " + rounded(period_s) + " s, must be within " +
-                 rounded(kLeastPeriod_s) + " and " + rounded(kLargestPeriod_s) + ": are the stamps in another unit" +
-                 (period_s > kLargestPeriod_s ? ", in ms or us?" : " than s and ns?"));
+  throw BadInput(fmt::format(
+      "{}: the median time step is {} s, must be within {} and {}. The time stamps may be in another unit{}", where,
+      rounded(period_s), rounded(kLeastPeriod_s), rounded(kLargestPeriod_s),
+      period_s > kLargestPeriod_s ? ", ms or us" : " than s or ns"));
 }
 
 /// Largest plausible rate of a robot's device without a data sheet.
@@ -88,11 +90,11 @@ void require_rates_in_range(const std::string& where, const sim::ImuRecord& imu,
   if (share <= kBeyondShare) return;
   const bool as_rad = unit == GyroUnit::rad_s;
   const bool degrees = as_rad && beyond_share(imu, bound, 1.0 / kDegreesPerRadian) <= kBeyondShare;
-  throw BadInput(where + ": read in " + (as_rad ? "rad/s " : "deg/s ") + rounded(100.0 * share) +
-                 " % of the rates lie beyond " + rounded(bound) + " rad/s, " +
-                 (stated ? "twice the range that the device's sheet states" : "more than any robot turns") +
-                 "; must be at most 1 %: are the rates in " + (degrees ? "deg/s" : "raw counts of the sensor") + "?" +
-                 (degrees ? kTakenInDegrees : ""));
+  throw BadInput(fmt::format(
+      "{}: read in {}{} % of the rates are beyond {} rad/s, {}; this must be at most 1 %. The rates may be in {}{}",
+      where, as_rad ? "rad/s " : "deg/s ", rounded(100.0 * share), rounded(bound),
+      stated ? "twice the stated range of the device" : "more than any robot rotates",
+      degrees ? "deg/s" : "raw counts of the sensor", degrees ? kTakenInDegrees : ""));
 }
 
 constexpr double kRotationWindow_s = 0.2, kNearGravity = 0.1;
@@ -115,9 +117,9 @@ std::string gaps_text(const sim::ImuRecord& imu) {
     if (step_ns(k) > step_ns(longest)) longest = k;
   }
   if (gaps == 0) return "";
-  return "caution: " + std::to_string(gaps) + (gaps == 1 ? " gap" : " gaps") + " beyond a second, the longest " +
-         rounded(1e-9 * static_cast<double>(step_ns(longest))) + " s before reading " + std::to_string(longest) +
-         ", of which nothing is known";
+  return fmt::format(
+      "caution: {}{} of more than 1 s; the longest lasts {} s before reading {}. No data exist in these gaps", gaps,
+      gaps == 1 ? " gap" : " gaps", rounded(1e-9 * static_cast<double>(step_ns(longest))), longest);
 }
 
 GravityRotation gravity_rotation(const sim::ImuRecord& imu, RotationWindows windows) {
@@ -180,9 +182,11 @@ GravityRotation telling_rotation(const sim::ImuRecord& imu) {
 
 /// Explains why the motion does not suffice.
 std::string untold_text(const GravityRotation& turn) {
-  if (turn.windows < kLeastWindows) return "gravity turns too little in the accelerometer to show them";
-  return "the force turns in the accelerometer, but too little as the gyro says to show them (" +
-         std::to_string(turn.windows) + " windows, correlation " + rounded(turn.correlation) + ")";
+  if (turn.windows < kLeastWindows) return "gravity's rotation in the accelerometer is too small to check them";
+  return fmt::format(
+      "the force rotates in the accelerometer, but agrees too little with the gyro to check them ({} windows, "
+      "correlation {})",
+      turn.windows, rounded(turn.correlation));
 }
 
 }  // namespace
@@ -193,28 +197,29 @@ std::string require_plausible_rates(const std::string& where, const sim::ImuReco
   const bool dead =
       std::all_of(imu.gyro_rad_s.begin(), imu.gyro_rad_s.end(), [](const auto& w) { return w.isZero(0.0); });
   if (dead) {
-    return "caution: the gyro reads 0 on all axes in all " + std::to_string(imu.gyro_rad_s.size()) +
-           " samples: is it dead, or not in what was recorded?";
+    return fmt::format("caution: the gyro reads 0 on all axes in all {} samples; it may be defective or not recorded",
+                       imu.gyro_rad_s.size());
   }
   if (!tells_rotation(turn)) return "";
-  const std::string seen = "gravity turns in the accelerometer " + rounded(turn.ratio) + " times as the gyro says (" +
-                           std::to_string(turn.windows) + " windows, correlation " + rounded(turn.correlation) + ")";
+  const std::string seen = fmt::format(
+      "gravity's rotation in the accelerometer is {} times the gyro's rotation ({} windows, correlation {})",
+      rounded(turn.ratio), turn.windows, rounded(turn.correlation));
   const bool as_deg = unit == GyroUnit::deg_s;
   if (!as_deg && near_factor(turn.ratio, 1.0 / kDegreesPerRadian))
-    throw BadInput(where + ": read in rad/s, " + seen + ", must be within 0.5 and 2: are the rates in deg/s?" +
-                   kTakenInDegrees);
+    throw BadInput(fmt::format("{}: read in rad/s, {}; the ratio must be within 0.5 and 2. The rates may be in deg/s{}",
+                               where, seen, kTakenInDegrees));
   if (as_deg && near_factor(turn.ratio, kDegreesPerRadian))
-    throw BadInput(where + ": read in deg/s, " + seen + ", must be within 0.5 and 2: are the rates in rad/s?" +
-                   kTakenInRadians);
+    throw BadInput(fmt::format("{}: read in deg/s, {}; the ratio must be within 0.5 and 2. The rates may be in rad/s{}",
+                               where, seen, kTakenInRadians));
   if (near_factor(turn.ratio, 1.0)) return seen + ": units and axes agree";
-  return "caution: " + seen + ", and should once: another unit, sign or order of the axes?";
+  return fmt::format("caution: {}; the ratio should be 1. Check the unit, the signs and the order of the axes", seen);
 }
 
 std::string rates_text(const std::string& where, const sim::ImuRecord& imu, GyroUnit unit) {
   const std::string told = require_plausible_rates(where, imu, unit);
   if (!told.empty()) return told;
-  return std::string("rates taken in ") + (unit == GyroUnit::deg_s ? "deg/s" : "rad/s") +
-         ", senses and axes as they are: " + untold_text(telling_rotation(imu));
+  return fmt::format("rates are read in {}, with unchanged signs and axes: {}",
+                     unit == GyroUnit::deg_s ? "deg/s" : "rad/s", untold_text(telling_rotation(imu)));
 }
 
 sim::ImuRecord without_readings(sim::ImuRecord device) {
@@ -229,12 +234,13 @@ void add_reading(const std::string& where, std::int64_t stamp_ns, const Eigen::V
   for (const double value : {largest_of_triad(rate_rad_s), largest_of_triad(force_m_s2)}) {
     if (!std::isfinite(value)) throw BadInput(where + ": a reading is not finite");
     if (value > kSensorReadingMax)
-      throw BadInput(where + ": a reading is of size " + rounded(value) + " rad/s or m/s^2, must be at most " +
-                     rounded(kSensorReadingMax) + ": no sensor says that");
+      throw BadInput(
+          fmt::format("{}: a reading has the magnitude {} rad/s or m/s^2, must be at most {}, the limit of any sensor",
+                      where, rounded(value), rounded(kSensorReadingMax)));
   }
   if (!imu.time_ns.empty() && stamp_ns <= imu.time_ns.back()) {
-    throw BadInput(where + ": stamp does not rise: " + std::to_string(stamp_ns - imu.time_ns.front()) +
-                   " ns after the first, the one before " + std::to_string(imu.time_ns.back() - imu.time_ns.front()));
+    throw BadInput(fmt::format("{}: the time stamp does not increase: {} ns after the first; the previous one is at {}",
+                               where, stamp_ns - imu.time_ns.front(), imu.time_ns.back() - imu.time_ns.front()));
   }
   imu.time_ns.push_back(stamp_ns);
   imu.gyro_rad_s.push_back(rate_rad_s);
@@ -244,7 +250,7 @@ void add_reading(const std::string& where, std::int64_t stamp_ns, const Eigen::V
 
 void finish_readings(const std::string& where, AccelUnit unit, sim::ImuRecord& imu) {
   if (imu.time_ns.size() < 2)
-    throw BadInput(where + ": holds " + std::to_string(imu.time_ns.size()) + " samples, needs 2");
+    throw BadInput(fmt::format("{}: has {} samples; it needs at least 2", where, imu.time_ns.size()));
   require_plausible_force(where, imu, unit);
   imu.period_ns = median_step_ns(imu.time_ns);
   require_plausible_period(where, imu);
@@ -264,8 +270,10 @@ std::string even_out_stamps(sim::ImuRecord& imu) {
   if (!are_rounded(imu.time_ns)) return "";
   imu.time_ns = evened(imu.time_ns);
   imu.period_ns = mean_step_ns(imu.time_ns);
-  return "stamps are whole milliseconds of an IMU that beats every " +
-         rounded(1e-6 * static_cast<double>(imu.period_ns)) + " ms: put on that beat, by a millisecond at most";
+  return fmt::format(
+      "time stamps are in whole milliseconds, but the IMU samples every {} ms; they are replaced by equally spaced "
+      "times, shifted by at most 1 ms",
+      rounded(1e-6 * static_cast<double>(imu.period_ns)));
 }
 
 double scale_of(AccelUnit unit) {

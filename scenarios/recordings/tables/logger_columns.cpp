@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "scenarios/recordings/tables/logger_columns.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cctype>
 #include <string_view>
@@ -98,7 +100,7 @@ class HeaderReader {
     for (std::size_t i = 0; i < header_.fields.size(); ++i) {
       const Name name = split_suffix(header_.fields[i], kTimeUnits, is_time);
       if (!is_time(name.quantity)) continue;
-      if (found) fail("two columns are a time: '" + text(*found) + "' and '" + text(i) + "'");
+      if (found) fail(fmt::format("two columns are time stamps: '{}' and '{}'", text(*found), text(i)));
       decimals = unit_of(kTimeUnits, name, i);
       found = i;
     }
@@ -118,8 +120,8 @@ class HeaderReader {
       const std::optional<std::size_t> axis = axis_of(names, name.quantity);
       if (!axis) continue;
       if (found[*axis])
-        fail(std::string("two columns are the ") + called + "'s " + "xyz"[*axis] + ": '" + text(*found[*axis]) +
-             "' and '" + text(i) + "'");
+        fail(fmt::format("two columns are the {}'s {}: '{}' and '{}'", called, "xyz"[*axis], text(*found[*axis]),
+                         text(i)));
       stated[*axis] = unit_of(units, name, i);
       found[*axis] = i;
     }
@@ -128,14 +130,14 @@ class HeaderReader {
       if (!found[axis]) missing_ += std::string(" ") + called + "_" + "xyz"[axis];
     }
     if (stated[0] != stated[1] || stated[0] != stated[2])
-      fail(std::string("axes of the ") + called + " are in several units");
+      fail(fmt::format("the axes of the {} have different units", called));
     return stated[0];
   }
 
   /// Returns false if only a time is known; throws if something is missing.
   bool complete(std::size_t readings) const {
     if (readings == 0) return false;
-    if (!missing_.empty()) fail("columns are missing:" + missing_);
+    if (!missing_.empty()) fail("missing columns:" + missing_);
     return true;
   }
   std::size_t taken() const { return static_cast<std::size_t>(std::count(taken_.begin(), taken_.end(), true)); }
@@ -158,7 +160,7 @@ class HeaderReader {
   std::optional<Unit> unit_of(const UnitNames<Unit>& units, const Name& name, std::size_t i) const {
     if (name.unit.empty()) return std::nullopt;
     std::optional<Unit> unit = value_of(units, name.unit);
-    if (!unit) fail("column '" + text(i) + "' is in a unit that is not known");
+    if (!unit) fail(fmt::format("column '{}' has an unknown unit", text(i)));
     return unit;
   }
 

@@ -1,5 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "scenarios/errors.hpp"
+
+#include <fmt/format.h>
+
 #include "scenarios/recordings/clouds/sweep_stamps.hpp"
 #include "scenarios/recordings/import.hpp"
 #include "scenarios/recordings/recording_clock.hpp"
@@ -14,8 +17,7 @@ std::vector<std::int64_t> own_times(const ReferenceSource& source) {
   if (!source.times.empty()) return read_stamps(source.times);
   if (source.steady_ns <= 0) {
     throw BadInput(source.file.string() +
-                   ": KITTI's format has no times: a file of stamps (--times) or "
-                   "a period (--sweep-period) is needed");
+                   ": KITTI's format has no times; give a file of time stamps (--times) or a period (--sweep-period)");
   }
   const std::size_t poses = count_kitti_poses(source.file);
   std::vector<std::int64_t> times;
@@ -27,7 +29,8 @@ std::vector<ReferencePose> poses_of(const ReferenceSource& source, const std::ve
   if (source.format == "tum") return read_tum_poses(source.file, source.sorted);
   if (source.format == "kitti") return read_kitti_poses(source.file, sweeps_ns.empty() ? own_times(source) : sweeps_ns);
   if (source.format == "odometry") return read_odometry_poses(source.file);
-  throw BadInput("poses of format '" + source.format + "' are not read: tum, kitti or odometry");
+  throw BadInput(
+      fmt::format("the pose format '{}' is not supported; supported: tum, kitti and odometry", source.format));
 }
 
 /// Converts poses of A to poses of B.
@@ -52,7 +55,7 @@ sim::Truth named(const std::string& where, const std::vector<ReferencePose>& pos
 
 Imported import_trajectory(const ReferenceSource& source) {
   std::vector<ReferencePose> poses = poses_of(source, {});
-  if (poses.empty()) throw BadInput(source.file.string() + ": holds no pose");
+  if (poses.empty()) throw BadInput(source.file.string() + ": contains no pose");
   Imported out;
   out.info.origin_ns = origin_of(poses.front().time_ns);
   for (ReferencePose& pose : poses) pose.time_ns -= out.info.origin_ns;
@@ -62,7 +65,7 @@ Imported import_trajectory(const ReferenceSource& source) {
 }
 
 const Eigen::Isometry3d& lidar_of_poses(const sim::Sensors& sensors, const std::string& where) {
-  if (sensors.lidars.empty()) throw BadInput(where + ": poses of a lidar, and the recording has none");
+  if (sensors.lidars.empty()) throw BadInput(where + ": the poses are those of a lidar, but the recording has none");
   return sensors.lidars.front().T_BL;
 }
 
@@ -87,7 +90,7 @@ void attach_poses(Imported& recording, std::vector<ReferencePose> poses, const E
 void attach_reference(Imported& recording, const ReferenceSource& source) {
   const sim::Sensors& sensors = recording.sensors;
   if (sensors.lidars.empty() && source.format == "kitti")
-    throw BadInput(source.file.string() + ": a KITTI file has a pose per sweep, and the recording has no lidar");
+    throw BadInput(source.file.string() + ": a KITTI file has one pose per sweep, but the recording has no lidar");
   std::vector<std::int64_t> sweeps_ns;
   if (!sensors.lidars.empty()) sweeps_ns = sensors.lidars.front().sweep_start_ns;
   for (std::int64_t& time : sweeps_ns) time += recording.info.origin_ns;

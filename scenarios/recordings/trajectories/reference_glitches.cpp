@@ -139,12 +139,12 @@ std::string GlitchReport::text(std::size_t samples) const {
   const std::size_t left_out = unknown + bad_norm + frozen + leapt;
   std::string out = fmt::format("reference: {} of {} samples left out", left_out, samples);
   if (leaps > 0)
-    out += fmt::format(", {} in and between {} leaps of up to {:.0f} rad/s that are no motion", leapt, leaps,
+    out += fmt::format(", {} within or between {} jumps of up to {:.0f} rad/s that cannot be motion", leapt, leaps,
                        fastest_leap_rad_s);
-  if (bad_norm > 0) out += fmt::format(", {} off unit length by more than 1 %", bad_norm);
-  if (frozen > 0) out += fmt::format(", {} held while the body moved", frozen);
+  if (bad_norm > 0) out += fmt::format(", {} with a quaternion norm off by more than 1 %", bad_norm);
+  if (frozen > 0) out += fmt::format(", {} frozen while the body moved", frozen);
   if (unknown > 0) out += fmt::format(", {} unknown", unknown);
-  if (gaps > 0) out += fmt::format("; {} gaps within which nothing is known", gaps);
+  if (gaps > 0) out += fmt::format("; {} gaps without data", gaps);
   return out;
 }
 

@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -72,15 +74,15 @@ Eigen::Vector3d rotation_vector(const Eigen::Quaterniond& q) {
 }
 
 sim::Truth reference_truth(const std::vector<ReferencePose>& poses, std::int64_t end_ns) {
-  if (poses.empty()) throw BadInput("the reference holds no pose");
+  if (poses.empty()) throw BadInput("the reference has no poses");
   const std::int64_t last_ns = std::min(end_ns, poses.back().time_ns);
   if (last_ns < 0 || poses.front().time_ns > end_ns) {
-    throw BadInput("the reference reaches from " + std::to_string(poses.front().time_ns) + " to " +
-                   std::to_string(poses.back().time_ns) + " ns of the recording, which lasts " +
-                   std::to_string(end_ns) + " ns: another clock?");
+    throw BadInput(fmt::format(
+        "the reference covers {} to {} ns of the recording, which lasts {} ns; check that both use the same clock",
+        poses.front().time_ns, poses.back().time_ns, end_ns));
   }
   if (last_ns > kLongestReference_ns) {
-    throw BadInput("the reference lasts " + std::to_string(last_ns) + " ns, must be at most a day");
+    throw BadInput(fmt::format("the reference lasts {} ns; it must be at most one day", last_ns));
   }
   const std::vector<std::int64_t> times = times_of(poses);
   sim::Truth truth;
@@ -93,7 +95,7 @@ sim::Truth reference_truth(const std::vector<ReferencePose>& poses, std::int64_t
   }
   const auto known = [](const Eigen::Quaterniond& q) { return q.coeffs().allFinite(); };
   if (std::none_of(truth.q_WB.begin(), truth.q_WB.end(), known)) {
-    throw BadInput("the reference has poses too far apart to know any of the recording by");
+    throw BadInput("the poses of the reference are too far apart in time for any comparison");
   }
   differentiate(truth, static_cast<std::size_t>(std::max<std::int64_t>(kReach_ns / truth.period_ns, 1)));
   return truth;

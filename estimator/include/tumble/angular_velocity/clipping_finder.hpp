@@ -72,8 +72,10 @@ class ClippingFinder {
       visit.group("rails_", p.upright_rails);
       visit.group("planes_", p.planes);
       visit.group("accel_planes_", p.accel_planes);
-      visit(p.tilted,
-            on_off("tilted", "0: by flags and upright rails alone, as methods were published that know no other rail"));
+      visit(
+          p.tilted,
+          on_off("tilted",
+                 "0: search upright rails and device flags only, for methods that were published without other rails"));
     }
   };
   struct Found {

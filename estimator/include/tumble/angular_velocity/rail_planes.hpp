@@ -55,18 +55,20 @@ class RailPlaneFinder {
     /// Visits every parameter: its value, name, unit, bounds and meaning (common/parameters.hpp).
     template <class Self, class Visitor>
     static void fields(Self& p, Visitor& visit) {
-      visit(p.slope_sigma, {"slope_sigma", "1", 1e-4, 0.2,
-                            "prior of each slope: cross-axis sensitivity of elements before compensation"});
+      visit(p.slope_sigma,
+            {"slope_sigma", "1", 1e-4, 0.2,
+             "prior standard deviation of each slope: cross-axis sensitivity of the elements before compensation"});
       visit(p.slope_max, {"slope_max", "1", 0.0, 0.3, "steepest slope searched"});
-      visit(p.distance_min_rad_s, {"distance_min_rad_s", "rad/s", 0.01, 1000.0,
-                                   "rails lower than this are not looked for; of an accelerometer in m/s^2"});
+      visit(p.distance_min_rad_s,
+            {"distance_min_rad_s", "rad/s", 0.01, 1000.0, "lowest rail searched; m/s^2 for an accelerometer"});
       visit(p.offset_share,
-            {"offset_share", "1", 1e-4, 0.2, "prior of the offset and of how far elements differ, as a share of r"});
-      visit(p.samples_min, {"samples_min", "1", 2, 1000, "on a rail, of one sign"});
+            {"offset_share", "1", 1e-4, 0.2,
+             "prior standard deviation of the rail's offset and of the spread of elements, as a share of the range"});
+      visit(p.samples_min, {"samples_min", "1", 2, 1000, "least number of samples at a rail, per sign"});
       visit(p.log_odds_before,
-            {"log_odds_before", "1", -100.0, 100.0, "before anything is seen, for each element and sign"});
-      visit(p.log_odds_min, {"log_odds_min", "1", -100.0, 100.0, "of a rail that is believed"});
-      visit(p.log_odds_keep, {"log_odds_keep", "1", -100.0, 100.0, "of one that was believed before and still is"});
+            {"log_odds_before", "1", -100.0, 100.0, "prior log odds of a tilted rail, per element and sign"});
+      visit(p.log_odds_min, {"log_odds_min", "1", -100.0, 100.0, "log odds from which a tilted rail is accepted"});
+      visit(p.log_odds_keep, {"log_odds_keep", "1", -100.0, 100.0, "log odds above which an accepted rail is kept"});
     }
   };
 

@@ -34,16 +34,19 @@ class RestDetector {
     /// Visits every parameter: its value, name, unit, bounds and meaning (common/parameters.hpp).
     template <class Self, class Visitor>
     static void fields(Self& p, Visitor& visit) {
-      visit(p.rate_max_rad_s, {"rate_max_rad_s", "rad/s", 1e-6, 10.0, "a bias at most: faster is no rest"});
+      visit(p.rate_max_rad_s,
+            {"rate_max_rad_s", "rad/s", 1e-6, 10.0, "largest mean rate at rest, as caused by a gyro bias"});
       visit(p.rate_spread_rad_s, {"rate_spread_rad_s", "rad/s", 1e-6, 10.0,
-                                  "largest distance of a reading from the mean of the run, per axis"});
-      visit(p.force_min_m_s2, {"force_min_m_s2", "m/s^2", 0.0, 100.0, "flight is no rest"});
-      visit(p.force_max_m_s2, {"force_max_m_s2", "m/s^2", 0.0, 1e6, "nor is a force beyond gravity"});
+                                  "largest distance of a reading from the mean rate of the rest, per axis"});
+      visit(p.force_min_m_s2, {"force_min_m_s2", "m/s^2", 0.0, 100.0, "least force at rest; excludes free flight"});
+      visit(p.force_max_m_s2,
+            {"force_max_m_s2", "m/s^2", 0.0, 1e6, "largest force at rest; excludes forces beyond gravity"});
       visit(p.force_spread_m_s2, {"force_spread_m_s2", "m/s^2", 1e-6, 100.0,
-                                  "largest distance of a force from the mean of the run, per axis"});
-      visit(p.rest_s, {"rest_s", "s", 0.0, 1e4, "the shortest run that is rest"});
-      visit(p.reading_s, {"reading_s", "s", 0.0, 1.0, "length of what counts as a reading; 0: each sample"});
-      visit(p.memory_s, {"memory_s", "s", 1e-3, 1e6, "in which the mean of a run forgets"});
+                                  "largest distance of a force from the mean force of the rest, per axis"});
+      visit(p.rest_s, {"rest_s", "s", 0.0, 1e4, "shortest duration of a rest"});
+      visit(p.reading_s,
+            {"reading_s", "s", 0.0, 1.0, "duration over which readings are averaged; 0: each sample is one reading"});
+      visit(p.memory_s, {"memory_s", "s", 1e-3, 1e6, "time constant of the mean over a rest"});
     }
   };
   struct State {

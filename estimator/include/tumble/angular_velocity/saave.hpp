@@ -51,22 +51,23 @@ class Saave {
     template <class Self, class Visitor>
     static void fields(Self& p, Visitor& visit) {
       visit(p.lever_arm_m, {"lever_arm_m", "m", -10.0, 10.0,
-                            "from the centre of mass to the IMU, IMU axes; needed to about a millimetre"});
+                            "lever arm from the centre of mass to the IMU, IMU axes; needs an accuracy of about 1 mm"});
       visit(p.saturation_point_rad_s,
             {"saturation_point_rad_s", "rad/s", 0.01, 1000.0,
-             "a reading strictly beyond counts as clipped: to be slightly below the plateau of the gyro", Rank::first});
+             "readings beyond this count as clipped; choose it slightly below the gyro's plateau", Rank::first});
       visit(p.variance_measured_rad2_s2,
             {"variance_measured_rad2_s2", "rad^2/s^2", 1e-12, 1e12, "variance of an unclipped reading"});
       visit(
           p.variance_estimated_rad2_s2,
           {"variance_estimated_rad2_s2", "rad^2/s^2", 1e-12, 1e12,
            "variance of a recovered axis: 0.2741 as in the authors' code, 3.648 as printed in the paper", Rank::first});
-      visit(p.variance_rejected_rad2_s2, {"variance_rejected_rad2_s2", "rad^2/s^2", 1e-12, 1e12,
-                                          "variance of a clipped axis when no estimate is possible"});
-      visit(p.jerk_psd_rad2_s5, {"jerk_psd_rad2_s5", "rad^2/s^5", 1e-12, 1e12,
-                                 "density of the smoother's white angular jerk (paper, sec. IV)", Rank::first});
-      visit(p.gap_max_s,
-            {"gap_max_s", "s", 1e-6, 3600.0, "longest time between two samples before the run is refused"});
+      visit(p.variance_rejected_rad2_s2,
+            {"variance_rejected_rad2_s2", "rad^2/s^2", 1e-12, 1e12, "variance of a clipped axis without an estimate"});
+      visit(p.jerk_psd_rad2_s5,
+            {"jerk_psd_rad2_s5", "rad^2/s^5", 1e-12, 1e12,
+             "power spectral density of the smoother's white angular jerk (paper, sec. IV)", Rank::first});
+      visit(p.gap_max_s, {"gap_max_s", "s", 1e-6, 3600.0,
+                          "longest allowed time between two samples; a longer gap ends the run with an error"});
     }
   };
 

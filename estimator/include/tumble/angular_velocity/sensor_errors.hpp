@@ -56,16 +56,23 @@ struct SensorErrorSizes {
   /// Visits every parameter: its value, name, unit, bounds and meaning (common/parameters.hpp).
   template <class Self, class Visitor>
   static void fields(Self& p, Visitor& visit) {
-    visit(p.gyro, {"gyro", "1", 0.0, 0.1, "scale, misalignment of the gyro, if the device is as its sheet says"});
-    visit(p.gyro_unknown, {"gyro_unknown", "1", 0.0, 0.1, "the same if it is not"});
-    visit(p.accel,
-          {"accel", "1", 0.0, 0.1, "scale, misalignment of the accelerometer, if the device is as its sheet says"});
-    visit(p.accel_unknown, {"accel_unknown", "1", 0.0, 0.1, "the same if it is not"});
+    visit(p.gyro, {"gyro", "1", 0.0, 0.1,
+                   "standard deviation of the gyro's scale and misalignment, device within its data sheet"});
+    visit(p.gyro_unknown, {"gyro_unknown", "1", 0.0, 0.1,
+                           "standard deviation of the gyro's scale and misalignment, device not calibrated"});
+    visit(p.accel, {"accel", "1", 0.0, 0.1,
+                    "standard deviation of the accelerometer's scale and misalignment, device within its data sheet"});
+    visit(p.accel_unknown, {"accel_unknown", "1", 0.0, 0.1,
+                            "standard deviation of the accelerometer's scale and misalignment, device not calibrated"});
     visit(p.felt_s_m, {"felt_s_m", "s/m", 0.0, 0.1,
-                       "rate that the gyro shows per acceleration, if the device is as its sheet says"});
-    visit(p.felt_unknown_s_m, {"felt_unknown_s_m", "s/m", 0.0, 0.1, "the same if it is not"});
-    visit(p.delay_s, {"delay_s", "s", 0.0, 0.1, "accelerometer against gyro, if both are filtered alike"});
-    visit(p.delay_unknown_s, {"delay_unknown_s", "s", 0.0, 0.1, "the same if they are not"});
+                       "standard deviation of the gyro's g-sensitivity, device within its data sheet"});
+    visit(p.felt_unknown_s_m, {"felt_unknown_s_m", "s/m", 0.0, 0.1,
+                               "standard deviation of the gyro's g-sensitivity, device not calibrated"});
+    visit(p.delay_s, {"delay_s", "s", 0.0, 0.1,
+                      "standard deviation of the delay between accelerometer and gyro, if both have the same filter"});
+    visit(p.delay_unknown_s,
+          {"delay_unknown_s", "s", 0.0, 0.1,
+           "standard deviation of the delay between accelerometer and gyro, if their filters differ"});
   }
 };
 

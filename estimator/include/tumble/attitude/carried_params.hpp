@@ -18,14 +18,19 @@ struct CarriedHandParams {
 
   template <class Self, class Visitor>
   static void fields(Self& p, Visitor& visit) {
-    visit(p.hand_tau_s, {"hand_tau_s", "s", 1e-3, 10.0, "memory of the carried point's acceleration", Rank::first});
-    visit(p.velocity_tau_s, {"velocity_tau_s", "s", 1e-3, 1e3, "memory of the carried point's velocity"});
-    visit(p.position_tau_s, {"position_tau_s", "s", 1e-3, 1e3, "memory of the carried point's position"});
-    visit(p.position_leak_s, {"position_leak_s", "s", 0.1, 1e4, "in which a position is forgotten"});
+    visit(p.hand_tau_s,
+          {"hand_tau_s", "s", 1e-3, 10.0, "correlation time of the hand-held point's acceleration", Rank::first});
+    visit(p.velocity_tau_s, {"velocity_tau_s", "s", 1e-3, 1e3, "correlation time of the hand-held point's velocity"});
+    visit(p.position_tau_s, {"position_tau_s", "s", 1e-3, 1e3, "correlation time of the hand-held point's position"});
+    visit(p.position_leak_s,
+          {"position_leak_s", "s", 0.1, 1e4, "time constant with which the position decays to zero"});
     visit(p.hand_follow,
-          {"hand_follow", "1", 0.0, 1.0, "how far the hand's density follows the motion's own power", Rank::first});
-    visit(p.hand_window_s, {"hand_window_s", "s", 0.01, 1e3, "over which that power is taken"});
-    visit(p.hand_floor, {"hand_floor", "1", 1e-3, 1e3, "least share of the hand's assumed density"});
+          {"hand_follow", "1", 0.0, 1.0,
+           "share by which the assumed acceleration follows the measured power of the motion; 0: not at all",
+           Rank::first});
+    visit(p.hand_window_s,
+          {"hand_window_s", "s", 0.01, 1e3, "time window over which the power of the motion is measured"});
+    visit(p.hand_floor, {"hand_floor", "1", 1e-3, 1e3, "least ratio of the adapted acceleration to the assumed one"});
   }
 };
 
@@ -41,19 +46,19 @@ struct CarriedReadingParams {
 
   template <class Self, class Visitor>
   static void fields(Self& p, Visitor& visit) {
-    visit(p.tilt_share,
-          {"tilt_share", "1", 0.0, 1.0, "error of a free element per deficit of a clipped one", Rank::first});
-    visit(p.rail_sigma_rad_s, {"rail_sigma_rad_s", "rad/s", 1e-4, 1.0, "how sharp a rail is"});
-    visit(p.accel_error_share,
-          {"accel_error_share", "1", 0.0, 1.0, "noise of the specific force more, per m/s^2 away from gravity"});
-    visit(p.rotation_error_sqrts,
-          {"rotation_error_sqrts", "sqrt(s)", 0.0, 1.0, "angle random walk per rad/s turned: scale", Rank::first});
+    visit(p.tilt_share, {"tilt_share", "1", 0.0, 1.0,
+                         "error of an unclipped element per saturation deficit of a clipped element", Rank::first});
+    visit(p.rail_sigma_rad_s, {"rail_sigma_rad_s", "rad/s", 1e-4, 1.0, "standard deviation of the rail"});
+    visit(p.accel_error_share, {"accel_error_share", "1", 0.0, 1.0,
+                                "additional noise of the specific force, per m/s^2 of distance from gravity"});
+    visit(p.rotation_error_sqrts, {"rotation_error_sqrts", "sqrt(s)", 0.0, 1.0,
+                                   "angle random walk per rad/s of rate, from scale errors", Rank::first});
     visit(p.recovered_sigma_rad_s,
           {"recovered_sigma_rad_s", "rad/s", 0.0, 1e4,
-           "a clipped rate known better than this is recovered, not only bounded", Rank::first});
-    visit(p.recovered_tau_s, {"recovered_tau_s", "s", 1e-4, 1e4, "memory of the error of a rate that was recovered"});
+           "largest standard deviation for a clipped rate to count as recovered instead of bounded", Rank::first});
+    visit(p.recovered_tau_s, {"recovered_tau_s", "s", 1e-4, 1e4, "correlation time of the error of a recovered rate"});
     visit(p.recovered_scale_share, {"recovered_scale_share", "1", 0.0, 1.0,
-                                    "beside recovered rates: of the turning, by which gyros misread all of it"});
+                                    "scale error of the gyro next to recovered rates, as a share of the rate"});
   }
 };
 
@@ -65,9 +70,11 @@ struct CarriedStillParams {
 
   template <class Self, class Visitor>
   static void fields(Self& p, Visitor& visit) {
-    visit(p.rest_sigma_rad_s, {"rest_sigma_rad_s", "rad/s", 1e-6, 10.0, "of the rate at rest, one node"});
-    visit(p.rest_sigma_m_s, {"rest_sigma_m_s", "m/s", 1e-6, 10.0, "of the velocity at rest"});
-    visit(p.rest_sigma_m_s2, {"rest_sigma_m_s2", "m/s^2", 1e-6, 10.0, "of the acceleration at rest"});
+    visit(p.rest_sigma_rad_s,
+          {"rest_sigma_rad_s", "rad/s", 1e-6, 10.0, "standard deviation of the rate at rest, per node"});
+    visit(p.rest_sigma_m_s, {"rest_sigma_m_s", "m/s", 1e-6, 10.0, "standard deviation of the velocity at rest"});
+    visit(p.rest_sigma_m_s2,
+          {"rest_sigma_m_s2", "m/s^2", 1e-6, 10.0, "standard deviation of the acceleration at rest"});
   }
 };
 
@@ -86,11 +93,13 @@ struct CarriedExpertParams {
 
   template <class Self, class Visitor>
   static void fields(Self& p, Visitor& visit) {
-    visit(p.node_s, {"node_s", "s", 1e-3, 0.1, "between two nodes of the smoother", Rank::first});
-    visit(p.iterations_max, {"iterations_max", "1", 1, 1000, "most steps of Gauss-Newton", Rank::first});
-    visit(p.gap_max_s, {"gap_max_s", "s", 1e-300, 1e4, "longest time between two samples before the run is refused"});
-    visit(p.jerk_inflation, {"jerk_inflation", "1", 1.0, 100.0,
-                             "covariances are those of a root density of the jerk so many times larger", Rank::first});
+    visit(p.node_s, {"node_s", "s", 1e-3, 0.1, "time between two nodes of the smoother", Rank::first});
+    visit(p.iterations_max, {"iterations_max", "1", 1, 1000, "largest number of Gauss-Newton steps", Rank::first});
+    visit(p.gap_max_s, {"gap_max_s", "s", 1e-300, 1e4,
+                        "longest allowed time between two samples; a longer gap ends the run with an error"});
+    visit(p.jerk_inflation,
+          {"jerk_inflation", "1", 1.0, 100.0,
+           "covariances are computed for an angular-jerk root density larger by this factor", Rank::first});
     visit.group("rest_", p.rest);
     visit.group("", p.hand);
     visit.group("", p.readings);
@@ -120,18 +129,21 @@ struct CarriedParams {
     visit(p.gravity_m_s2, {"gravity_m_s2", "m/s^2", 1e-300, 100.0, "strength of gravity"});
     visit(p.gyro_noise_density, {"gyro_noise_density", "rad/s/sqrt(Hz)", 1e-6, 1.0, "noise density of the gyro"});
     visit(p.accel_noise_density, {"accel_noise_m_s2_sqrt_hz", "m/s^2/sqrt(Hz)", 1e-5, 10.0,
-                                  "noise density of the specific force, unmodelled errors included", Rank::first});
+                                  "noise density of the specific force, including unmodelled errors", Rank::first});
     visit(p.gyro_bias_sigma_rad_s,
-          {"gyro_bias_sigma_rad_s", "rad/s", 1e-6, 10.0, "prior of the gyro's bias", Rank::first});
-    visit(p.accel_bias_sigma_m_s2,
-          {"accel_bias_sigma_m_s2", "m/s^2", 1e-6, 10.0, "prior of the accelerometer's bias", Rank::first});
-    visit(p.lever_arm_sigma_m,
-          {"lever_arm_sigma_m", "m", 1e-6, 10.0, "prior of the lever arm from the carried point", Rank::first});
-    visit(p.jerk_rad_s3_sqrts,
-          {"jerk_rad_s3_sqrts", "rad/s^3 sqrt(s)", 1e-2, 1e6, "root density of the angular jerk", Rank::first});
-    visit(p.hand_m_s2, {"hand_m_s2", "m/s^2", 1e-3, 1e3, "deviation of the carried point's acceleration", Rank::first});
-    visit(p.velocity_m_s, {"velocity_m_s", "m/s", 1e-3, 1e3, "deviation of the carried point's velocity", Rank::first});
-    visit(p.position_m, {"position_m", "m", 1e-3, 1e3, "deviation of the carried point's position", Rank::first});
+          {"gyro_bias_sigma_rad_s", "rad/s", 1e-6, 10.0, "prior standard deviation of the gyro bias", Rank::first});
+    visit(p.accel_bias_sigma_m_s2, {"accel_bias_sigma_m_s2", "m/s^2", 1e-6, 10.0,
+                                    "prior standard deviation of the accelerometer bias", Rank::first});
+    visit(p.lever_arm_sigma_m, {"lever_arm_sigma_m", "m", 1e-6, 10.0,
+                                "prior standard deviation of the lever arm from the hand-held point", Rank::first});
+    visit(p.jerk_rad_s3_sqrts, {"jerk_rad_s3_sqrts", "rad/s^3 sqrt(s)", 1e-2, 1e6,
+                                "root power spectral density of the angular jerk", Rank::first});
+    visit(p.hand_m_s2,
+          {"hand_m_s2", "m/s^2", 1e-3, 1e3, "standard deviation of the hand-held point's acceleration", Rank::first});
+    visit(p.velocity_m_s,
+          {"velocity_m_s", "m/s", 1e-3, 1e3, "standard deviation of the hand-held point's velocity", Rank::first});
+    visit(p.position_m,
+          {"position_m", "m", 1e-3, 1e3, "standard deviation of the hand-held point's position", Rank::first});
     visit.group("", p.expert);
   }
 };

@@ -38,15 +38,18 @@ struct ImuMergeParams {
   /// Visits every parameter: its value, name, unit, bounds and meaning (common/parameters.hpp).
   template <class Self, class Visitor>
   static void fields(Self& p, Visitor& visit) {
-    visit(p.count, {"count", "1", 1, kImus, "IMUs in use"});
-    visit(p.rate_noise_rad_s, {"rate_noise_rad_s", "rad/s", 1e-12, 10.0, "of the mean rate over a window"});
-    visit(p.window_s, {"window_s", "s", 0.0, 0.1, "over which readings are averaged beforehand"});
-    visit(p.offset_sigma_s, {"offset_sigma_s", "s", 0.0, 0.1, "prior of a unit's time offset; zero: none"});
+    visit(p.count, {"count", "1", 1, kImus, "number of IMUs in use"});
+    visit(p.rate_noise_rad_s,
+          {"rate_noise_rad_s", "rad/s", 1e-12, 10.0, "standard deviation of the mean rate over a window"});
+    visit(p.window_s, {"window_s", "s", 0.0, 0.1, "duration over which readings are averaged before merging"});
+    visit(p.offset_sigma_s,
+          {"offset_sigma_s", "s", 0.0, 0.1, "prior standard deviation of an IMU's time offset; 0: no offset"});
     visit(p.gyro_range_rad_s,
-          {"gyro_range_rad_s", "rad/s", 1e-12, 1e3, "readings of the gyro from here on are at the rail"});
+          {"gyro_range_rad_s", "rad/s", 1e-12, 1e3, "gyro readings from this value on are at the rail"});
     visit(p.accel_range_m_s2,
-          {"accel_range_m_s2", "m/s^2", 1e-12, 1e5, "readings of the accelerometer from here on are at the rail"});
-    visit(p.gap_max_s, {"gap_max_s", "s", 1e-9, 1e4, "longest time between two samples before the run is refused"});
+          {"accel_range_m_s2", "m/s^2", 1e-12, 1e5, "accelerometer readings from this value on are at the rail"});
+    visit(p.gap_max_s, {"gap_max_s", "s", 1e-9, 1e4,
+                        "longest allowed time between two samples; a longer gap ends the run with an error"});
     visit.group("", p.expert);
   }
 };

@@ -32,14 +32,15 @@ struct ImuPlausibilityParams {
   template <class Self, class Visitor>
   static void fields(Self& p, Visitor& visit) {
     visit(p.gravity_m_s2, {"gravity_m_s2", "m/s^2", 1e-12, 100.0, "strength of gravity"});
-    visit(p.window_s, {"window_s", "s", 0.02, 10.0, "over which force and turning are compared"});
-    visit(p.reading_s, {"reading_s", "s", 1e-3, 1.0, "readings are averaged to this length"});
-    visit(p.steady_share, {"steady_share", "1", 1e-12, 1.0, "by which the force's size may change within a window"});
+    visit(p.window_s, {"window_s", "s", 0.02, 10.0, "length of the windows in which force and rotation are compared"});
+    visit(p.reading_s, {"reading_s", "s", 1e-3, 1.0, "duration over which readings are averaged"});
+    visit(p.steady_share, {"steady_share", "1", 1e-12, 1.0,
+                           "largest change of the force's magnitude within a steady window, as a share"});
     visit(p.near_share, {"near_share", "1", 1e-12, 1e6,
-                         "by which the force's size may differ from gravity for its turning to be compared"});
+                         "largest difference between force and gravity for a comparison of rotations, as a share"});
     visit(p.gyro_range_rad_s,
-          {"gyro_range_rad_s", "rad/s", 1e-3, 1e6, "a window with an axis beyond it is not compared"});
-    visit(p.gap_max_s, {"gap_max_s", "s", 1e-12, 1e4, "after a longer one a window begins anew"});
+          {"gyro_range_rad_s", "rad/s", 1e-3, 1e6, "rate of an axis above which a window is not compared"});
+    visit(p.gap_max_s, {"gap_max_s", "s", 1e-12, 1e4, "longest gap between samples within a window"});
     visit.group("", p.expert);
   }
 };

@@ -35,9 +35,8 @@ class RegimeSmoother {
       visit.group("evidence_", p.evidence);
       visit.group("carried_", p.carried);
       visit(p.carried_min,
-            {"carried_min", "1", 0.0, 1.0, "a share of the carried body below this is not worth its work"});
-      visit(p.near_s,
-            {"near_s", "s", 0.0, 10.0, "clipped samples so close belong to one segment and judge each other"});
+            {"carried_min", "1", 0.0, 1.0, "least probability of hand-held motion for which its smoother runs"});
+      visit(p.near_s, {"near_s", "s", 0.0, 10.0, "clipped samples within this time belong to one segment"});
     }
   };
   struct Report {

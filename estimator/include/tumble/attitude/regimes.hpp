@@ -45,18 +45,19 @@ class RegimeEvidence {
     template <class Self, class Visitor>
     static void fields(Self& p, Visitor& visit) {
       visit(p.gravity_m_s2, {"gravity_m_s2", "m/s^2", 1e-300, 100.0, "strength of gravity"});
-      visit(p.flight_m_s2,
-            {"flight_m_s2", "m/s^2", 1e-3, 10.0, "deviation of the force left in flight: drag, bandwidth"});
-      visit(p.flight_share, {"flight_share", "1", 0.0, 1.0, "the same as a share of the lever arm's force"});
-      visit(p.hand_m_s2, {"hand_m_s2", "m/s^2", 0.1, 100.0, "deviation of a hand's acceleration"});
-      visit(p.grip_m, {"grip_m", "m", 0.0, 1.0, "how far from the hand an IMU is"});
-      visit(p.contact_max_m_s2,
-            {"contact_max_m_s2", "m/s^2", 10.0, 1e6, "forces of contact lie between 1 m/s^2 and this"});
-      visit(p.memory_s, {"memory_s", "s", 1e-3, 10.0, "readings within it count as one"});
-      visit(p.rest_rate_rad_s,
-            {"rest_rate_rad_s", "rad/s", 0.0, 100.0, "slower turning says nothing of who holds the body"});
-      visit(p.contacts_hz, {"contacts_hz", "Hz", 1e-3, 100.0, "changes between flight and contact"});
-      visit(p.throws_hz, {"throws_hz", "Hz", 1e-9, 10.0, "changes between these and a hand"});
+      visit(p.flight_m_s2, {"flight_m_s2", "m/s^2", 1e-3, 10.0,
+                            "standard deviation of the residual force in flight: drag, bandwidth"});
+      visit(p.flight_share,
+            {"flight_share", "1", 0.0, 1.0,
+             "standard deviation of the residual force in flight, as a share of the lever arm's force"});
+      visit(p.hand_m_s2, {"hand_m_s2", "m/s^2", 0.1, 100.0, "standard deviation of a hand's acceleration"});
+      visit(p.grip_m, {"grip_m", "m", 0.0, 1.0, "standard deviation of the distance between hand and IMU"});
+      visit(p.contact_max_m_s2, {"contact_max_m_s2", "m/s^2", 10.0, 1e6,
+                                 "largest contact force; contact forces are between 1 m/s^2 and this"});
+      visit(p.memory_s, {"memory_s", "s", 1e-3, 10.0, "readings within this time count as one observation"});
+      visit(p.rest_rate_rad_s, {"rest_rate_rad_s", "rad/s", 0.0, 100.0, "least rate at which the regime is estimated"});
+      visit(p.contacts_hz, {"contacts_hz", "Hz", 1e-3, 100.0, "rate of changes between flight and contact"});
+      visit(p.throws_hz, {"throws_hz", "Hz", 1e-9, 10.0, "rate of changes between hand-held and free motion"});
     }
   };
 

@@ -44,9 +44,11 @@ class SampleClock {
     /// Visits every parameter: its value, name, unit, bounds and meaning (common/parameters.hpp).
     template <class Self, class Visitor>
     static void fields(Self& p, Visitor& visit) {
-      visit(p.memory_s, {"memory_s", "s", 0.01, 1e3, "for which the sensor's clock is taken for steady"});
-      visit(p.jitter_min, {"jitter_min", "1", 0.0, 1.0, "jitter of stamps below which they stay, in periods"});
-      visit(p.jitter_max, {"jitter_max", "1", 0.0, 0.2, "jitter of stamps beyond which they stay; 0: they always do"});
+      visit(p.memory_s, {"memory_s", "s", 0.01, 1e3, "time over which the sensor's clock is assumed to be steady"});
+      visit(p.jitter_min,
+            {"jitter_min", "1", 0.0, 1.0, "stamp jitter below which stamps are not corrected, in periods"});
+      visit(p.jitter_max, {"jitter_max", "1", 0.0, 0.2,
+                           "stamp jitter above which stamps are not corrected, in periods; 0: never correct"});
     }
   };
 

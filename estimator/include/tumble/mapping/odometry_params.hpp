@@ -39,14 +39,15 @@ struct OdometryExpertParams {
   static void fields(Self& p, Visitor& visit) {
     visit(p.gravity_m_s2, {"gravity_m_s2", "m/s^2", 0.0, 100.0, "strength of gravity"});
     visit(p.gravity_sigma_m_s2, {"gravity_sigma_m_s2", "m/s^2", 0.0, 10.0,
-                                 "gravity's direction as levelled at the start; 0: exact", Rank::first});
+                                 "standard deviation of gravity after initial levelling; 0: exact", Rank::first});
     visit.group("", p.rest);
     visit.group("", p.map);
     visit.group("", p.matching);
     visit.group("", p.prior);
     visit.group("", p.rails);
-    visit(p.window_sweeps, {"window_sweeps", "1", 1, 8,
-                            "sweeps refined together: so many less one by what comes after them", Rank::first});
+    visit(p.window_sweeps,
+          {"window_sweeps", "1", 1, 8,
+           "number of sweeps refined together; a sweep is refined by this many minus one later sweeps", Rank::first});
     visit.group("", p.flight);
     visit.group("", p.tracking);
     visit.group("start_", p.start);
@@ -78,17 +79,18 @@ struct OdometryParams {
   /// Visits every parameter: its value, name, unit, bounds and meaning (common/parameters.hpp).
   template <class Self, class Visitor>
   static void fields(Self& p, Visitor& visit) {
-    visit(p.time_offset_s, {"time_offset_s", "s", -1.0, 1.0, "the IMU's clock minus the lidar's"});
+    visit(p.time_offset_s, {"time_offset_s", "s", -1.0, 1.0, "clock of the IMU minus clock of the lidar"});
     visit(p.mount_sigma_rad, calibration_fields::kMountSigma_rad);
     visit(p.mount_sigma_m, calibration_fields::kMountSigma_m);
     visit(p.time_offset_sigma_s, calibration_fields::kTimeOffsetSigma_s);
-    visit(p.range_min_m, {"range_min_m", "m", 0.0, 10.0, "nearer returns are dropped"});
-    visit(p.range_max_m, {"range_max_m", "m", 0.0, 1e4, "farther returns are dropped"});
+    visit(p.range_min_m, {"range_min_m", "m", 0.0, 10.0, "returns nearer than this are dropped"});
+    visit(p.range_max_m, {"range_max_m", "m", 0.0, 1e4, "returns farther than this are dropped"});
     visit(p.own_body_L.min(), {"own_body_min_m", "m", -kUnbounded, kUnbounded,
-                               "least corner of the box that holds the robot's own returns, lidar axes"});
-    visit(p.own_body_L.max(), {"own_body_max_m", "m", -kUnbounded, kUnbounded, "and its largest corner"});
-    visit(p.sweep_voxel_m,
-          {"sweep_voxel_m", "m", 0.01, 10.0, "one point per voxel of a sweep is registered", Rank::first});
+                               "smallest corner of the box around the robot's own returns, lidar axes"});
+    visit(p.own_body_L.max(), {"own_body_max_m", "m", -kUnbounded, kUnbounded,
+                               "largest corner of the box around the robot's own returns, lidar axes"});
+    visit(p.sweep_voxel_m, {"sweep_voxel_m", "m", 0.01, 10.0,
+                            "edge of the voxel from which one point per sweep is registered", Rank::first});
     visit.group("", p.expert);
   }
 };

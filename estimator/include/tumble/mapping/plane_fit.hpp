@@ -36,12 +36,13 @@ struct PlaneBounds {
   /// Visits every parameter: its value, name, unit, bounds and meaning (common/parameters.hpp).
   template <class Self, class Visitor>
   static void fields(Self& p, Visitor& visit) {
-    visit(p.neighbours_min, {"neighbours_min", "1", 3, 32, "fewer map points give no plane"});
-    visit(p.collinear_share,
-          {"collinear_share", "1", 0.0, 1.0, "middle over largest eigenvalue: below, the neighbours lie on a line"});
-    visit(p.rough_share, {"rough_share", "1", 0.0, 1.0, "least over middle eigenvalue: above, there is no plane"});
+    visit(p.neighbours_min, {"neighbours_min", "1", 3, 32, "least number of map points for a plane"});
+    visit(p.collinear_share, {"collinear_share", "1", 0.0, 1.0,
+                              "least ratio of middle to largest eigenvalue; below, the neighbours form a line"});
+    visit(p.rough_share,
+          {"rough_share", "1", 0.0, 1.0, "largest ratio of smallest to middle eigenvalue; above, there is no plane"});
     visit(p.off_line_min,
-          {"off_line_min", "1", 0, 32, "fewer neighbours beside the most frequent scan line give no plane"});
+          {"off_line_min", "1", 0, 32, "least number of neighbours outside the most frequent scan line"});
   }
 };
 

@@ -43,9 +43,9 @@ class VoxelMap {
     /// Visits every parameter: its value, name, unit, bounds and meaning (common/parameters.hpp).
     template <class Self, class Visitor>
     static void fields(Self& p, Visitor& visit) {
-      visit(p.voxel_m, {"voxel_m", "m", 0.01, 100.0, "edge of a cell; a few times the spacing searches fastest"});
+      visit(p.voxel_m, {"voxel_m", "m", 0.01, 100.0, "edge of a cell; search is fastest at a few times the spacing"});
       visit(p.spacing_m,
-            {"spacing_m", "m", 0.0, 100.0, "at most one point is kept per cube of this edge; 0 keeps all"});
+            {"spacing_m", "m", 0.0, 100.0, "edge of the cube that stores at most one point; 0: store all"});
     }
   };
 

@@ -57,11 +57,13 @@ class RollingOdometry {
     /// Visits every parameter: its value, name, unit, bounds and meaning (common/parameters.hpp).
     template <class Self, class Visitor>
     static void fields(Self& p, Visitor& visit) {
-      visit(p.radius_m, {"radius_m", "m", 1e-3, 100.0, "of the sphere", Rank::first});
+      visit(p.radius_m, {"radius_m", "m", 1e-3, 100.0, "radius of the sphere", Rank::first});
       visit(p.centre_sigma_m,
-            {"centre_sigma_m", "m", 0.0, 10.0, "place that the units are given from, about the centre", Rank::first});
+            {"centre_sigma_m", "m", 0.0, 10.0,
+             "standard deviation of the stated centre: reference point of the IMU positions", Rank::first});
       visit(p.gravity_m_s2, {"gravity_m_s2", "m/s^2", 0.1, 100.0, "strength of gravity", Rank::first});
-      visit(p.lag_s, {"lag_s", "s", 0.0, 1e3, "poses are smoothed with what follows for so long", Rank::first});
+      visit(p.lag_s,
+            {"lag_s", "s", 0.0, 1e3, "time that a pose waits for later data before it is smoothed", Rank::first});
       visit.group("merge_", p.expert.merge);
       visit.group("rolling_", p.expert.rolling);
       visit.group("stamps_", p.expert.stamps);

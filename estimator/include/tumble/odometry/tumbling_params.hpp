@@ -39,7 +39,7 @@ struct TumblingExpertParams {
   template <class Self, class Visitor>
   static void fields(Self& p, Visitor& visit) {
     visit(p.gravity_m_s2, {"gravity_m_s2", "m/s^2", 0.0, 100.0, "strength of gravity", Rank::first});
-    visit(p.sweeps_max, {"sweeps_max", "1", 1, 1e6, "sweeps that may wait for the IMU"});
+    visit(p.sweeps_max, {"sweeps_max", "1", 1, 1e6, "largest number of sweeps waiting for IMU data"});
     visit.group("rate_", p.rate);
     visit.group("mapping_", p.mapping);
     visit.group("stamps_", p.stamps);
@@ -80,13 +80,14 @@ struct TumblingParams {
   static void fields(Self& p, Visitor& visit) {
     visit.group("imu_", p.imu);
     visit(p.lever_arm_I_m,
-          {"lever_arm_m", "m", -10.0, 10.0, "from the centre of mass to the IMU, IMU axes", Rank::first});
-    visit(p.lever_arm_sigma_m, {"lever_arm_sigma_m", "m", 1e-9, 10.0, "what the lever arm may be off by", Rank::first});
+          {"lever_arm_m", "m", -10.0, 10.0, "lever arm from the centre of mass to the IMU, IMU axes", Rank::first});
+    visit(p.lever_arm_sigma_m,
+          {"lever_arm_sigma_m", "m", 1e-9, 10.0, "standard deviation of the lever arm", Rank::first});
     visit(p.mount_sigma_rad, calibration_fields::kMountSigma_rad);
     visit(p.mount_sigma_m, calibration_fields::kMountSigma_m);
     visit(p.time_offset_sigma_s, calibration_fields::kTimeOffsetSigma_s);
     visit.group("", p.lidar);
-    visit(p.lag_s, {"lag_s", "s", 0.0, 10.0, "how long a sweep waits, at most, for what follows it", Rank::first});
+    visit(p.lag_s, {"lag_s", "s", 0.0, 10.0, "longest time that a sweep waits for later data", Rank::first});
     visit.group("", p.expert);
   }
 };

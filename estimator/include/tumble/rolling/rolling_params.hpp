@@ -32,8 +32,8 @@ struct RollingExpertParams {
 
   template <class Self, class Visitor>
   static void fields(Self& p, Visitor& visit) {
-    visit(p.node_s, {"node_s", "s", 1e-3, 0.1, "time between two measurements"});
-    visit(p.reading_s, {"reading_s", "s", 0.0, 0.1, "readings are averaged to this length; 0: taken as they come"});
+    visit(p.node_s, {"node_s", "s", 1e-3, 0.1, "time between two measurement updates"});
+    visit(p.reading_s, {"reading_s", "s", 0.0, 0.1, "duration over which readings are averaged; 0: no averaging"});
     visit.group("rest_", p.rest);
     visit.group("", p.prior);
     visit.group("", p.noise);
@@ -63,14 +63,16 @@ struct RollingParams {
   /// Visits every parameter: its value, name, unit, bounds and meaning (common/parameters.hpp).
   template <class Self, class Visitor>
   static void fields(Self& p, Visitor& visit) {
-    visit(p.radius_m, {"radius_m", "m", 1e-12, 10.0, "of the sphere"});
-    visit(p.radius_sigma_m, {"radius_sigma_m", "m", 0.0, 1e3, "prior of the radius; 0: it is known", Rank::first});
-    visit(p.lever_arm_m, {"lever_arm_m", "m", -10.0, 10.0, "from the centre to the IMU, sensor axes"});
-    visit(p.lever_arm_sigma_m, {"lever_arm_sigma_m", "m", 0.0, 1e3, "prior of the lever arm", Rank::first});
+    visit(p.radius_m, {"radius_m", "m", 1e-12, 10.0, "radius of the sphere"});
+    visit(p.radius_sigma_m,
+          {"radius_sigma_m", "m", 0.0, 1e3, "prior standard deviation of the radius; 0: exact", Rank::first});
+    visit(p.lever_arm_m, {"lever_arm_m", "m", -10.0, 10.0, "lever arm from the centre to the IMU, sensor axes"});
+    visit(p.lever_arm_sigma_m,
+          {"lever_arm_sigma_m", "m", 0.0, 1e3, "prior standard deviation of the lever arm", Rank::first});
     visit(p.gravity_m_s2, {"gravity_m_s2", "m/s^2", 1e-12, 100.0, "strength of gravity"});
-    visit(p.gyro_range_rad_s, {"gyro_range_rad_s", "rad/s", 1e-12, 1e3, "rates from here on are at the rail"});
-    visit(p.accel_range_m_s2, {"accel_range_m_s2", "m/s^2", 1e-12, 1e5, "forces from here on are at the rail"});
-    visit(p.speed_max_m_s, {"speed_max_m_s", "m/s", 1e-12, 1e3, "no grip is believed that would make it roll faster"});
+    visit(p.gyro_range_rad_s, {"gyro_range_rad_s", "rad/s", 1e-12, 1e3, "rates from this value on are at the rail"});
+    visit(p.accel_range_m_s2, {"accel_range_m_s2", "m/s^2", 1e-12, 1e5, "forces from this value on are at the rail"});
+    visit(p.speed_max_m_s, {"speed_max_m_s", "m/s", 1e-12, 1e3, "largest rolling speed; grip is rejected above it"});
     visit.group("", p.expert);
   }
 };

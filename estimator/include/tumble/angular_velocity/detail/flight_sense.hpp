@@ -50,18 +50,26 @@ class FlightSense {
     /// Visits every parameter: its value, name, unit, bounds and meaning (common/parameters.hpp).
     template <class Self, class Visitor>
     static void fields(Self& p, Visitor& visit) {
-      visit(p.lever_arm_m, {"lever_arm_m", "m", -1e3, 1e3, "from the centre of mass to the IMU, IMU axes"});
+      visit(p.lever_arm_m,
+            {"lever_arm_m", "m", -1e3, 1e3, "lever arm: vector from the centre of mass to the IMU, IMU axes"});
       visit(p.gyro_range_rad_s,
-            {"gyro_range_rad_s", "rad/s", 0.0, kUnbounded, "as the device states it; 0: not stated"});
-      visit(p.reading_s, {"reading_s", "s", 1e-3, 1.0, "readings are averaged to this length"});
-      visit(p.force_min_m_s2, {"force_min_m_s2", "m/s^2", 1e-3, 1e6, "that turning makes at the lever arm, to count"});
-      visit(p.share, {"share", "1", 1e-3, 0.9, "of that force, by which a reading may differ from it in flight"});
+            {"gyro_range_rad_s", "rad/s", 0.0, kUnbounded, "range stated by the device; 0: not stated"});
+      visit(p.reading_s, {"reading_s", "s", 1e-3, 1.0, "duration over which readings are averaged"});
+      visit(p.force_min_m_s2, {"force_min_m_s2", "m/s^2", 1e-3, 1e6,
+                               "least force caused by the rotation at the lever arm, for a reading to count"});
+      visit(p.share, {"share", "1", 1e-3, 0.9,
+                      "largest difference between reading and predicted flight force, as a share of that force"});
       visit(p.run_s, {"run_s", "s", 0.0, 10.0, "shortest flight that counts"});
-      visit(p.against_s, {"against_s", "s", 0.0, 1e3, "of flight by another sensor, from which on it is told"});
-      visit(p.halved_s, {"halved_s", "s", 0.0, 1e3, "of flight by twice the rate, from which on it is told"});
-      visit(p.against_with, {"against_with", "1", 0.0, 1e6, "times that of the right sense, by which it is longer"});
-      visit(p.thrown_with, {"thrown_with", "1", 0.0, 1e6, "the same of a body that nobody holds"});
-      visit(p.gap_max_s, {"gap_max_s", "s", 1e-3, 1e3, "after a longer gap a flight begins anew"});
+      visit(p.against_s, {"against_s", "s", 0.0, 1e3,
+                          "flight time explained by another sensor orientation, from which a fault is reported"});
+      visit(p.halved_s,
+            {"halved_s", "s", 0.0, 1e3, "flight time explained by twice the rate, from which a fault is reported"});
+      visit(p.against_with,
+            {"against_with", "1", 0.0, 1e6,
+             "least ratio of flight time explained by the other orientation to that of the stated one"});
+      visit(p.thrown_with,
+            {"thrown_with", "1", 0.0, 1e6, "least ratio of these flight times if the body is not hand-held"});
+      visit(p.gap_max_s, {"gap_max_s", "s", 1e-3, 1e3, "longest gap between samples within a flight"});
     }
   };
   /// One averaged reading.

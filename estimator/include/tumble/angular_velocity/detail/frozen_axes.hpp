@@ -36,15 +36,16 @@ class FrozenAxes {
     template <class Self, class Visitor>
     static void fields(Self& p, Visitor& visit) {
       visit(p.gyro_range_rad_s,
-            {"gyro_range_rad_s", "rad/s", 0.0, kUnbounded, "as the device states it; 0: not stated"});
+            {"gyro_range_rad_s", "rad/s", 0.0, kUnbounded, "range stated by the device; 0: not stated"});
       visit(p.accel_range_m_s2,
-            {"accel_range_m_s2", "m/s^2", 0.0, kUnbounded, "as the device states it; 0: not stated"});
+            {"accel_range_m_s2", "m/s^2", 0.0, kUnbounded, "range stated by the device; 0: not stated"});
       visit(p.frozen_s, {"frozen_s", "s", 1e-3, 1e4,
-                         "longest time for which a sound axis repeats its reading while the body moves"});
+                         "longest time for which a healthy axis may repeat its reading while the body moves"});
       visit(p.rail_still_s,
-            {"rail_still_s", "s", 1e-3, 1e4, "of rest by all other axes, while one reads its rail: it is frozen"});
+            {"rail_still_s", "s", 1e-3, 1e4, "an axis at its rail is frozen if all other axes rest for this long"});
       visit(p.rail_held_s,
-            {"rail_held_s", "s", 1e-3, 1e4, "of one reading at the rail while others of the triad move: it is frozen"});
+            {"rail_held_s", "s", 1e-3, 1e4,
+             "an axis that repeats one reading at its rail for this long, while others move, is frozen"});
     }
   };
   /// State of one axis of one triad.

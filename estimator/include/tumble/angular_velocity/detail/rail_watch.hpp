@@ -30,7 +30,7 @@ class RailWatch {
     template <class Self, class Visitor>
     static void fields(Self& p, Visitor& visit) {
       visit.group("", p.clipping);
-      visit(p.readings_max, {"readings_max", "1", 64, 65536, "distinct readings that are kept of each triad"});
+      visit(p.readings_max, {"readings_max", "1", 64, 65536, "largest number of distinct readings stored per triad"});
     }
   };
   /// Stored readings of one triad, rad/s or m/s^2.

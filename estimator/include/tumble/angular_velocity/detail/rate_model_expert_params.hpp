@@ -18,12 +18,12 @@ struct RateReadingParams {
 
   template <class Self, class Visitor>
   static void fields(Self& p, Visitor& visit) {
-    visit(p.accel_scale_error,
-          {"accel_scale_error", "1", 0.0, 1.0, "scale and misalignment of the accelerometer, as a share of the force"});
-    visit(p.gyro_time_sigma_s,
-          {"gyro_time_sigma_s", "s", 0.0, 0.1, "what bandwidth and clock leave open of the time of a gyro reading"});
+    visit(p.accel_scale_error, {"accel_scale_error", "1", 0.0, 1.0,
+                                "scale and misalignment error of the accelerometer, as a share of the force"});
+    visit(p.gyro_time_sigma_s, {"gyro_time_sigma_s", "s", 0.0, 0.1,
+                                "standard deviation of the time of a gyro reading, from bandwidth and clock"});
     visit(p.rail_sigma_rad_s,
-          {"rail_sigma_rad_s", "rad/s", 1e-6, 10.0, "softness of the bound that a clipped reading is"});
+          {"rail_sigma_rad_s", "rad/s", 1e-6, 10.0, "standard deviation of the bound given by a clipped reading"});
   }
 };
 
@@ -36,14 +36,15 @@ struct RateFlightParams {
 
   template <class Self, class Visitor>
   static void fields(Self& p, Visitor& visit) {
-    visit(p.sigma_m_s2,
-          {"flight_sigma_m_s2", "m/s^2", 1e-6, 100.0, "what the flight model misses of the force", Rank::first});
-    visit(p.euler_sigma_rad_s2,
-          {"euler_sigma_rad_s2", "rad/s^2", 1e-6, 1e6, "what Euler's equation without torque misses", Rank::first});
-    visit(p.jerk_psd_rad2_s5,
-          {"jerk_psd_flight_rad2_s5", "rad^2/s^5", 1.0, 1e12, "density of the angular jerk in flight", Rank::first});
+    visit(p.sigma_m_s2, {"flight_sigma_m_s2", "m/s^2", 1e-6, 100.0,
+                         "standard deviation of the force error of the flight model", Rank::first});
+    visit(p.euler_sigma_rad_s2, {"euler_sigma_rad_s2", "rad/s^2", 1e-6, 1e6,
+                                 "standard deviation of the error of Euler's equation without torque", Rank::first});
+    visit(p.jerk_psd_rad2_s5, {"jerk_psd_flight_rad2_s5", "rad^2/s^5", 1.0, 1e12,
+                               "power spectral density of the angular jerk in flight", Rank::first});
     visit(p.threshold,
-          {"flight_threshold", "1", 1.0, 100.0, "residuals of flight beyond this count as contact", Rank::first});
+          {"flight_threshold", "1", 1.0, 100.0,
+           "flight residual, in standard deviations, above which a sample counts as contact", Rank::first});
   }
 };
 
@@ -67,15 +68,16 @@ struct RateContactParams {
   template <class Self, class Visitor>
   static void fields(Self& p, Visitor& visit) {
     visit(p.gain_rad_m,
-          {"contact_gain_rad_m", "rad/m", 0.0, 1e3, "angular acceleration per force of contact", Rank::first});
-    visit(p.sigma_factor,
-          {"contact_sigma_factor", "1", 1.0, 10.0, "what a fit through an impact claims to know is widened by this"});
+          {"contact_gain_rad_m", "rad/m", 0.0, 1e3, "angular acceleration per contact force", Rank::first});
+    visit(p.sigma_factor, {"contact_sigma_factor", "1", 1.0, 10.0,
+                           "factor that widens the standard deviations of rates fitted through an impact"});
     visit(p.lever_rad_m, {"contact_lever_rad_m", "rad/m", 0.0, 1e3,
-                          "angular acceleration across a force of contact, up to this times the force"});
-    visit(p.twist_share, {"contact_twist_share", "1", 0.0, 1.0, "and about its own direction, as a share of that"});
+                          "largest angular acceleration perpendicular to a contact force, per force"});
+    visit(p.twist_share, {"contact_twist_share", "1", 0.0, 1.0,
+                          "angular acceleration about the contact force, as a share of the perpendicular one"});
     visit(p.force_share,
           {"contact_force_share", "1", 0.0, 1e3,
-           "deviation of the unknown force of contact as a share of itself; 0: nothing is assumed of it"});
+           "standard deviation of the unknown contact force, as a share of the force; 0: no assumption"});
   }
 };
 
@@ -98,10 +100,10 @@ struct RateModelExpertParams {
     visit.group("", p.flight);
     visit.group("", p.contact);
     visit(p.model_error_s,
-          {"model_error_s", "s", 1e-6, 1.0, "what the model misses of a force, a torque or a rate lasts so long"});
+          {"model_error_s", "s", 1e-6, 1.0, "correlation time of model errors of force, torque and rate"});
     visit.group("", p.readings);
     visit.group("error_sizes_", p.error_sizes);
-    visit(p.rest_sigma_rad_s, {"rest_sigma_rad_s", "rad/s", 1e-9, 10.0, "deviation of the rate from zero at rest"});
+    visit(p.rest_sigma_rad_s, {"rest_sigma_rad_s", "rad/s", 1e-9, 10.0, "standard deviation of the rate at rest"});
   }
 };
 

@@ -43,15 +43,17 @@ struct RateStreamParams {
     visit.group("", p.model);
     visit.group("rails_", p.rails);
     visit(p.period_s, {"period_s", "s", 1e-5, 1.0, "nominal time between samples"});
-    visit(p.lag_s, {"lag_s", "s", 2e-5, 10.0, "how old a sample is when its estimate is given out", Rank::first});
-    visit(p.recovered_sigma_rad_s,
-          {"recovered_sigma_rad_s", "rad/s", 0.0, 1e4,
-           "a clipped axis known better than this is recovered, not only bounded", Rank::first});
+    visit(p.lag_s, {"lag_s", "s", 2e-5, 10.0, "age of a sample when its estimate is reported", Rank::first});
+    visit(
+        p.recovered_sigma_rad_s,
+        {"recovered_sigma_rad_s", "rad/s", 0.0, 1e4,
+         "largest standard deviation for a clipped axis to be reported as recovered instead of bounded", Rank::first});
     visit(p.calibration_mahalanobis_max,
           {"calibration_mahalanobis_max", "1", 0.1, 1e6,
-           "constants of the rig that move further from their prior are held to it", Rank::first});
-    visit(p.gap_max_s, {"gap_max_s", "s", 1e-6, 3600.0, "longest time between two samples before the run is refused"});
-    visit(p.step_s, {"step_s", "s", 0.0, 0.1, "least time between Gauss-Newton steps; 0: with each sample"});
+           "largest Mahalanobis distance of the rig constants from their prior", Rank::first});
+    visit(p.gap_max_s, {"gap_max_s", "s", 1e-6, 3600.0,
+                        "longest allowed time between two samples; a longer gap ends the run with an error"});
+    visit(p.step_s, {"step_s", "s", 0.0, 0.1, "least time between Gauss-Newton steps; 0: one step per sample"});
     visit.group("", p.expert);
   }
 };

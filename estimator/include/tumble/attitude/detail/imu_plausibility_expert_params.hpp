@@ -13,9 +13,11 @@ struct SteadyForceParams {
 
   template <class Self, class Visitor>
   static void fields(Self& p, Visitor& visit) {
-    visit(p.share_min, {"force_share_min", "1", 0.0, 1.0, "of gravity, least mean of steady windows"});
-    visit(p.share_max, {"force_share_max", "1", 1.0, 1e6, "of gravity, largest mean of steady windows"});
-    visit(p.windows_min, {"windows_min", "1", 1, 1e6, "steady ones, to say something of the force's size"});
+    visit(p.share_min, {"force_share_min", "1", 0.0, 1.0, "least mean force of steady windows, as a share of gravity"});
+    visit(p.share_max,
+          {"force_share_max", "1", 1.0, 1e6, "largest mean force of steady windows, as a share of gravity"});
+    visit(p.windows_min,
+          {"windows_min", "1", 1, 1e6, "least number of steady windows for a check of the force's magnitude"});
   }
 };
 
@@ -35,16 +37,21 @@ struct GravityRotationParams {
 
   template <class Self, class Visitor>
   static void fields(Self& p, Visitor& visit) {
-    visit(p.slope_min, {"rotation_slope_min", "1", 0.0, 1.0, "least slope of gravity's turning over the gyro's"});
-    visit(p.slope_max, {"rotation_slope_max", "1", 1.0, 1e6, "largest slope of gravity's turning over the gyro's"});
+    visit(p.slope_min,
+          {"rotation_slope_min", "1", 0.0, 1.0, "least slope of gravity's rotation over the gyro's rotation"});
+    visit(p.slope_max,
+          {"rotation_slope_max", "1", 1.0, 1e6, "largest slope of gravity's rotation over the gyro's rotation"});
     visit(p.rotation_min_rad2,
-          {"rotation_min_rad2", "rad^2", 1e-12, 1e6, "sum of squares below which nothing is said of it"});
-    visit(p.rotation_least_rad, {"rotation_least_rad", "rad", 1e-12, 3.0, "of a window, to count as turning"});
-    visit(p.rotated_windows_min,
-          {"rotated_windows_min", "1", 1.0, 1e6, "windows in which the force turned, to say something of it"});
-    visit(p.unexplained_share_max, {"rotation_unexplained_share_max", "1", 0.0, 1.0,
-                                    "of what the gyro leaves unexplained: one of such a scale or sense leaves less"});
-    visit(p.still_share, {"still_share", "1", 0.0, 1.0, "of the gyro's turning, by which a force stands still"});
+          {"rotation_min_rad2", "rad^2", 1e-12, 1e6, "least sum of squared rotations for a check of the slope"});
+    visit(p.rotation_least_rad, {"rotation_least_rad", "rad", 1e-12, 3.0, "least rotation of a window to be compared"});
+    visit(p.rotated_windows_min, {"rotated_windows_min", "1", 1.0, 1e6,
+                                  "least number of windows with a rotating force for a check of the rotation"});
+    visit(p.unexplained_share_max,
+          {"rotation_unexplained_share_max", "1", 0.0, 1.0,
+           "largest unexplained share of a gyro with another scale or sign, relative to the stated gyro"});
+    visit(p.still_share,
+          {"still_share", "1", 0.0, 1.0,
+           "rotation of the force, as a share of the gyro's rotation, below which the force does not rotate"});
   }
 };
 
@@ -55,11 +62,10 @@ struct AxisNamingParams {
 
   template <class Self, class Visitor>
   static void fields(Self& p, Visitor& visit) {
-    visit(p.unexplained_share_max,
-          {"relabelled_share_max", "1", 0.0, 1.0,
-           "of what axes as they are named leave unexplained: axes named otherwise leave less"});
+    visit(p.unexplained_share_max, {"relabelled_share_max", "1", 0.0, 1.0,
+                                    "largest unexplained share of exchanged axes, relative to the stated axes"});
     visit(p.unexplained_least,
-          {"relabelled_least", "1", 0.0, 1.0, "unexplained share from which on namings of the axes are compared"});
+          {"relabelled_least", "1", 0.0, 1.0, "unexplained share above which exchanged axes are tested"});
   }
 };
 
@@ -72,10 +78,12 @@ struct FrozenTriadParams {
   template <class Self, class Visitor>
   static void fields(Self& p, Visitor& visit) {
     visit(p.repeats_s, {"frozen_s", "s", 1e-12, 1e4,
-                        "a reading that repeats for so long may be frozen, after as long of moving ones"});
-    visit(p.longest_share, {"frozen_share", "1", 1.0, 1e6, "and lasts so many times longer than any did before"});
-    visit(p.unexplained_least, {"frozen_unexplained_least", "1", 0.0, 1.0,
-                                "share of gravity's turning that a gyro leaves unexplained which never moved"});
+                        "a reading that repeats for this long, after equally long motion, may be frozen"});
+    visit(p.longest_share,
+          {"frozen_share", "1", 1.0, 1e6, "least ratio of a frozen run to the longest earlier run of equal readings"});
+    visit(p.unexplained_least,
+          {"frozen_unexplained_least", "1", 0.0, 1.0,
+           "least unexplained share of gravity's rotation for a gyro that never moved to be frozen"});
   }
 };
 

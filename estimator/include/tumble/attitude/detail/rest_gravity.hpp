@@ -46,19 +46,20 @@ class RestGravity {
     static void fields(Self& p, Visitor& visit) {
       visit(p.gravity_m_s2, {"gravity_m_s2", "m/s^2", 1e-12, 100.0, "strength of gravity"});
       visit.group("rests_", p.rests);
-      visit(p.size_share_max,
-            {"size_share_max", "1", 1e-3, 1.0, "by which the size of a force at rest may differ from gravity"});
+      visit(p.size_share_max, {"size_share_max", "1", 1e-3, 1.0,
+                               "largest accepted difference between force at rest and gravity, as a share"});
       visit(p.miss_deviations, {"miss_deviations", "1", 0.1, 1e6,
-                                "of what rates state, by which they may miss gravity's direction at the next rest"});
-      visit(p.miss_least_rad, {"miss_least_rad", "rad", 1e-3, 2.0, "and at least so much"});
-      visit(p.miss_most_rad, {"miss_most_rad", "rad", 1e-3, 2.0, "and at most"});
-      visit(p.correlation_s, {"correlation_s", "s", 1e-4, 1e3, "for which errors of a rate last"});
+                                "largest accepted error of gravity's direction at the next rest, in standard "
+                                "deviations of the integrated rates"});
+      visit(p.miss_least_rad, {"miss_least_rad", "rad", 1e-3, 2.0, "lower limit of this accepted error"});
+      visit(p.miss_most_rad, {"miss_most_rad", "rad", 1e-3, 2.0, "upper limit of this accepted error"});
+      visit(p.correlation_s, {"correlation_s", "s", 1e-4, 1e3, "correlation time of rate errors"});
       visit(p.rotation_least_rad,
-            {"rotation_least_rad", "rad", 0.0, 1e3, "of the span between two rests, to be compared"});
-      visit(p.span_most_s, {"span_most_s", "s", 0.1, 1e6, "between two rests, at most, to be compared"});
-      visit(p.gap_max_s, {"gap_max_s", "s", 1e-6, 3600.0, "a longer time between two samples parts the rests"});
+            {"rotation_least_rad", "rad", 0.0, 1e3, "least rotation between two rests for a comparison"});
+      visit(p.span_most_s, {"span_most_s", "s", 0.1, 1e6, "longest time between two rests for a comparison"});
+      visit(p.gap_max_s, {"gap_max_s", "s", 1e-6, 3600.0, "a longer time between two samples separates the rests"});
       visit(p.accel_range_m_s2,
-            {"accel_range_m_s2", "m/s^2", 0.0, kUnbounded, "as the device states it; 0: not stated"});
+            {"accel_range_m_s2", "m/s^2", 0.0, kUnbounded, "range stated by the device; 0: not stated"});
     }
   };
   /// What the size of the force at rest needs.

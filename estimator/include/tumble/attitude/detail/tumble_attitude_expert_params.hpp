@@ -17,11 +17,12 @@ struct AttitudeRestParams {
 
   template <class Self, class Visitor>
   static void fields(Self& p, Visitor& visit) {
-    visit(p.velocity_sigma_m_s, {"rest_velocity_sigma_m_s", "m/s", 1e-12, 10.0, "of the velocity, per node at rest"});
-    visit(p.rate_sigma_rad_sqrts,
-          {"rest_rate_sigma_rad_sqrts", "rad/sqrt(s)", 1e-12, 1.0, "of the rate measured at rest, mean over 1 s"});
-    visit(p.rate_sigmas,
-          {"rest_rate_sigmas", "1", 1.0, 1e6, "of the mean rate about the bias, as far as that is known, at rest"});
+    visit(p.velocity_sigma_m_s,
+          {"rest_velocity_sigma_m_s", "m/s", 1e-12, 10.0, "standard deviation of the velocity at rest, per node"});
+    visit(p.rate_sigma_rad_sqrts, {"rest_rate_sigma_rad_sqrts", "rad/sqrt(s)", 1e-12, 1.0,
+                                   "standard deviation of the rate measured at rest, mean over 1 s"});
+    visit(p.rate_sigmas, {"rest_rate_sigmas", "1", 1.0, 1e6,
+                          "largest difference between mean rate and bias at rest, in standard deviations"});
   }
 };
 
@@ -34,12 +35,13 @@ struct AttitudeRollingParams {
 
   template <class Self, class Visitor>
   static void fields(Self& p, Visitor& visit) {
-    visit(p.velocity_sigma_m_s,
-          {"rolling_velocity_sigma_m_s", "m/s", 1e-12, 10.0, "of the velocity by rolling, per node while it grips"});
-    visit(p.slip_velocity_m_s,
-          {"slip_velocity_m_s", "m/s", 1e-12, 10.0, "misfit that opens a slip, half of it closes it"});
-    visit(p.slip_quiet_s, {"slip_quiet_s", "s", 0.0, 10.0, "and stays closed after so long below it"});
-    visit(p.slip_timeout_s, {"slip_timeout_s", "s", 1e-12, 1e3, "then rolling is believed again"});
+    visit(p.velocity_sigma_m_s, {"rolling_velocity_sigma_m_s", "m/s", 1e-12, 10.0,
+                                 "standard deviation of the rolling velocity while gripping, per node"});
+    visit(p.slip_velocity_m_s, {"slip_velocity_m_s", "m/s", 1e-12, 10.0,
+                                "velocity residual at which a slip starts; a slip ends below half of it"});
+    visit(p.slip_quiet_s, {"slip_quiet_s", "s", 0.0, 10.0, "time below this residual after which a slip ends"});
+    visit(p.slip_timeout_s,
+          {"slip_timeout_s", "s", 1e-12, 1e3, "longest slip; then the rolling velocity is used again"});
   }
 };
 
@@ -56,14 +58,14 @@ struct AttitudeGapParams {
   template <class Self, class Visitor>
   static void fields(Self& p, Visitor& visit) {
     visit(p.least_s, {"gap_least_s", "s", 1e-6, 1e4, "a longer time between two samples is a gap of the IMU"});
-    visit(p.rate_walk_rad_s_sqrts, {"gap_rate_walk_rad_s_sqrts", "rad/s/sqrt(s)", 0.0, 1e4,
-                                    "random walk of the rate while no reading comes, known at both ends"});
-    visit(p.velocity_walk_m_s_sqrts, {"gap_velocity_walk_m_s_sqrts", "m/s/sqrt(s)", 0.0, 1e4,
-                                      "random walk of the velocity while no reading comes"});
+    visit(p.rate_walk_rad_s_sqrts,
+          {"gap_rate_walk_rad_s_sqrts", "rad/s/sqrt(s)", 0.0, 1e4, "random walk of the rate during a gap"});
+    visit(p.velocity_walk_m_s_sqrts,
+          {"gap_velocity_walk_m_s_sqrts", "m/s/sqrt(s)", 0.0, 1e4, "random walk of the velocity during a gap"});
     visit(p.lost_tilt_rad, {"gap_lost_tilt_rad", "rad", 1e-3, 1e4,
-                            "deviation of the tilt behind a gap from which on up is looked for anew"});
-    visit(p.aligned_tilt_rad,
-          {"gap_aligned_tilt_rad", "rad", 1e-3, 1e4, "deviation of the tilt at which up has been found again"});
+                            "standard deviation of the tilt after a gap from which the tilt is initialised again"});
+    visit(p.aligned_tilt_rad, {"gap_aligned_tilt_rad", "rad", 1e-3, 1e4,
+                               "standard deviation of the tilt at which this initialisation ends"});
   }
 };
 
@@ -93,13 +95,14 @@ struct TumbleAttitudeExpertParams {
   template <class Self, class Visitor>
   static void fields(Self& p, Visitor& visit) {
     visit(p.bias_walk_rad_s_sqrts,
-          {"bias_walk_rad_s_sqrts", "rad/s/sqrt(s)", 0.0, 1.0, "random walk of the gyro's bias"});
+          {"bias_walk_rad_s_sqrts", "rad/s/sqrt(s)", 0.0, 1.0, "random walk of the gyro bias"});
     visit(p.acceleration_noise_m_s_sqrts,
           {"acceleration_noise_m_s_sqrts", "m/s/sqrt(s)", 1e-12, 100.0, "velocity random walk"});
-    visit(p.recovered_tau_s, {"recovered_tau_s", "s", 1e-4, 1e4, "memory of the error of a rate that was recovered"});
-    visit(p.node_s, {"node_s", "s", 1e-4, 1.0, "time between two corrections"});
-    visit(p.reading_s, {"reading_s", "s", 0.0, 0.1, "readings are averaged to this length; 0: taken as they come"});
-    visit(p.gap_max_s, {"gap_max_s", "s", 1e-9, 1e4, "longest time between two samples before the run is refused"});
+    visit(p.recovered_tau_s, {"recovered_tau_s", "s", 1e-4, 1e4, "correlation time of the error of a recovered rate"});
+    visit(p.node_s, {"node_s", "s", 1e-4, 1.0, "time between two filter corrections"});
+    visit(p.reading_s, {"reading_s", "s", 0.0, 0.1, "duration over which readings are averaged; 0: no averaging"});
+    visit(p.gap_max_s, {"gap_max_s", "s", 1e-9, 1e4,
+                        "longest allowed time between two samples; a longer gap ends the run with an error"});
     visit.group("rest_", p.rest);
     visit.group("", p.at_rest);
     visit.group("", p.rolling);

@@ -30,18 +30,23 @@ struct InertialNoiseParams {
 
   template <class Self, class Visitor>
   static void fields(Self& p, Visitor& visit) {
-    visit(p.sigma_m, {"prior_sigma_m", "m", 1e-9, 1e3, "inertial prior over 0.1 s: position", Rank::first});
-    visit(p.sigma_rad, {"prior_sigma_rad", "rad", 1e-9, 1e3, "inertial prior over 0.1 s: attitude", Rank::first});
-    visit(p.sigma_m_s, {"prior_sigma_m_s", "m/s", 1e-9, 1e3, "inertial prior over 0.1 s: velocity", Rank::first});
-    visit(p.rotation_share,
-          {"rotation_sigma_share", "1", 0.0, 1.0, "inertial prior: of the angle turned", Rank::first});
-    visit(p.force_share, {"force_sigma_share", "1", 0.0, 1.0, "inertial prior: of the force's integral", Rank::first});
-    visit(p.gap_velocity_walk_m_s_sqrt_s, {"gap_velocity_walk_m_s_sqrt_s", "m/s/sqrt(s)", 0.0, 1e3,
-                                           "of a gap of the IMU, over which the velocity goes on"});
+    visit(p.sigma_m, {"prior_sigma_m", "m", 1e-9, 1e3,
+                      "standard deviation of the inertial prediction over 0.1 s: position", Rank::first});
+    visit(p.sigma_rad, {"prior_sigma_rad", "rad", 1e-9, 1e3,
+                        "standard deviation of the inertial prediction over 0.1 s: attitude", Rank::first});
+    visit(p.sigma_m_s, {"prior_sigma_m_s", "m/s", 1e-9, 1e3,
+                        "standard deviation of the inertial prediction over 0.1 s: velocity", Rank::first});
+    visit(p.rotation_share, {"rotation_sigma_share", "1", 0.0, 1.0,
+                             "standard deviation of the inertial prediction, as a share of the rotation", Rank::first});
+    visit(p.force_share,
+          {"force_sigma_share", "1", 0.0, 1.0,
+           "standard deviation of the inertial prediction, as a share of the integrated force", Rank::first});
+    visit(p.gap_velocity_walk_m_s_sqrt_s,
+          {"gap_velocity_walk_m_s_sqrt_s", "m/s/sqrt(s)", 0.0, 1e3, "random walk of the velocity during an IMU gap"});
     visit(p.gap_rate_walk_rad_s_sqrt_s, {"gap_rate_walk_rad_s_sqrt_s", "rad/s/sqrt(s)", 0.0, 1e3,
-                                         "of a gap of the IMU, between the rates on both sides"});
-    visit(p.rate_sigma_max_rad_s,
-          {"rate_sigma_max_rad_s", "rad/s", 0.0, 100.0, "what RateState reports is believed up to this"});
+                                         "random walk of the rate during an IMU gap, between the rates at both ends"});
+    visit(p.rate_sigma_max_rad_s, {"rate_sigma_max_rad_s", "rad/s", 0.0, 100.0,
+                                   "upper limit of the standard deviations reported in RateState"});
   }
 };
 
@@ -65,22 +70,24 @@ struct RailedImuParams {
   template <class Self, class Visitor>
   static void fields(Self& p, Visitor& visit) {
     visit(p.accel_m_s2,
-          {"accel_rail_m_s2", "m/s^2", 1e-9, 1e5, "readings of the accelerometer from here on are at its rail"});
-    visit(p.force_sigma_m_s2, {"railed_force_m_s2", "m/s^2", 0.0, 1e4, "how much larger the force may be there"});
-    visit(p.rate_sigma_rad_s, {"clipped_sigma_rad_s", "rad/s", 0.0, 100.0,
-                               "assumed of a clipped axis that the rate method did not recover", Rank::first});
+          {"accel_rail_m_s2", "m/s^2", 1e-9, 1e5, "accelerometer readings from this value on are at the rail"});
+    visit(p.force_sigma_m_s2,
+          {"railed_force_m_s2", "m/s^2", 0.0, 1e4, "standard deviation of the force at the accelerometer rail"});
+    visit(p.rate_sigma_rad_s,
+          {"clipped_sigma_rad_s", "rad/s", 0.0, 100.0,
+           "assumed standard deviation of a clipped axis that the rate method did not recover", Rank::first});
     visit(p.estimate_deficit, on_off("estimate_saturation_deficit",
-                                     "1: by how much clipped axes are short is estimated in the registration"));
+                                     "1: estimate the saturation deficit of clipped axes in the registration"));
     visit(p.deficit_sigma_min_rad_s,
           {"deficit_sigma_min_rad_s", "rad/s", 1e-9, 100.0,
-           "least prior of the saturation deficit of a clipped axis, whatever the rate method claims", Rank::first});
+           "least prior standard deviation of the saturation deficit of a clipped axis", Rank::first});
     visit(p.deficit_time_s,
-          {"deficit_time_s", "s", 1e-3, 1e3, "over which the saturation deficit forgets what it was", Rank::first});
+          {"deficit_time_s", "s", 1e-3, 1e3, "correlation time of the saturation deficit", Rank::first});
     visit(p.deficit_carry_max, {"deficit_carry_max", "1", 0.0, 1e3,
-                                "over the border of two sweeps the saturation deficit grows by no more"});
-    visit(p.deficit_knot_share,
-          {"deficit_knot_share", "1", 1e-6, 1.0,
-           "of the deficit's standard deviation, by which a knot may differ from its neighbours"});
+                                "largest growth factor of the saturation deficit from one sweep to the next"});
+    visit(p.deficit_knot_share, {"deficit_knot_share", "1", 1e-6, 1.0,
+                                 "standard deviation between neighbouring knots of the deficit, as a share of the "
+                                 "deficit's standard deviation"});
   }
 };
 
@@ -93,7 +100,7 @@ struct FlightParams {
   template <class Self, class Visitor>
   static void fields(Self& p, Visitor& visit) {
     visit(p.force_m_s2, {"flight_force_m_s2", "m/s^2", 0.0, 100.0,
-                         "with flight_arc: force at the centre of mass below which the body flies"});
+                         "with flight_arc: force at the centre of mass below which the body is in flight"});
   }
 };
 

@@ -16,11 +16,13 @@ struct LocalMapParams {
 
   template <class Self, class Visitor>
   static void fields(Self& p, Visitor& visit) {
-    visit(p.voxel_m, {"map_voxel_m", "m", 0.01, 10.0, "cell of the map's hash", Rank::first});
-    visit(p.spacing_m, {"map_spacing_m", "m", 0.0, 10.0, "edge of the cube that holds one map point", Rank::first});
-    visit(p.radius_m, {"map_radius_m", "m", 0.0, 1e5, "the map is kept within this of the sensor, to a tenth of it"});
+    visit(p.voxel_m, {"map_voxel_m", "m", 0.01, 10.0, "edge of a voxel of the map's hash table", Rank::first});
+    visit(p.spacing_m,
+          {"map_spacing_m", "m", 0.0, 10.0, "edge of the cube that stores at most one map point", Rank::first});
+    visit(p.radius_m,
+          {"map_radius_m", "m", 0.0, 1e5, "radius around the sensor within which the map is kept, to 10 %"});
     visit(p.sigma_max_m, {"map_sigma_max_m", "m", 1e-6, 1e3,
-                          "points that the trajectory places less surely than this are kept out of the map"});
+                          "largest standard deviation of a point's position for insertion into the map"});
   }
 };
 
@@ -34,9 +36,12 @@ struct WorldCovarianceParams {
 
   template <class Self, class Visitor>
   static void fields(Self& p, Visitor& visit) {
-    visit(p.tilt_sigma_rad, {"tilt_sigma_rad", "rad", 0.0, 1.0, "tilt of a levelled start, as reported"});
-    visit(p.drift_share, {"drift_share", "1", 0.0, 1.0, "of the weakest direction's standard deviation per sweep"});
-    visit(p.drift_sigma_max_m, {"drift_sigma_max_m", "m", 0.0, 1e3, "a direction held less surely counts as this"});
+    visit(p.tilt_sigma_rad,
+          {"tilt_sigma_rad", "rad", 0.0, 1.0, "reported standard deviation of the tilt after initial levelling"});
+    visit(p.drift_share, {"drift_share", "1", 0.0, 1.0,
+                          "map drift per sweep, as a share of the standard deviation of the weakest direction"});
+    visit(p.drift_sigma_max_m,
+          {"drift_sigma_max_m", "m", 0.0, 1e3, "upper limit of the standard deviation that enters the map drift"});
   }
 };
 

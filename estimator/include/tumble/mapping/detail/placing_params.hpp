@@ -27,19 +27,21 @@ struct MatchingParams {
 
   template <class Self, class Visitor>
   static void fields(Self& p, Visitor& visit) {
-    visit(p.neighbours, {"neighbours", "1", 3, 32, "map points per plane fit", Rank::first});
-    visit(p.distance_m, {"match_distance_m", "m", 1e-3, 10.0, "farther map points are no match", Rank::first});
-    visit(p.least, {"matches_min", "1", 0, 1e9, "fewer matches are too few"});
-    visit(p.agreeing_least, {"matches_agreeing_min", "1", 1, 1e9, "unless so many put it where the prior expects it"});
-    visit(p.iterations_max,
-          {"iterations_max", "1", 1, 200, "most iterations of a registration; one with all points has at most eight"});
-    visit(p.correction_max_m, {"correction_max_m", "m", 0.0, 1e6, "a larger correction of the prior is refused"});
-    visit(p.correction_max_rad,
-          {"correction_max_rad", "rad", 0.0, 3.15, "a larger correction of the prior is refused"});
+    visit(p.neighbours, {"neighbours", "1", 3, 32, "number of map points per plane fit", Rank::first});
+    visit(p.distance_m, {"match_distance_m", "m", 1e-3, 10.0,
+                         "largest distance between a point and its matches in the map", Rank::first});
+    visit(p.least, {"matches_min", "1", 0, 1e9, "least number of matches of an accepted sweep"});
+    visit(p.agreeing_least,
+          {"matches_agreeing_min", "1", 1, 1e9, "with fewer matches: least number that agree with the prior"});
+    visit(p.iterations_max, {"iterations_max", "1", 1, 200,
+                             "largest number of iterations of a registration; at most eight use all points"});
+    visit(p.correction_max_m, {"correction_max_m", "m", 0.0, 1e6, "largest accepted correction of the prior"});
+    visit(p.correction_max_rad, {"correction_max_rad", "rad", 0.0, 3.15, "largest accepted correction of the prior"});
     visit(p.skew_sigma_m_s, {"skew_sigma_m_s", "m/s", 0.0, 1e3,
-                             "growth of a point's uncertainty over the sweep (time weighting); 0: none"});
-    visit(p.degenerate_sigma_m, {"degenerate_sigma_m", "m", 1e-6, 1e3,
-                                 "a sweep that its surfaces hold less surely in some direction is degenerate"});
+                             "growth of a point's uncertainty over the sweep (time weighting); 0: no time weighting"});
+    visit(p.degenerate_sigma_m,
+          {"degenerate_sigma_m", "m", 1e-6, 1e3,
+           "standard deviation of the pose from the surfaces alone above which a sweep is degenerate"});
   }
 };
 
@@ -58,20 +60,21 @@ struct RegistrationStagesParams {
 
   template <class Self, class Visitor>
   static void fields(Self& p, Visitor& visit) {
-    visit(p.full_iterations, {"full_iterations", "1", 1, 200, "most iterations with all points"});
+    visit(p.full_iterations, {"full_iterations", "1", 1, 200, "largest number of iterations with all points"});
     visit(p.subsample_points,
-          {"subsample_points", "1", 1, 1e9, "most points of a registration that runs to its convergence"});
-    visit(p.coarse_iterations, {"coarse_iterations", "1", 1, 200, "most iterations from a start that may be far off"});
-    visit(p.coarse_points, {"coarse_points", "1", 1, 1e9, "most points from such a start"});
-    visit(p.coarse_matches_min, {"coarse_matches_min", "1", 0, 1e9, "fewer matches reject such a start"});
+          {"subsample_points", "1", 1, 1e9, "largest number of points in the iterations after that"});
+    visit(p.coarse_iterations, {"coarse_iterations", "1", 1, 200, "largest number of iterations from a coarse start"});
+    visit(p.coarse_points, {"coarse_points", "1", 1, 1e9, "largest number of points for a coarse start"});
+    visit(p.coarse_matches_min, {"coarse_matches_min", "1", 0, 1e9, "least number of matches for a coarse start"});
     visit(p.coarse_kernel_min_m,
-          {"coarse_kernel_min_m", "m", 1e-6, 1e3, "least width of the robust kernel from such a start"});
+          {"coarse_kernel_min_m", "m", 1e-6, 1e3, "least width of the robust kernel for a coarse start"});
     visit(p.coarse_rematch_m, {"coarse_rematch_m", "m", 0.0, 10.0,
-                               "from such a start a point's plane is searched anew once it has moved by this"});
-    visit(p.coarse_step_m, {"coarse_step_m", "m", 1e-12, 1.0, "such a start has converged when a step is below this"});
-    visit(p.coarse_step_rad, {"coarse_step_rad", "rad", 1e-12, 1.0, "and turns by less than this"});
+                               "coarse start: motion of a point after which its plane is searched again"});
+    visit(p.coarse_step_m, {"coarse_step_m", "m", 1e-12, 1.0, "coarse start: step below which it has converged"});
+    visit(p.coarse_step_rad,
+          {"coarse_step_rad", "rad", 1e-12, 1.0, "coarse start: rotation step below which it has converged"});
     visit(p.coarse_fitting_share_min, {"coarse_fitting_share_min", "1", 0.0, 1.0,
-                                       "fewer of the matches within three standard deviations reject such a start"});
+                                       "coarse start: least share of matches within three standard deviations"});
   }
 };
 
@@ -91,13 +94,16 @@ struct TrackingParams {
 
   template <class Self, class Visitor>
   static void fields(Self& p, Visitor& visit) {
-    visit(p.trusted_m, {"trusted_prior_m", "m", 0.0, 1e3,
-                        "a sweep with too few matches extends the map while the prior is this certain"});
-    visit(p.trusted_rad, {"trusted_prior_rad", "rad", 0.0, 1e3, "and this certain of the attitude"});
+    visit(p.trusted_m,
+          {"trusted_prior_m", "m", 0.0, 1e3,
+           "standard deviation of the prior position below which a sweep with too few matches extends the map"});
+    visit(p.trusted_rad,
+          {"trusted_prior_rad", "rad", 0.0, 1e3,
+           "standard deviation of the prior attitude below which a sweep with too few matches extends the map"});
     visit(p.lost_sweeps_max, {"lost_sweeps_max", "1", 1, 1e6,
-                              "sweeps in a row without a place in the map, after which it goes on by inertia"});
+                              "unregistered sweeps in a row after which mapping continues by inertial prediction"});
     visit(p.borne_out_share, {"borne_out_share", "1", 0.0, 1.0,
-                              "of a sweep's matches within three deviations, that bear out a place found again"});
+                              "share of matches within three standard deviations that confirms a relocalisation"});
   }
 };
 
@@ -113,14 +119,18 @@ struct RelocalizationParams {
 
   template <class Self, class Visitor>
   static void fields(Self& p, Visitor& visit) {
-    visit(p.deficit_tries_max, {"deficit_tries_max", "1", 0, 12, "larger saturation deficits tried for one sweep"});
-    visit(p.deficit_try_rad_s, {"deficit_try_rad_s", "rad/s", 1e-3, 1e3,
-                                "by how much the first of them is larger; two, three and five times it follow"});
-    visit(p.starts_per_sweep, {"starts_per_sweep", "1", 1, 100, "starts of a lost sensor, the prior among them"});
-    visit(p.shift_m, {"shift_m", "m", kLeastShift_m, 100.0, "reach of such starts, first round"});
-    visit(p.rotation_rad,
-          {"rotation_rad", "rad", kLeastRotation_rad, 3.15, "reach of such starts in attitude, first round"});
-    visit(p.rounds, {"rounds", "1", 1, 100, "of starts, each of which reaches that much further than the last"});
+    visit(p.deficit_tries_max,
+          {"deficit_tries_max", "1", 0, 12, "number of larger saturation deficits tried for one sweep"});
+    visit(p.deficit_try_rad_s,
+          {"deficit_try_rad_s", "rad/s", 1e-3, 1e3,
+           "first increase of the saturation deficit; two, three and five times this value follow"});
+    visit(p.starts_per_sweep,
+          {"starts_per_sweep", "1", 1, 100, "starts per sweep after tracking failure, including the prior"});
+    visit(p.shift_m,
+          {"shift_m", "m", kLeastShift_m, 100.0, "largest position offset of these starts in the first round"});
+    visit(p.rotation_rad, {"rotation_rad", "rad", kLeastRotation_rad, 3.15,
+                           "largest rotation offset of these starts in the first round"});
+    visit(p.rounds, {"rounds", "1", 1, 100, "number of rounds of starts; each increases the reach by the same amount"});
   }
 };
 

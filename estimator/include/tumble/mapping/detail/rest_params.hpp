@@ -17,11 +17,11 @@ struct RestBoundsParams {
   template <class Self, class Visitor>
   static void fields(Self& p, Visitor& visit) {
     visit(p.levels_s,
-          {"rest_s", "s", 1e-9, 60.0, "at most this much of the rest at the start levels the attitude", Rank::first});
+          {"rest_s", "s", 1e-9, 60.0, "longest part of the initial rest that levels the attitude", Rank::first});
     visit(p.rate_rad_s, {"rest_rate_rad_s", "rad/s", 1e-6, 10.0,
-                         "at rest the rate is within this of the bias and of its mean, per axis"});
-    visit(p.force_m_s2,
-          {"rest_force_m_s2", "m/s^2", 1e-6, 10.0, "and the specific force within this of gravity and of its mean"});
+                         "at rest: largest distance of the rate from the bias and from its mean, per axis"});
+    visit(p.force_m_s2, {"rest_force_m_s2", "m/s^2", 1e-6, 10.0,
+                         "at rest: largest distance of the specific force from gravity and from its mean"});
   }
 };
 
@@ -35,9 +35,10 @@ struct OdometryStartParams {
 
   template <class Self, class Visitor>
   static void fields(Self& p, Visitor& visit) {
-    visit(p.level_sigma_rad, {"level_sigma_rad", "rad", 1e-9, 1.0, "correction of the levelled tilt that is allowed"});
-    visit(p.speed_sigma_m_s, {"speed_sigma_m_s", "m/s", 1e-9, 100.0, "speed that passes for rest"});
-    visit(p.bias_rest_s, {"bias_rest_s", "s", 0.0, 60.0, "a shorter rest at the start teaches no bias of the gyro"});
+    visit(p.level_sigma_rad,
+          {"level_sigma_rad", "rad", 1e-9, 1.0, "standard deviation of corrections to the levelled tilt"});
+    visit(p.speed_sigma_m_s, {"speed_sigma_m_s", "m/s", 1e-9, 100.0, "largest speed that counts as rest"});
+    visit(p.bias_rest_s, {"bias_rest_s", "s", 0.0, 60.0, "shortest initial rest that calibrates the gyro bias"});
   }
 };
 
@@ -53,12 +54,16 @@ struct StandstillParams {
 
   template <class Self, class Visitor>
   static void fields(Self& p, Visitor& visit) {
-    visit(p.start_sigma_m_s, {"start_sigma_m_s", "m/s", 1e-9, 100.0, "velocity during the rest at the start"});
-    visit(p.sigma_m_s, {"sigma_m_s", "m/s", 1e-9, 100.0, "velocity of an IMU that says nothing but gravity"});
-    visit(p.creep_max_m_s, {"creep_max_m_s", "m/s", 0.0, 100.0,
-                            "such an IMU rests where it is believed slower than this and no surface holds it"});
-    visit(p.sweeps_min, {"sweeps_min", "1", 1, 1e6, "in a row before that is believed"});
-    visit(p.noise_share, {"noise_share", "1", 1e-9, 1.0, "of the inertial prior's standard deviations in motion"});
+    visit(p.start_sigma_m_s,
+          {"start_sigma_m_s", "m/s", 1e-9, 100.0, "standard deviation of the velocity during the initial rest"});
+    visit(p.sigma_m_s,
+          {"sigma_m_s", "m/s", 1e-9, 100.0, "standard deviation of the velocity while the IMU measures only gravity"});
+    visit(p.creep_max_m_s,
+          {"creep_max_m_s", "m/s", 0.0, 100.0,
+           "an IMU that measures only gravity is at rest below this speed if no surface constrains the pose"});
+    visit(p.sweeps_min, {"sweeps_min", "1", 1, 1e6, "sweeps in a row before this rest is accepted"});
+    visit(p.noise_share, {"noise_share", "1", 1e-9, 1.0,
+                          "standard deviations of the inertial prediction at rest, as a share of those in motion"});
   }
 };
 

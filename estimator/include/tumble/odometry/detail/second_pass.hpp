@@ -44,15 +44,16 @@ class SecondPass {
     template <class Self, class Visitor>
     static void fields(Self& p, Visitor& visit) {
       visit(p.after_s, {"after_s", "s", 0.0, 100.0,
-                        "of motion, after which all is passed through again with what was learnt; 0: never"});
+                        "motion time after which the second pass processes all data with the calibration; 0: never"});
       visit(p.lost_s, {"lost_s", "s", 0.0, 100.0,
-                       "without a registered sweep, after which it begins early, once; 0: it does not"});
-      visit(p.lag_s, {"lag_s", "s", 0.0, 10.0, "how old a sample is there when its rate is given out"});
-      visit(p.sweeps, {"sweeps", "1", 2, 1000, "that the second pass takes for each that comes"});
-      visit(p.remembered_s, {"remembered_s", "s", 0.0, 1000.0, "motion within which the second pass has to catch up"});
+                       "time without a registered sweep after which the second pass starts early, once; 0: never"});
+      visit(p.lag_s, {"lag_s", "s", 0.0, 10.0, "age of a sample in the second pass when its rate is reported"});
+      visit(p.sweeps, {"sweeps", "1", 2, 1000, "sweeps that the second pass processes per new sweep"});
+      visit(p.remembered_s, {"remembered_s", "s", 0.0, 1000.0,
+                             "longest motion that is stored; the second pass must catch up within it"});
       visit(p.inflation,
-            {"inflation", "1", 1.0, 1e6, "what was learnt is given to it with so many times its variance"});
-      visit(p.rest_s, {"rest_s", "s", 0.1, 100.0, "of the rest at the start that is remembered"});
+            {"inflation", "1", 1.0, 1e6, "factor on the variance of the calibration that the second pass starts with"});
+      visit(p.rest_s, {"rest_s", "s", 0.1, 100.0, "longest part of the initial rest that is stored"});
     }
   };
 

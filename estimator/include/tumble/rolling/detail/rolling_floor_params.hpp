@@ -25,25 +25,33 @@ struct RollingContactParams {
 
   template <class Self, class Visitor>
   static void fields(Self& p, Visitor& visit) {
-    visit(p.grip_sigma_m_s,
-          {"grip_sigma_m_s", "m/s", 1e-12, 1e3, "of the contact velocity while gripping", Rank::first});
-    visit(p.grip_sigma_share, {"grip_sigma_share", "1", 1e-12, 1e3, "and further, as a share of the rolling speed"});
-    visit(p.vertical_sigma_m_s, {"vertical_sigma_m_s", "m/s", 1e-12, 1e3, "of the vertical velocity while rolling"});
-    visit(p.rough_share, {"rough_share", "1", 1e-12, 1e3,
-                          "of the rolling speed: how fast a rough floor goes up and down", Rank::first});
-    visit(p.rough_radius_walk_m_sqrts,
-          {"rough_radius_walk_m_sqrts", "m/sqrt(s)", 0.0, 1.0, "of the radius that it rolls with there"});
-    visit(p.slope_sigma, {"slope_sigma", "1", 0.0, 1e3, "of the sines of a slope, when one begins"});
+    visit(p.grip_sigma_m_s, {"grip_sigma_m_s", "m/s", 1e-12, 1e3,
+                             "standard deviation of the contact velocity while gripping", Rank::first});
+    visit(p.grip_sigma_share,
+          {"grip_sigma_share", "1", 1e-12, 1e3, "additional standard deviation, as a share of the rolling speed"});
+    visit(p.vertical_sigma_m_s,
+          {"vertical_sigma_m_s", "m/s", 1e-12, 1e3, "standard deviation of the vertical velocity while rolling"});
+    visit(
+        p.rough_share,
+        {"rough_share", "1", 1e-12, 1e3,
+         "standard deviation of the vertical velocity on a rough floor, as a share of the rolling speed", Rank::first});
+    visit(p.rough_radius_walk_m_sqrts, {"rough_radius_walk_m_sqrts", "m/sqrt(s)", 0.0, 1.0,
+                                        "random walk of the effective rolling radius on a rough floor"});
+    visit(p.slope_sigma, {"slope_sigma", "1", 0.0, 1e3, "standard deviation of the sines of a slope when it begins"});
     visit(p.slope_walk_sqrts, {"slope_walk_sqrts", "sqrt(s)", 1e-12, 1e3, "random walk of the sines of a slope"});
     visit(p.impact_share,
-          {"impact_share", "1", 0.0, 1e3, "of the velocity that an impact gives: error of its timing and direction"});
-    visit(p.unexplained_impact_m_s, {"unexplained_impact_m_s", "m/s", 1e-12, 1e3,
-                                     "mean of what an impact may give in a node while the wheel stays on the floor"});
+          {"impact_share", "1", 0.0, 1e3,
+           "standard deviation of an impact's timing and direction, as a share of its velocity change"});
+    visit(p.unexplained_impact_m_s,
+          {"unexplained_impact_m_s", "m/s", 1e-12, 1e3,
+           "mean unexplained velocity change by impacts in a node while the sphere stays on the floor"});
     visit(p.rest_velocity_sigma_m_s,
-          {"rest_velocity_sigma_m_s", "m/s", 1e-12, 1e3, "of a node's mean velocity at rest"});
-    visit(p.rest_rate_sigma_rad_s, {"rest_rate_sigma_rad_s", "rad/s", 1e-12, 1e3, "of a node's mean rate at rest"});
+          {"rest_velocity_sigma_m_s", "m/s", 1e-12, 1e3, "standard deviation of a node's mean velocity at rest"});
+    visit(p.rest_rate_sigma_rad_s,
+          {"rest_rate_sigma_rad_s", "rad/s", 1e-12, 1e3, "standard deviation of a node's mean rate at rest"});
     visit(p.speed_sigma_m_s,
-          {"speed_sigma_m_s", "m/s", 1e-12, 1e3, "where the velocity is lost: of its mean over a second, about zero"});
+          {"speed_sigma_m_s", "m/s", 1e-12, 1e3,
+           "without velocity information: standard deviation of the mean velocity over 1 s about zero"});
   }
 };
 
@@ -60,19 +68,27 @@ struct RollingModeParams {
 
   template <class Self, class Visitor>
   static void fields(Self& p, Visitor& visit) {
-    visit(p.slip_begins_per_s, {"slip_begins_per_s", "1/s", 1e-12, 1e3, "rate of grip changing to slip", Rank::first});
-    visit(p.slip_ends_per_s, {"slip_ends_per_s", "1/s", 1e-12, 1e3, "rate of slip changing to grip", Rank::first});
-    visit(p.bump_begins_per_s, {"bump_begins_per_s", "1/s", 1e-12, 1e3, "rate of grip changing to bump", Rank::first});
-    visit(p.bump_ends_per_s, {"bump_ends_per_s", "1/s", 1e-12, 1e3, "rate of bump changing to grip", Rank::first});
-    visit(p.slip_bump_per_s, {"slip_bump_per_s", "1/s", 1e-12, 1e3, "rate of slip changing to bump and back"});
+    visit(p.slip_begins_per_s,
+          {"slip_begins_per_s", "1/s", 1e-12, 1e3, "rate of transitions from grip to slip", Rank::first});
+    visit(p.slip_ends_per_s,
+          {"slip_ends_per_s", "1/s", 1e-12, 1e3, "rate of transitions from slip to grip", Rank::first});
+    visit(p.bump_begins_per_s,
+          {"bump_begins_per_s", "1/s", 1e-12, 1e3, "rate of transitions from grip to bump", Rank::first});
+    visit(p.bump_ends_per_s,
+          {"bump_ends_per_s", "1/s", 1e-12, 1e3, "rate of transitions from bump to grip", Rank::first});
+    visit(p.slip_bump_per_s,
+          {"slip_bump_per_s", "1/s", 1e-12, 1e3, "rate of transitions between slip and bump, each way"});
     visit(p.incline_begins_per_s,
-          {"incline_begins_per_s", "1/s", 1e-12, 1e3, "rate of a slope beginning", Rank::first});
-    visit(p.incline_ends_per_s, {"incline_ends_per_s", "1/s", 1e-12, 1e3, "rate of a slope ending"});
-    visit(p.rough_begins_per_s, {"rough_begins_per_s", "1/s", 1e-12, 1e3, "rate of a rough floor beginning"});
-    visit(p.rough_ends_per_s, {"rough_ends_per_s", "1/s", 1e-12, 1e3, "rate of a rough floor ending"});
-    visit(p.event_shortest_s, {"event_shortest_s", "s", 0.0, 10.0, "least stay in slip or bump", Rank::first});
+          {"incline_begins_per_s", "1/s", 1e-12, 1e3, "rate of transitions from level floor to slope", Rank::first});
+    visit(p.incline_ends_per_s,
+          {"incline_ends_per_s", "1/s", 1e-12, 1e3, "rate of transitions from slope to level floor"});
+    visit(p.rough_begins_per_s,
+          {"rough_begins_per_s", "1/s", 1e-12, 1e3, "rate of transitions from smooth to rough floor"});
+    visit(p.rough_ends_per_s,
+          {"rough_ends_per_s", "1/s", 1e-12, 1e3, "rate of transitions from rough to smooth floor"});
+    visit(p.event_shortest_s, {"event_shortest_s", "s", 0.0, 10.0, "shortest duration of a slip or bump", Rank::first});
     visit(p.uncertain_m, {"uncertain_m", "m", 1e-12, 1e3,
-                          "an event in which the horizontal sigma grows by much more than this is called uncertain"});
+                          "growth of the horizontal standard deviation above which an event is reported as uncertain"});
   }
 };
 

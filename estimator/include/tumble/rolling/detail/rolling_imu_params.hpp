@@ -21,21 +21,23 @@ struct RollingPriorParams {
 
   template <class Self, class Visitor>
   static void fields(Self& p, Visitor& visit) {
-    visit(p.tilt_sigma_rad,
-          {"tilt_sigma_rad", "rad", 0.0, 1e3, "prior of the levelling by the first sample", Rank::first});
-    visit(p.velocity_sigma_m_s, {"velocity_sigma_m_s", "m/s", 0.0, 1e3, "prior of the velocity at the start"});
+    visit(p.tilt_sigma_rad, {"tilt_sigma_rad", "rad", 0.0, 1e3,
+                             "prior standard deviation of the tilt from the first sample", Rank::first});
+    visit(p.velocity_sigma_m_s,
+          {"velocity_sigma_m_s", "m/s", 0.0, 1e3, "prior standard deviation of the initial velocity"});
     visit(p.gyro_bias_sigma_rad_s,
-          {"gyro_bias_sigma_rad_s", "rad/s", 0.0, 1e3, "prior of the gyro's bias", Rank::first});
-    visit(p.accel_bias_sigma_m_s2,
-          {"accel_bias_sigma_m_s2", "m/s^2", 0.0, 1e3, "prior of the accelerometer's bias", Rank::first});
+          {"gyro_bias_sigma_rad_s", "rad/s", 0.0, 1e3, "prior standard deviation of the gyro bias", Rank::first});
+    visit(p.accel_bias_sigma_m_s2, {"accel_bias_sigma_m_s2", "m/s^2", 0.0, 1e3,
+                                    "prior standard deviation of the accelerometer bias", Rank::first});
     visit(p.accel_scale_sigma,
-          {"accel_scale_sigma", "1", 0.0, 1e3, "prior of each entry of the accelerometer's scale and misalignment"});
-    visit(p.gyro_scale_sigma,
-          {"gyro_scale_sigma", "1", 0.0, 1e3, "prior of each entry of the gyro's scale and misalignment"});
-    visit(p.accel_delay_sigma_s,
-          {"accel_delay_sigma_s", "s", 0.0, 1e3, "prior of how much later the accelerometer is than the gyro"});
+          {"accel_scale_sigma", "1", 0.0, 1e3,
+           "prior standard deviation of each entry of the accelerometer's scale and misalignment"});
+    visit(p.gyro_scale_sigma, {"gyro_scale_sigma", "1", 0.0, 1e3,
+                               "prior standard deviation of each entry of the gyro's scale and misalignment"});
+    visit(p.accel_delay_sigma_s, {"accel_delay_sigma_s", "s", 0.0, 1e3,
+                                  "prior standard deviation of the accelerometer's delay relative to the gyro"});
     visit(p.start_rate_rad_s,
-          {"start_rate_rad_s", "rad/s", 1e-12, 10.0, "a first reading that turns faster was taken in motion"});
+          {"start_rate_rad_s", "rad/s", 1e-12, 10.0, "rate above which the first reading counts as motion"});
   }
 };
 
@@ -51,14 +53,15 @@ struct RollingImuNoiseParams {
   template <class Self, class Visitor>
   static void fields(Self& p, Visitor& visit) {
     visit(p.attitude_walk_rad_sqrts, {"attitude_walk_rad_sqrts", "rad/sqrt(s)", 1e-12, 1e3, "angle random walk"});
-    visit(p.rate_error_sqrts, {"rate_error_sqrts", "sqrt(s)", 1e-12, 1e3, "angle random walk per rad/s turned"});
+    visit(p.rate_error_sqrts, {"rate_error_sqrts", "sqrt(s)", 1e-12, 1e3, "angle random walk per rad/s of rate"});
     visit(p.velocity_walk_m_s_sqrts, {"velocity_walk_m_s_sqrts", "m/s/sqrt(s)", 1e-12, 1e3, "velocity random walk"});
-    visit(p.spin_force_sqrts, {"spin_force_sqrts", "m/s/sqrt(s)/(rad/s)^2", 0.0, 1e3,
-                               "velocity walk more, per (rad/s)^2 turned: what errors make of large forces"});
+    visit(p.spin_force_sqrts,
+          {"spin_force_sqrts", "m/s/sqrt(s)/(rad/s)^2", 0.0, 1e3,
+           "additional velocity random walk per (rad/s)^2 of rate, from sensor errors under large forces"});
     visit(p.gyro_bias_walk_rad_s_sqrts,
-          {"gyro_bias_walk_rad_s_sqrts", "rad/s/sqrt(s)", 1e-12, 1e3, "random walk of the gyro's bias"});
+          {"gyro_bias_walk_rad_s_sqrts", "rad/s/sqrt(s)", 1e-12, 1e3, "random walk of the gyro bias"});
     visit(p.accel_bias_walk_m_s2_sqrts,
-          {"accel_bias_walk_m_s2_sqrts", "m/s^2/sqrt(s)", 1e-12, 1e3, "random walk of the accelerometer's bias"});
+          {"accel_bias_walk_m_s2_sqrts", "m/s^2/sqrt(s)", 1e-12, 1e3, "random walk of the accelerometer bias"});
   }
 };
 
@@ -76,14 +79,15 @@ struct RollingRailParams {
   template <class Self, class Visitor>
   static void fields(Self& p, Visitor& visit) {
     visit(p.clipped_rate_sigma_rad_s,
-          {"clipped_rate_sigma_rad_s", "rad/s", 1e-12, 1e3, "how short a clipped rate may be"});
+          {"clipped_rate_sigma_rad_s", "rad/s", 1e-12, 1e3, "standard deviation of the rate beyond the rail"});
     visit(p.recovered_rate_sigma_rad_s,
           {"recovered_rate_sigma_rad_s", "rad/s", 0.0, 1e3,
-           "of a rate beyond the range that was recovered from several IMUs; 0: none is"});
+           "standard deviation of a rate beyond the range that was recovered from several IMUs; 0: no recovery"});
     visit(p.clipped_force_sigma_m_s2,
-          {"clipped_force_sigma_m_s2", "m/s^2", 1e-12, 1e3, "how short a clipped force may be"});
-    visit(p.subsample_saturation_share, {"subsample_saturation_share", "1", 0.0, 10.0,
-                                         "of an impact within one sample: what its mean may lack, as a share of it"});
+          {"clipped_force_sigma_m_s2", "m/s^2", 1e-12, 1e3, "standard deviation of the force beyond the rail"});
+    visit(p.subsample_saturation_share,
+          {"subsample_saturation_share", "1", 0.0, 10.0,
+           "standard deviation of the mean force of an impact within one sample, as a share of it"});
   }
 };
 
@@ -96,10 +100,13 @@ struct RollingGapParams {
 
   template <class Self, class Visitor>
   static void fields(Self& p, Visitor& visit) {
-    visit(p.gap_from_s, {"gap_from_s", "s", 1e-9, 1.0, "between readings further apart nothing is known of the force"});
-    visit(p.gap_max_s, {"gap_max_s", "s", 1e-9, 1.0, "longest time between two samples before the run is refused"});
+    visit(p.gap_from_s,
+          {"gap_from_s", "s", 1e-9, 1.0, "time between readings above which the force between them is unknown"});
+    visit(p.gap_max_s, {"gap_max_s", "s", 1e-9, 1.0,
+                        "longest allowed time between two samples; a longer gap ends the run with an error"});
     visit(p.gap_acceleration_rad_s2,
-          {"gap_acceleration_rad_s2", "rad/s^2", 1e-12, 1e4, "what the rate does in a gap beside going straight"});
+          {"gap_acceleration_rad_s2", "rad/s^2", 1e-12, 1e4,
+           "standard deviation of the angular acceleration during a gap, about a linear change of rate"});
   }
 };
 
