@@ -228,7 +228,8 @@ TEST(Sweep, NamedDrawsAreNoSeedsInARow) {
           "--until");
   refused({"triage", suite.string(), "--method", "rate/raw", "--seeds", "1..2"}, "--seeds");
   refused({"sweep", suite.string(), "--db", database, "--scenario", "roll"}, "--scenario");
-  refused({"gate", suite.string(), "--against", (folder / "g.yaml").string(), "--accept"}, "a gate has");
+  refused({"gate", suite.string(), "--against", (folder / "g.yaml").string(), "--accept"},
+          "a gate needs a range of seeds");
 }
 
 TEST(Sweep, RefusesWhatItCannotKeepOrAsk) {
