@@ -44,7 +44,7 @@ RegimeStream::Params rate_params(const TumblingOdometry::Params& params) {
   return out;
 }
 
-OutlierFilter::Params outlier_params(const TumblingOdometry::Params& params) {
+OutlierFilter::Device outlier_params(const TumblingOdometry::Params& params) {
   return {.gyro_range_rad_s = params.imu.gyro_range_rad_s,
           .accel_range_m_s2 = params.imu.accel_range_m_s2,
           .period_s = 1.0 / params.imu.rate_hz,
@@ -65,8 +65,8 @@ LidarInertialOdometry::Params mapper_params(const TumblingOdometry::Params& para
   return out;
 }
 
-// Stamps beyond this (100 years) are refused, so that differences of stamps fit into 64 bits.
-constexpr TimeNs kStampMax_ns = 3'155'760'000'000'000'000;
+// Stamps beyond this (109 years) are refused, so that differences of stamps fit into 64 bits.
+constexpr TimeNs kStampMax_ns = 3 * (TimeNs{1} << 60);
 constexpr double kSilent_s = 1.0;       // a lidar that says nothing for so long is made up for
 constexpr double kAhead_s = 1.0;        // a sweep that ends so much after the newest sample has a stamp that is wrong
 constexpr double kSweepsMax_hz = 20.0;  // of the lidars that there are: so many a second wait for the lag

@@ -7,7 +7,7 @@
 #include <span>
 #include <vector>
 
-#include "tumble/common/outlier_filter.hpp"
+#include "tumble/common/detail/outlier_filter.hpp"
 #include "tumble/common/sample_clock.hpp"
 #include "tumble/mapping/lidar_inertial_odometry.hpp"
 #include "tumble/odometry/detail/odometry_pass.hpp"
