@@ -14,7 +14,7 @@
 #include "rolled_sphere.hpp"
 #include "thrown_body.hpp"
 #include "thrown_params.hpp"
-#include "tumble/common/outlier_filter.hpp"
+#include "tumble/common/detail/outlier_filter.hpp"
 #include "tumble/tumble.hpp"
 
 namespace tumble {
@@ -124,7 +124,7 @@ std::vector<ImuSample> at_rest(std::size_t count) {
   return test::noisy(std::move(out));
 }
 
-std::size_t rejected_of(const std::vector<ImuSample>& samples, const OutlierFilter::Params& params = {}) {
+std::size_t rejected_of(const std::vector<ImuSample>& samples, const OutlierFilter::Device& params = {}) {
   const std::vector<bool> inliers = find_inliers(OutlierFilter(params), samples);
   return static_cast<std::size_t>(std::count(inliers.begin(), inliers.end(), false));
 }

@@ -105,7 +105,7 @@ std::vector<bool> find_inliers(const sim::ImuRecord& record) {
   if (!check_samples(samples, std::numeric_limits<double>::infinity()).ok()) return all;
   return tumble::find_inliers(OutlierFilter({.gyro_range_rad_s = record.stated_gyro_range_rad_s,
                                              .accel_range_m_s2 = record.stated_accel_range_m_s2,
-                                             .period_s = seconds(record.period_ns)}),
+                                             .period_s = std::max(0.0, seconds(record.period_ns))}),
                               samples);
 }
 

@@ -9,8 +9,8 @@
 
 #include "sim/recording.hpp"
 #include "tumble/angular_velocity/rate_state.hpp"
+#include "tumble/common/detail/outlier_filter.hpp"
 #include "tumble/common/imu.hpp"
-#include "tumble/common/outlier_filter.hpp"
 #include "tumble/common/status.hpp"
 #include "tumble/mapping/lidar.hpp"
 

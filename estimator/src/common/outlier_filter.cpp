@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "tumble/common/outlier_filter.hpp"
+#include "tumble/common/detail/outlier_filter.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -51,12 +51,12 @@ struct Triad {
   }
 };
 
-Triad gyro_of(const OutlierFilter::Params& params) {
-  return {&ImuSample::angular_velocity_rad_s, kClipGyro, params.gyro_range_rad_s, kRepeats_rad_s};
+Triad gyro_of(const OutlierFilter::Device& device) {
+  return {&ImuSample::angular_velocity_rad_s, kClipGyro, device.gyro_range_rad_s, kRepeats_rad_s};
 }
 
-Triad accel_of(const OutlierFilter::Params& params) {
-  return {&ImuSample::specific_force_m_s2, kClipAccel, params.accel_range_m_s2, kRepeats_m_s2};
+Triad accel_of(const OutlierFilter::Device& device) {
+  return {&ImuSample::specific_force_m_s2, kClipAccel, device.accel_range_m_s2, kRepeats_m_s2};
 }
 
 /// From an earlier stamp to a later one; unsigned, since the difference of any two stamps may not fit otherwise.
@@ -123,17 +123,17 @@ double distance(const ImuSample& sample, const OutlierFilter::State& state, cons
   return std::min(apart, (step - step_s(last, sample) * slope).cwiseAbs().maxCoeff());
 }
 
-double gyro_threshold(const OutlierFilter::Params& params, const Sequence& sequence, const ImuSample& judged,
+double gyro_threshold(const OutlierFilter::Device& device, const Sequence& sequence, const ImuSample& judged,
                       double step) {
-  if (gyro_of(params).beyond_range(judged)) return kRateMin_rad_s;
-  const double caused = kTurn_rad_m * step * largest_step(sequence, accel_of(params));
+  if (gyro_of(device).beyond_range(judged)) return kRateMin_rad_s;
+  const double caused = kTurn_rad_m * step * largest_step(sequence, accel_of(device));
   return std::clamp(caused, kRateMin_rad_s, kTurnMost_rad_s);
 }
 
-double accel_threshold(const OutlierFilter::Params& params, const Sequence& sequence, const ImuSample& judged,
+double accel_threshold(const OutlierFilter::Device& device, const Sequence& sequence, const ImuSample& judged,
                        double step) {
-  if (accel_of(params).beyond_range(judged)) return kForceMin_m_s2;
-  const double caused = kLever_m / step * largest_bend(sequence, gyro_of(params));
+  if (accel_of(device).beyond_range(judged)) return kForceMin_m_s2;
+  const double caused = kLever_m / step * largest_bend(sequence, gyro_of(device));
   return std::clamp(caused, kForceMin_m_s2, std::max(kForceMin_m_s2, kHitMost_m_s / step));
 }
 
@@ -160,7 +160,7 @@ std::optional<ImuSample> OutlierFilter::settle(const ImuSample& next, State& sta
 
 bool OutlierFilter::keeps_back(const ImuSample& sample, State& state) const {
   const bool beyond_all =
-      gyro_of(params_).largest(sample) > kRateMax_rad_s || accel_of(params_).largest(sample) > kForceMax_m_s2;
+      gyro_of(device_).largest(sample) > kRateMax_rad_s || accel_of(device_).largest(sample) > kForceMax_m_s2;
   if (beyond_all) {
     ++state.rejected;
     return true;
@@ -172,8 +172,8 @@ bool OutlierFilter::keeps_back(const ImuSample& sample, State& state) const {
 
 /// The last step of the stamps, or the nominal one where that is longer; infinite where neither is known.
 double OutlierFilter::period_s(const State& state) const {
-  if (!(params_.period_s > 0.0) || state.count < 2) return kUnknown;
-  return std::max(params_.period_s, step_s(state.passed[0], state.passed[1]));
+  if (!(device_.period_s > 0.0) || state.count < 2) return kUnknown;
+  return std::max(device_.period_s, step_s(state.passed[0], state.passed[1]));
 }
 
 /// Whether a reading jumps further than the other triad explains: outliers.md (O5).
@@ -181,21 +181,21 @@ bool OutlierFilter::is_suspicious(const ImuSample& sample, const State& state) c
   if (state.count == 0) return false;
   const ImuSample& before = state.passed[1];
   const double after_s = step_s(before, sample);
-  if (after_s > params_.gap_max_s) return false;
+  if (after_s > device_.gap_max_s) return false;
   if (after_s > kPeriodsAhead * period_s(state)) return true;
   if (after_s > kNear_s) return false;
-  const double step = std::max(after_s, params_.period_s);
+  const double step = std::max(after_s, device_.period_s);
   Sequence sequence = passed_near(state);
   sequence.add(sample);
-  return distance(sample, state, gyro_of(params_)) > gyro_threshold(params_, sequence, sample, step) ||
-         distance(sample, state, accel_of(params_)) > accel_threshold(params_, sequence, sample, step);
+  return distance(sample, state, gyro_of(device_)) > gyro_threshold(device_, sequence, sample, step) ||
+         distance(sample, state, accel_of(device_)) > accel_threshold(device_, sequence, sample, step);
 }
 
 /// Whether the held reading is an outlier, now that the one after it is known: outliers.md (O6).
 bool OutlierFilter::is_outlier(const ImuSample& held, const ImuSample& after, const State& state) const {
   const ImuSample& before = state.passed[1];
   if (state.count == 0 || step_s(before, held) > kNear_s || step_s(held, after) > kNear_s) return false;
-  const double step = std::max(step_s(before, held), params_.period_s);
+  const double step = std::max(step_s(before, held), device_.period_s);
   Sequence sequence = passed_near(state);
   sequence.add(held);
   sequence.add(after);
@@ -203,8 +203,8 @@ bool OutlierFilter::is_outlier(const ImuSample& held, const ImuSample& after, co
     const double by = departure(triad.of(before), triad.of(held), triad.of(after));
     return by > threshold && by > kAgreement * distance(after, state, triad);
   };
-  return stands_out(gyro_of(params_), gyro_threshold(params_, sequence, held, step)) ||
-         stands_out(accel_of(params_), accel_threshold(params_, sequence, held, step));
+  return stands_out(gyro_of(device_), gyro_threshold(device_, sequence, held, step)) ||
+         stands_out(accel_of(device_), accel_threshold(device_, sequence, held, step));
 }
 
 std::vector<bool> find_inliers(const OutlierFilter& filter, std::span<const ImuSample> samples) {

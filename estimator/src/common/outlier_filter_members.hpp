@@ -2,7 +2,7 @@
 #pragma once
 
 #include "imu_members.hpp"
-#include "tumble/common/outlier_filter.hpp"
+#include "tumble/common/detail/outlier_filter.hpp"
 
 /// Members of the filter that rejects wild readings: state_visitor.hpp.
 namespace tumble {

@@ -91,7 +91,7 @@ std::vector<FrozenAxes> watches_of(const RollingOdometry::Params& params) {
 std::vector<OutlierFilter> filters_of(const RollingOdometry::Params& params) {
   std::vector<OutlierFilter> out;
   for (const RollingOdometry::Unit& unit : params.units) {
-    out.emplace_back(OutlierFilter::Params{.gyro_range_rad_s = unit.sheet.gyro_range_rad_s,
+    out.emplace_back(OutlierFilter::Device{.gyro_range_rad_s = unit.sheet.gyro_range_rad_s,
                                            .accel_range_m_s2 = unit.sheet.accel_range_m_s2,
                                            .period_s = 1.0 / unit.sheet.rate_hz});
   }

@@ -51,7 +51,7 @@ RegimeStream::Params rate_params(const TumblingOdometry::Params& params) {
   return out;
 }
 
-OutlierFilter::Params outlier_params(const TumblingOdometry::Params& params) {
+OutlierFilter::Device outlier_params(const TumblingOdometry::Params& params) {
   return {.gyro_range_rad_s = params.imu.gyro_range_rad_s,
           .accel_range_m_s2 = params.imu.accel_range_m_s2,
           .period_s = 1.0 / params.imu.rate_hz,
@@ -72,8 +72,8 @@ LidarInertialOdometry::Params mapper_params(const TumblingOdometry::Params& para
   return out;
 }
 
-// Largest stamp of a sweep, 100 years: differences of stamps then fit into 64 bits.
-constexpr TimeNs kStampMax_ns = 3'155'760'000'000'000'000;
+// Largest stamp of a sweep, 109 years: differences of stamps then fit into 64 bits.
+constexpr TimeNs kStampMax_ns = 3 * (TimeNs{1} << 60);
 constexpr double kSilent_s = 1.0;       // silence of the lidar after which empty sweeps are inserted
 constexpr double kAhead_s = 1.0;        // maximum time by which a sweep may end after the newest sample
 constexpr double kSweepsMax_hz = 20.0;  // highest sweep rate of lidars: determines how many sweeps wait for the lag

@@ -12,7 +12,7 @@
 #include "tumble/angular_velocity/detail/frozen_axes.hpp"
 #include "tumble/attitude/detail/rest_gravity.hpp"
 #include "tumble/attitude/imu_merge.hpp"
-#include "tumble/common/outlier_filter.hpp"
+#include "tumble/common/detail/outlier_filter.hpp"
 #include "tumble/common/pose.hpp"
 #include "tumble/common/sample_clock.hpp"
 #include "tumble/odometry/detail/unit_rails.hpp"

@@ -7,7 +7,7 @@
 #include <span>
 #include <vector>
 
-#include "tumble/common/outlier_filter.hpp"
+#include "tumble/common/detail/outlier_filter.hpp"
 #include "tumble/common/sample_clock.hpp"
 #include "tumble/mapping/lidar_inertial_odometry.hpp"
 #include "tumble/odometry/detail/odometry_pass.hpp"
@@ -61,7 +61,7 @@ class TumblingOdometry {
   /// Processes a sweep of points fired in [start_ns, end_ns], at any time after its last point. The points are copied.
   /// Points from before the end of the last sweep are dropped because stamps jitter. On error the state is unchanged.
   /// `time_order`: the end is before the start, or half of the sweep is before the end of the last sweep.
-  /// `out_of_range`: a point is beyond the sweep, the end is a second after the newest sample, a stamp is beyond 100
+  /// `out_of_range`: a point is beyond the sweep, the end is a second after the newest sample, a stamp is beyond 109
   /// years, or too many sweeps wait.
   Status add_sweep(TimeNs start_ns, TimeNs end_ns, std::span<const LidarPoint> points);
   /// Processes an odometer reading (detail/odometer_reading.hpp). The reading must arrive before its sweep is

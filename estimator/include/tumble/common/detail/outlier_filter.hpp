@@ -28,8 +28,8 @@ class OutlierFilter {
   /// Devices read up to this multiple of the range in their data sheet.
   static constexpr double kRangesMax = 2.0;
 
-  /// From the data sheet of the device; 0: not stated.
-  struct Params {
+  /// Facts of the device, from its data sheet; 0: not stated.
+  struct Device {
     double gyro_range_rad_s = 0.0;
     double accel_range_m_s2 = 0.0;
     double period_s = 0.0;   ///< from sample to sample: stamps that step by much more are held
@@ -43,7 +43,7 @@ class OutlierFilter {
     std::size_t rejected = 0;  ///< number of samples rejected since the start
   };
 
-  explicit OutlierFilter(const Params& params) : params_(params) {}
+  explicit OutlierFilter(const Device& device) : device_(device) {}
 
   /// Judges the held sample by `next`, which must be later than those that passed. Returns the held sample if `next`
   /// confirms it, and nothing if it is rejected or none was held. Afterwards none is held.
@@ -64,7 +64,7 @@ class OutlierFilter {
   bool is_suspicious(const ImuSample& sample, const State& state) const;
   bool is_outlier(const ImuSample& held, const ImuSample& after, const State& state) const;
 
-  Params params_;
+  Device device_;
 };
 
 /// Judges a recording whose samples are finite and in order of time. Element k is true if sample k passes. O(N).
