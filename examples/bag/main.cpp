@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The door behind a ROS bag: example_bag BAG (a ROS 1 file, the folder of a ROS 2 bag, or an MCAP file) prints a pose
-// for each sweep. The readers are the harness's; sensors and mounting are those of examples/door/tumbling.cpp. Exit
+// for each sweep. The readers are the harness's; sensors and mounting are those of examples/odometry/tumbling.cpp. Exit
 // status 2: bad input.
 #include <cstdio>
 #include <exception>
@@ -9,8 +9,8 @@
 #include <stdexcept>
 #include <tumble/tumble.hpp>
 
-#include "examples/door/driver.hpp"
-#include "examples/door/rig.hpp"
+#include "examples/odometry/driver.hpp"
+#include "examples/odometry/rig.hpp"
 #include "scenarios/methods/bridge.hpp"
 #include "scenarios/recordings/bags/bag.hpp"
 

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "scenarios/bench/bench.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <optional>
@@ -21,7 +23,7 @@ std::string name_of(const BenchDraw& draw) {
   return draw.scenario + " " + std::to_string(draw.seed);
 }
 
-/// The draws of a suite, nothing known of them yet.
+/// Returns the suite's draws without results.
 std::vector<BenchDraw> draws_of(const Suite& suite) {
   std::vector<BenchDraw> draws;
   for (const DrawClass& each : suite.classes)
@@ -40,7 +42,7 @@ std::optional<double> value_of(const BenchDraw& draw, const std::string& metric)
   return it->second;
 }
 
-/// Whether there is nothing to score on a draw: somebody went through it without a value.
+/// Returns true if a draw has nothing to score: another method completed it without a value.
 bool has_nothing(const BenchDraw& draw, const std::string& metric, std::span<const BenchResult> beside) {
   const auto says_so = [&](const BenchDraw* each) {
     return each != nullptr && each->status == OutcomeStatus::ok && !each->values.contains(metric);
@@ -78,7 +80,7 @@ BenchResult collect_bench_result(const Results& results, const Suite& suite, con
     key.kind = method.kind;
     key.method = method.name;
     const std::optional<Outcome> outcome = results.find(key);
-    if (!outcome) throw BadInput("draw " + name_of(draw) + " has no outcome of " + method.name);
+    if (!outcome) throw BadInput(fmt::format("draw {} has no outcome of method {}", name_of(draw), method.name));
     draw.recording = outcome->recording_digest;
     draw.status = outcome->status;
   }
@@ -99,12 +101,12 @@ void require_of_suite(const BenchResult& result, const Suite& suite) {
   const std::string digest = bench_suite_digest(suite);
   const std::string whose = full_name(result.kind, result.method);
   if (result.suite != suite.name || result.suite_digest != digest)
-    throw BadInput(whose + " is of suite " + result.suite + " " + result.suite_digest + ", must be of " + suite.name +
-                   " " + digest + ": results of two suites are not compared");
+    throw BadInput(fmt::format(
+        "{} belongs to suite {} {}; it must belong to suite {} {}: results of two suites cannot be compared", whose,
+        result.suite, result.suite_digest, suite.name, digest));
   const std::vector<BenchDraw> draws = draws_of(suite);
   if (result.draws.size() != draws.size())
-    throw BadInput(whose + " has " + std::to_string(result.draws.size()) + " draws, must have " +
-                   std::to_string(draws.size()));
+    throw BadInput(fmt::format("{} has {} draws, must have {}", whose, result.draws.size(), draws.size()));
   for (const BenchDraw& draw : draws)
     if (result.find(draw) == nullptr) throw BadInput(whose + " has no draw " + name_of(draw));
 }
@@ -112,7 +114,7 @@ void require_of_suite(const BenchResult& result, const Suite& suite) {
 std::string other_recording(const BenchResult& a, const BenchResult& b) {
   for (const BenchDraw& draw : a.draws) {
     const BenchDraw* other = b.find(draw);
-    // a draw whose process died bears no digest
+    // a draw whose process died has no digest
     if (other != nullptr && !draw.recording.empty() && !other->recording.empty() && draw.recording != other->recording)
       return name_of(draw);
   }

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "scenarios/bench/bench_result.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <nlohmann/json.hpp>
@@ -47,7 +49,7 @@ BenchDraw draw_from(const ordered_json& node) {
   if (!status) throw BadInput("unknown status '" + node.at("status").get<std::string>() + "'");
   draw.status = *status;
   for (const auto& [metric, value] : node.at("values").items()) {
-    if (!value.is_number() || !std::isfinite(value.get<double>())) throw BadInput("'" + metric + "' is no number");
+    if (!value.is_number() || !std::isfinite(value.get<double>())) throw BadInput("'" + metric + "' is not a number");
     draw.values[metric] = value.get<double>();
   }
   return draw;
@@ -55,10 +57,10 @@ BenchDraw draw_from(const ordered_json& node) {
 
 BenchResult result_from(const ordered_json& node) {
   if (!node.is_object() || node.value("format", "") != kFormat)
-    throw BadInput(std::string("not a line of format '") + kFormat + "'");
+    throw BadInput(std::string("this is not a line of format '") + kFormat + "'");
   const ordered_json version = node.value("format_version", ordered_json());
   if (version != kBenchFormatVersion)
-    throw BadInput("format_version " + version.dump() + ", must be " + std::to_string(kBenchFormatVersion));
+    throw BadInput(fmt::format("format_version {}, must be {}", version.dump(), kBenchFormatVersion));
   BenchResult result;
   const auto text = [&](const char* key) { return node.at(key).get<std::string>(); };
   result.suite = text("suite");
@@ -72,8 +74,7 @@ BenchResult result_from(const ordered_json& node) {
   result.date = text("date");
   for (const ordered_json& each : node.at("draws")) {
     BenchDraw draw = draw_from(each);
-    if (result.find(draw) != nullptr)
-      throw BadInput("draw " + draw.scenario + " " + std::to_string(draw.seed) + " stands twice");
+    if (result.find(draw) != nullptr) throw BadInput(fmt::format("draw {} {} occurs twice", draw.scenario, draw.seed));
     result.draws.push_back(std::move(draw));
   }
   return result;

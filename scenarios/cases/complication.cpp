@@ -12,7 +12,7 @@ namespace tumble::scenarios {
 
 namespace {
 
-/// A number and what it is where nothing is wrong with it.
+/// A number and its ideal value.
 struct Ideal {
   std::string_view number;
   double value = 0.0;
@@ -20,14 +20,14 @@ struct Ideal {
 
 enum class Sort { several, size, count };
 
-/// A line of registration: what it is called, and its numbers. Those that a type does not have are passed over.
+/// A registered complication: its name and numbers. Numbers that a type lacks are skipped.
 struct ComplicationLine {
   std::string_view what;
   std::vector<Ideal> numbers;
   Sort sort = Sort::several;
 };
 
-/// The unit's own words (sim/world, "0: none"); what is a shape rather than a disturbance stays.
+/// Values that disable the unit's disturbances (sim/world, "0: none"); shapes are unchanged.
 std::span<const ComplicationLine> of_world() {
   static const std::vector<ComplicationLine> kLines = {
       {"rocks", {{"rock_count"}}, Sort::count},
@@ -36,8 +36,8 @@ std::span<const ComplicationLine> of_world() {
       {"boxes", {{"box_count"}}, Sort::count},
       {"shelves", {{"shelf_count"}}, Sort::count},
       {"beams", {{"beam_count"}}, Sort::count},
-      {"drops beyond the first", {{"drop_count", 1.0}}, Sort::count},
-      {"steps beyond the first", {{"step_count", 1.0}}, Sort::count},
+      {"all drops but the first", {{"drop_count", 1.0}}, Sort::count},
+      {"all steps but the first", {{"step_count", 1.0}}, Sort::count},
       {"relief", {{"relief_m"}}, Sort::size},
       {"bumps", {{"bump_height_m"}}, Sort::size},
       {"roughness of the ground", {{"roughness_m"}}, Sort::size},
@@ -57,9 +57,9 @@ std::span<const ComplicationLine> of_world() {
 
 std::span<const ComplicationLine> of_robot() {
   static const std::vector<ComplicationLine> kLines = {
-      {"centre of mass off its place", {{"com_x_m"}, {"com_y_m"}, {"com_z_m"}}},
-      {"inside off the centre", {{"inner_x_m"}, {"inner_y_m"}, {"inner_z_m"}}},
-      {"struts that differ",
+      {"offset of the centre of mass", {{"com_x_m"}, {"com_y_m"}, {"com_z_m"}}},
+      {"offset of the internal mass", {{"inner_x_m"}, {"inner_y_m"}, {"inner_z_m"}}},
+      {"differences between struts",
        {{"lower_contact_ratio", 1.0}, {"upper_contact_ratio", 1.0}, {"upright_contact_ratio", 1.0}}},
       {"unequal moments of inertia", {{"inertia_ratio_y", 1.0}, {"inertia_ratio_z", 1.0}, {"inertia_yaw_rad"}}},
       {"friction of the hinges", {{"hinge_damping_nm_s"}, {"hinge_friction_nm"}}},
@@ -69,14 +69,14 @@ std::span<const ComplicationLine> of_robot() {
 
 std::span<const ComplicationLine> of_motion() {
   static const std::vector<ComplicationLine> kLines = {
-      {"spin forward", {{"spin_forward_rad_s"}}, Sort::size},
-      {"spin to the side", {{"spin_side_rad_s"}}, Sort::size},
-      {"spin about the vertical", {{"spin_up_rad_s"}}, Sort::size},
-      {"heading and direction", {{"yaw_rad"}, {"direction_rad"}, {"heading_rad"}}},
-      {"how it is held", {{"roll_rad"}, {"pitch_rad"}}},
+      {"forward spin", {{"spin_forward_rad_s"}}, Sort::size},
+      {"sideways spin", {{"spin_side_rad_s"}}, Sort::size},
+      {"spin about the vertical axis", {{"spin_up_rad_s"}}, Sort::size},
+      {"heading and travel direction", {{"yaw_rad"}, {"direction_rad"}, {"heading_rad"}}},
+      {"grip of the hand", {{"roll_rad"}, {"pitch_rad"}}},
       {"sway", {{"sway_m"}, {"sway_rad"}, {"twist_rad"}}},
       {"tremor of the hand", {{"tremor_n"}, {"tremor_nm"}}},
-      {"second leg", {{"leg_2_m"}}, Sort::size},
+      {"second leg of the path", {{"leg_2_m"}}, Sort::size},
       {"strokes of the hand", {{"stroke_share"}}, Sort::size},
       {"bursts of spin",
        {{"patch_1_spin_ratio", 1.0},
@@ -89,8 +89,8 @@ std::span<const ComplicationLine> of_motion() {
   return kLines;
 }
 
-// a rail that is nowhere is stated beyond any reading of a tumble, so that no method looks for it, and within what
-// methods take for a range
+// A disabled saturation limit is set beyond any reading of a tumble, so that methods ignore it, but within what methods
+// accept as a range.
 constexpr double kBeyondRates_rad_s = 100.0, kBeyondForces_m_s2 = 1000.0;
 
 std::span<const ComplicationLine> of_imu() {
@@ -104,7 +104,7 @@ std::span<const ComplicationLine> of_imu() {
         {"accel_element_misalignment"},
         {"accel_element_scale"},
         {"accel_element_offset_m_s2"}}},
-      {"odd rails",
+      {"unequal rails",
        {{"gyro_plateau_axis_spread_rad_s"},
         {"gyro_plateau_event_spread_rad_s"},
         {"gyro_wrap"},
@@ -131,7 +131,7 @@ std::span<const ComplicationLine> of_imu() {
        {{"gyro_scale_error"}, {"gyro_misalignment_rad"}, {"accel_scale_error"}, {"accel_misalignment_rad"}}},
       {"g-sensitivity", {{"gyro_g_sensitivity_s_m"}, {"gyro_g_sensitivity_spread_s_m"}}},
       {"low-pass", {{"gyro_bandwidth_hz"}, {"accel_bandwidth_hz"}, {"digital_bandwidth_hz"}}},
-      {"window, hold and quantum",
+      {"averaging window, sample and hold, quantisation",
        {{"gyro_window_s"},
         {"accel_window_s"},
         {"gyro_update_hz"},
@@ -142,7 +142,7 @@ std::span<const ComplicationLine> of_imu() {
         {"accel_precise_quantum_m_s2"},
         {"gyro_handover_rad_s"},
         {"accel_handover_m_s2"}}},
-      {"delay and clock", {{"gyro_delay_s"}, {"accel_delay_s"}, {"time_offset_s"}, {"time_jitter_s"}}},
+      {"delay and clock error", {{"gyro_delay_s"}, {"accel_delay_s"}, {"time_offset_s"}, {"time_jitter_s"}}},
       {"dropouts", {{"dropout_share"}}, Sort::size},
       {"magnetic errors",
        {{"mag_noise_t"},
@@ -157,25 +157,25 @@ std::span<const ComplicationLine> of_imu() {
 
 std::span<const ComplicationLine> of_lidar() {
   static const std::vector<ComplicationLine> kLines = {
-      {"noise of ranges", {{"range_noise_m"}}, Sort::size},
+      {"range noise", {{"range_noise_m"}}, Sort::size},
       {"quanta", {{"range_quantum_m"}, {"intensity_quantum"}}},
       {"lost returns", {{"detection_range_m"}, {"dropout_share"}}},
-      {"width of the beams", {{"beam_rays", 1.0}}},
-      {"sight of its own cage", {{"sees_own_cage"}}},
-      {"faulty stamps", {{"driver_stamp_fault"}}},
+      {"beam width", {{"beam_rays", 1.0}}},
+      {"returns from its own cage", {{"sees_own_cage"}}},
+      {"faulty time stamps", {{"driver_stamp_fault"}}},
   };
   return kLines;
 }
 
 std::span<const ComplicationLine> of_mounting() {
   static const std::vector<ComplicationLine> kLines = {
-      {"errors of its mounting", {{"x_m"}, {"y_m"}, {"z_m"}, {"roll_rad"}, {"pitch_rad"}, {"yaw_rad"}}}};
+      {"mounting errors", {{"x_m"}, {"y_m"}, {"z_m"}, {"roll_rad"}, {"pitch_rad"}, {"yaw_rad"}}}};
   return kLines;
 }
 
 using Numbers = std::map<std::string, Distribution>;
 
-/// The lines that `numbers`, which stand at `place`, are not ideal in.
+/// Adds the lines in which `numbers`, located at `place`, are not ideal.
 void add(const std::string& part, const std::string& place, std::span<const ComplicationLine> lines,
          const Numbers& numbers, std::vector<Complication>& out) {
   for (const ComplicationLine& line : lines) {
@@ -193,7 +193,7 @@ void add(const std::string& part, const std::string& place, std::span<const Comp
   }
 }
 
-/// All errors of a sensor as one: of one that few methods read.
+/// Joins all errors of a sensor that few methods use.
 Complication joined(const std::string& name, const std::vector<Complication>& parts) {
   Complication whole{name, {}, {}, false};
   for (const Complication& part : parts)
@@ -215,7 +215,7 @@ std::vector<Complication> complications(const Scenario& scenario) {
     std::vector<Complication> own;
     add(place, place, is_imu ? of_imu() : of_lidar(), sensor.numbers, own);
     add(place, place + ".mount_error", of_mounting(), sensor.mount_error, own);
-    if (is_imu && !primary && !own.empty()) own = {joined(place + ": all of its errors", own)};
+    if (is_imu && !primary && !own.empty()) own = {joined(place + ": all errors of this sensor", own)};
     out.insert(out.end(), own.begin(), own.end());
     primary = primary && !is_imu;
   }

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "scenarios/cases/hold_case.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <sstream>
@@ -18,13 +20,13 @@ std::string four_digits(double value) {
   return text.str();
 }
 
-/// A finite number of the metric; none, where there is not.
+/// Returns a finite value of the metric; empty otherwise.
 std::optional<double> finite_value_of(const Outcome& outcome, const std::string& metric) {
   const double value = value_of(outcome.scores, metric);
   return std::isfinite(value) ? std::optional(value) : std::nullopt;
 }
 
-/// What a reader wants to know of a shrunk draw, in a line.
+/// Describes a shrunk draw in one line.
 std::string doc_of(const Shrunk& shrunk, const std::string& method, const std::string& scenario, std::uint64_t seed) {
   std::string needed;
   std::size_t not_tried = 0;
@@ -35,9 +37,10 @@ std::string doc_of(const Shrunk& shrunk, const std::string& method, const std::s
     else
       needed += (needed.empty() ? "" : ", ") + line.what;
   }
-  std::string doc = method + ", " + shrunk.failure + ", on draw " + std::to_string(seed) + " of " + scenario +
-                    " made simpler; it needs " + (needed.empty() ? "nothing that could be taken away alone" : needed);
-  if (not_tried > 0) doc += "; " + std::to_string(not_tried) + " more were not tried";
+  std::string doc =
+      fmt::format("{}, {}, on draw {} of {} in simplified form; it still needs {}", method, shrunk.failure, seed,
+                  scenario, needed.empty() ? "no part that can be removed alone" : needed);
+  if (not_tried > 0) doc += "; " + std::to_string(not_tried) + " more parts were not tried";
   return doc + ".";
 }
 
@@ -80,20 +83,22 @@ CaseResult hold_case(const std::string& name, const Expectation& expected, const
   }
   const auto is_better = [&](const std::string& what) {
     result.better = true;
-    result.fault = what + ": '--accept' holds it from now on";
+    result.fault = what + ": run again with '--accept' to store the new result";
   };
   if (!result.fails) {
     is_better("cured: " + how_it_fails(result));
   } else if (to_string(outcome.status) != expected.status) {
-    result.fault = std::string("fails by ") + to_string(outcome.status) + ", was " + expected.status;
+    result.fault =
+        fmt::format("fails with status {}; the accepted status was {}", to_string(outcome.status), expected.status);
   } else if (expected.value.has_value() != result.value.has_value()) {
     result.fault =
-        expected.metric + (result.value ? " has a value now: " + four_digits(*result.value) : " has no value now");
+        expected.metric + (result.value ? " now has a value: " + four_digits(*result.value) : " no longer has a value");
   } else if (result.value) {
     const MetricInfo& info = metric_info(expected.metric);
     const double was = *expected.value, is = *result.value;
     const bool within = std::abs(is) <= kCaseFactor * std::abs(was) && std::abs(was) <= kCaseFactor * std::abs(is);
-    const std::string what = expected.metric + " is " + four_digits(is) + ", was " + four_digits(was);
+    const std::string what =
+        fmt::format("{} is {}; the accepted value was {}", expected.metric, four_digits(is), four_digits(was));
     if (!within && tumble::scenarios::is_better(info, is, was)) is_better("better: " + what);
     if (!within && !result.better) result.fault = what;
   }
@@ -109,19 +114,20 @@ Expectation accepted(const Expectation& expected, const Outcome& outcome) {
 }
 
 void require_known(const Scenario& scenario) {
-  if (!scenario.named_case) throw BadInput(scenario.file + ": key 'case' is missing");
+  if (!scenario.named_case) throw BadInput(scenario.file + ": key 'case' is missing; a named case needs it");
   for (const Expectation& expected : scenario.named_case->expected) {
     const std::string place = scenario.file + ": expect: ";
     const std::vector<MethodPointer> found = find_methods(expected.method);
     if (found.size() != 1)
-      throw BadInput(place + "'" + expected.method + "' names several methods; say which, as 'slam/NAME'");
-    if (!outcome_status_named(expected.status)) throw BadInput(place + "no status is called '" + expected.status + "'");
+      throw BadInput(place + "'" + expected.method + "' matches several methods; name one, for example 'slam/NAME'");
+    if (!outcome_status_named(expected.status)) throw BadInput(place + "unknown status '" + expected.status + "'");
     const auto known = metrics();
     const auto is_it = [&](const Metric& metric) {
       return metric.info.name == expected.metric && metric.kind == found.front()->info.kind;
     };
     if (!expected.metric.empty() && std::none_of(known.begin(), known.end(), is_it))
-      throw BadInput(place + "'" + expected.metric + "' is no metric of kind " + to_string(found.front()->info.kind));
+      throw BadInput(place + "'" + expected.metric + "' is not a metric of kind " +
+                     to_string(found.front()->info.kind));
   }
 }
 

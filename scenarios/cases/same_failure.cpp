@@ -12,7 +12,7 @@ namespace tumble::scenarios {
 
 namespace {
 
-/// Beyond a limit of a metric; NaN is not.
+/// Returns true if a metric exceeds a limit; false for NaN.
 bool is_beyond(const Outcome& outcome, const std::string& metric, double limit) {
   const double value = value_of(outcome.scores, metric);
   if (std::isnan(value)) return false;
@@ -23,7 +23,7 @@ bool is_beyond(const Outcome& outcome, const std::string& metric, double limit) 
 
 SameFailure::SameFailure(const Failure& failure, const Outcome& outcome) : status_(outcome.status) {
   if (status_ == OutcomeStatus::killed)
-    throw BadInput("the machine ended the run, which says nothing of the method: " + outcome.message);
+    throw BadInput("the machine ended the run, so the run gives no result for the method: " + outcome.message);
   if (status_ != OutcomeStatus::ok) return;
   if (!failure.metric.empty() && is_beyond(outcome, failure.metric, failure.limit)) {
     metric_ = failure.metric;
@@ -38,14 +38,14 @@ SameFailure::SameFailure(const Failure& failure, const Outcome& outcome) : statu
     return;
   }
   std::ostringstream text;
-  text << "the run does not fail: its status is ok, no verdict is against it";
+  text << "the run does not fail: its status is ok, and no metric fails";
   if (!failure.metric.empty()) {
     const Score* const score = find_score(outcome.scores, failure.metric);
     text << ", " << failure.metric << " is ";
     if (score != nullptr) {
-      text << score->value << ", not worse than " << failure.limit;
+      text << score->value << "; it is not worse than " << failure.limit;
     } else {
-      text << "not there";
+      text << "missing";
     }
   }
   throw BadInput(text.str());

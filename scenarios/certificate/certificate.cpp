@@ -16,7 +16,7 @@ namespace tumble::scenarios {
 
 namespace {
 
-/// A row with the certificate's own set-up.
+/// A row with the certificate's default setup.
 template <auto kMeasure>
 std::vector<CertificateEntry> as_certified(const CertificateInput& input) {
   return kMeasure(input, {});
@@ -31,7 +31,7 @@ std::vector<CertificateEntry> measure_row(const CertificateRow& row, const Certi
     throw;
   } catch (const sim::InvalidSituation&) {
     throw;
-  } catch (const std::exception& error) {  // a simulation that fails is what a certificate is to find out
+  } catch (const std::exception& error) {  // a failing simulation is a valid result
     reason = error.what();
   }
   return {{row.name, "", row.doc, "1", std::nan(""), 0.0, 0.0, reason}};
@@ -46,7 +46,7 @@ std::vector<const CertificateRow*> select(const std::vector<std::string>& names)
   }
   for (const std::string& name : names) {
     if (std::find(known.begin(), known.end(), name) == known.end()) {
-      throw BadInput("unknown row '" + name + "' of the certificate" + suggestion(name, known));
+      throw BadInput("the certificate has no row '" + name + "'" + suggestion(name, known));
     }
   }
   return selected;
@@ -56,24 +56,28 @@ std::vector<const CertificateRow*> select(const std::vector<std::string>& names)
 
 std::span<const CertificateRow> certificate_rows() {
   static const std::array kRows = {
-      CertificateRow{"free_flight", "energy and angular momentum of a free flight", as_certified<certify_free_flight>},
+      CertificateRow{"free_flight", "energy and angular momentum in free flight", as_certified<certify_free_flight>},
       CertificateRow{"flight_force", "specific force at the centre of mass in flight",
                      as_certified<certify_flight_force>},
-      CertificateRow{"free_fall", "time of a free fall", as_certified<certify_free_fall>},
-      CertificateRow{"rolling", "rolling law on the plane and on each ground", as_certified<certify_rolling>},
-      CertificateRow{"slip_to_grip", "time from slip to grip", as_certified<certify_slip_to_grip>},
-      CertificateRow{"impact", "sensitivity of impact peaks to step and softness", as_certified<certify_impact>},
-      CertificateRow{"lidar_range", "range error against analytic surfaces", as_certified<certify_lidar_range>},
-      CertificateRow{"lidar_rays", "range error against mj_ray", as_certified<certify_lidar_rays>},
+      CertificateRow{"free_fall", "duration of a free fall", as_certified<certify_free_fall>},
+      CertificateRow{"rolling", "rolling constraint on the plane and on each ground", as_certified<certify_rolling>},
+      CertificateRow{"slip_to_grip", "time from slip to grip of a sliding sphere", as_certified<certify_slip_to_grip>},
+      CertificateRow{"impact", "sensitivity of impact peaks to the time step and the contact stiffness",
+                     as_certified<certify_impact>},
+      CertificateRow{"lidar_range", "lidar range error against analytic surfaces", as_certified<certify_lidar_range>},
+      CertificateRow{"lidar_rays", "lidar range error against MuJoCo's mj_ray", as_certified<certify_lidar_rays>},
       CertificateRow{"imu_noise", "noise of the IMUs at rest against their data sheets",
                      as_certified<certify_imu_noise>},
-      CertificateRow{"tilted_rail", "planes of the clipped readings of tilted sensing elements against the drawn ones",
+      CertificateRow{"tilted_rail",
+                     "planes of the clipped readings of tilted sensing elements against the drawn planes",
                      as_certified<certify_tilted_rail>},
-      CertificateRow{"real_rails", "planes measured at the rails of real gyros, of simulated devices and as drawn",
+      CertificateRow{"real_rails",
+                     "rail planes of real gyros against those of simulated devices and their distribution",
                      as_certified<certify_real_rails>},
       CertificateRow{"pendulum", "energy, periods and specific force of the pendulum against Lagrange's equations",
                      as_certified<certify_pendulum>},
-      CertificateRow{"digests", "equal digests for threads, order and restart", as_certified<certify_digests>},
+      CertificateRow{"digests", "equal digests for all numbers of threads, orders of draws and restarts",
+                     as_certified<certify_digests>},
   };
   return kRows;
 }

@@ -21,7 +21,7 @@ std::string digest_of(const CertificateInput& input, const sim::Situation& situa
   return digest(recording.sensors, &recording.truth);
 }
 
-/// What a program started anew says of the same draw; throws std::runtime_error with what went wrong.
+/// Returns the digest of the same draw from a new process; throws std::runtime_error with the reason on failure.
 std::string digest_after_restart(const CertificateInput& input, const std::string& scenario, std::uint64_t seed) {
   const std::filesystem::path file =
       std::filesystem::temp_directory_path() / ("tumble_certify_" + std::to_string(getpid()) + ".h5");
@@ -66,12 +66,13 @@ std::vector<CertificateEntry> certify_digests(const CertificateInput& input, con
   int order = digest_of(input, second_again, 1) != second_forward ? 1 : 0;
   order += digest_of(input, first_again, 1) != first_forward ? 1 : 0;
   std::vector<CertificateEntry> entries = {
-      entry("digest_threads", setup.scenario, "2 and 4 threads give the bits of 1: digests that differ", threads),
+      entry("digest_threads", setup.scenario,
+            "runs with 2 and 4 threads give the same bits as with 1: number of different digests", threads),
       entry("digest_order", setup.scenario + ", " + setup.other_scenario,
-            "draws simulated in reverse order give the same bits: digests that differ", order)};
+            "draws simulated in reverse order give the same bits: number of different digests", order)};
 
   CertificateEntry restart = entry("digest_restart", setup.other_scenario,
-                                   "the program started anew gives the same bits: digests that differ", 0);
+                                   "a restarted program gives the same bits: number of different digests", 0);
   try {
     const sim::Situation whole = draw(input.data, load_scenario(input.data, setup.other_scenario), setup.seed);
     const std::string again = digest_after_restart(input, setup.other_scenario, setup.restart_seed);

@@ -11,7 +11,7 @@ namespace tumble::scenarios {
 
 namespace {
 
-constexpr double kWindow_s = 0.002;  // about the bandwidth of the devices
+constexpr double kWindow_s = 0.002;  // approximately the bandwidth of the devices
 constexpr double kAfterTouch_s = 0.06;
 
 /// Attitudes in which the cage lands on a corner, on an edge and askew.
@@ -25,7 +25,8 @@ const std::array<Eigen::Quaterniond, 4>& attitudes() {
   return kAll;
 }
 
-/// Largest mean specific force at the centre of mass over a window, from the drop to shortly after the first contact.
+/// Returns the largest window-mean specific force at the centre of mass, from the drop to shortly after the first
+/// contact.
 double peak_m_s2(const CertificateInput& input, const Eigen::Quaterniond& attitude, double height_m, double step_s,
                  double contact_time_s) {
   sim::Situation situation = bare_room("rig");
@@ -70,11 +71,12 @@ std::vector<CertificateEntry> certify_impact(const CertificateInput& input, cons
     exponent += std::log(soft / hard) / std::log(setup.soft_s / setup.hard_s) / attitudes().size();
   }
   return {{"impact_peak_step", "rig",
-           "the first impact's peak does not depend on the engine's step: largest relative change at a quarter of it",
+           "the peak of the first impact does not depend on the time step: largest relative change at a quarter of the "
+           "step",
            "1", step_change, 0.0, 0.05, ""},
           {"impact_peak_softness", "rig",
-           "the peak goes with the time constant of the contact to the power -1, as a spring's: exponent, mean of four "
-           "landings",
+           "the impact peak is proportional to the contact's time constant to the power -1, as for a spring: exponent, "
+           "mean of four landings",
            "1", exponent, -1.3, -0.7, ""}};
 }
 

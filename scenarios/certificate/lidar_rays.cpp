@@ -10,7 +10,7 @@ namespace tumble::scenarios {
 
 namespace {
 
-/// A scenario for each type of world: the one that is called like it, or the first.
+/// Returns a scenario for each type of world: the one with the same name, or the first.
 std::map<std::string, std::string> scenario_of_each_world(const DataRoot& data) {
   std::map<std::string, std::string> chosen;
   for (const std::string& name : scenario_names(data)) {
@@ -24,16 +24,17 @@ std::map<std::string, std::string> scenario_of_each_world(const DataRoot& data) 
 }  // namespace
 
 std::vector<CertificateEntry> certify_lidar_rays(const CertificateInput& input, const LidarRaysSetup& setup) {
-  // a ray that grazes an edge may fall on either side of it
+  // a ray that grazes an edge may hit either side
   constexpr double kOtherSurface = 1e-3;
   std::vector<CertificateEntry> entries;
   for (const auto& [world, name] : scenario_of_each_world(input.data)) {
     const Scenario scenario = load_scenario(input.data, name);
     const sim::BuiltSituation built(draw(input.data, scenario, 1), input.data.models());
     const sim::RayDisagreement d = sim::compare_rays(built, {setup.rays, 1, setup.mirror_shift_m, setup.surface_shift});
-    entries.push_back({"lidar_range_engine", name, "the lidar's rays are as long as mj_ray's: largest difference", "m",
-                       d.largest_difference_m, 0.0, 1e-3, d.hits > 0 ? "" : "no ray hit anything"});
-    entries.push_back({"lidar_surface_engine", name, "and name a surface that is there: share of rays that do not", "1",
+    entries.push_back({"lidar_range_engine", name, "lidar ranges equal those of mj_ray: largest difference", "m",
+                       d.largest_difference_m, 0.0, 1e-3, d.hits > 0 ? "" : "no ray hit a surface"});
+    entries.push_back({"lidar_surface_engine", name,
+                       "each lidar return names an existing surface: share of rays that do not", "1",
                        static_cast<double>(d.other_surface) / static_cast<double>(d.rays), 0.0, kOtherSurface, ""});
   }
   return entries;

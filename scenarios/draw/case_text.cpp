@@ -28,7 +28,7 @@ Expectation expectation_from(const YamlNode& node) {
   if (fields.contains("metric")) out.metric = fields.at("metric").text();
   const auto number = [&](const std::string& key, std::optional<double>& value) {
     if (!fields.contains(key)) return;
-    if (out.metric.empty()) fields.at(key).fail("needs 'metric': whose it is");
+    if (out.metric.empty()) fields.at(key).fail("needs key 'metric', which names the metric of this value");
     value = fields.at(key).number();
   };
   number("worse_than", out.worse_than);
@@ -64,11 +64,11 @@ NamedCase case_from_yaml(const YamlNode& node) {
     Expectation expected = expectation_from(item);
     const auto same = [&](const Expectation& other) { return other.method == expected.method; };
     if (std::any_of(out.expected.begin(), out.expected.end(), same)) {
-      item.fail("method '" + expected.method + "' stands twice");
+      item.fail("method '" + expected.method + "' occurs twice");
     }
     out.expected.push_back(std::move(expected));
   }
-  if (out.expected.empty()) fields.at("expect").fail("expects nothing");
+  if (out.expected.empty()) fields.at("expect").fail("must name at least one expected result");
   return out;
 }
 

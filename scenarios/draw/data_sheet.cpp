@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "scenarios/draw/data_sheet.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 
 #include "scenarios/draw/registry.hpp"
@@ -13,13 +15,14 @@ namespace tumble::scenarios {
 
 namespace {
 
-/// A number that was forgotten would be simulated as its default, whatever the device has.
+/// A missing number would silently be simulated with its default.
 void require_every_number(const DataSheet& sheet, const std::string& file, const Registry& registry) {
   for (const sim::Parameter& parameter : find_type(registry.sensors, sheet.sensor_kind)->parameters) {
     const auto is_it = [&](const DataSheet::Entry& entry) { return entry.name == parameter.name; };
     if (std::none_of(sheet.entries.begin(), sheet.entries.end(), is_it)) {
-      throw BadInput(file + ": '" + std::string(parameter.name) + "' is missing; a sheet has every number of kind '" +
-                     sheet.sensor_kind + "' (" + std::string(parameter.doc) + ")");
+      throw BadInput(file + ": '" + std::string(parameter.name) +
+                     "' is missing; a data sheet needs every number of kind '" + sheet.sensor_kind + "' (" +
+                     std::string(parameter.doc) + ")");
     }
   }
 }
@@ -35,7 +38,8 @@ DataSheet load_data_sheet(const DataRoot& data, const std::string& device) {
   const Registry registry = Registry::of_simulation();
   DataSheet sheet = parse_data_sheet(read_text_file(path), path.string(), registry);
   if (sheet.device != device) {
-    throw BadInput(path.string() + ": device is '" + sheet.device + "', must be the file's, '" + device + "'");
+    throw BadInput(
+        fmt::format("{}: device is '{}'; it must be the name of the file, '{}'", path.string(), sheet.device, device));
   }
   require_every_number(sheet, path.string(), registry);
   return sheet;

@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include <fmt/format.h>
+
 #include <array>
 #include <sstream>
 
@@ -14,7 +16,7 @@ DataSheet::Entry parse_entry(const std::string& name, const YamlNode& node, cons
   const auto fields = node.fields(kKeys);
   DataSheet::Entry entry{name, fields.at("value").number(), fields.at("unit").text(), fields.at("source").text()};
   if (entry.unit != parameter.unit) {
-    fields.at("unit").fail("is '" + entry.unit + "', must be '" + std::string(parameter.unit) + "'");
+    fields.at("unit").fail(fmt::format("is '{}', must be '{}'", entry.unit, parameter.unit));
   }
   if (!(entry.value >= parameter.low && entry.value <= parameter.high)) {
     std::ostringstream text;
@@ -48,8 +50,8 @@ DataSheet parse_data_sheet(const std::string& text, const std::string& file, con
   for (const auto& [name, node] : fields.at("values").entries()) {
     const sim::Parameter* const parameter = find_parameter(type->parameters, name);
     if (parameter == nullptr) {
-      node.fail("unknown key '" + name + "' of kind '" + type->name + "'" +
-                suggestion(name, names_of(type->parameters)));
+      node.fail(fmt::format("unknown key '{}' for kind '{}'{}", name, type->name,
+                            suggestion(name, names_of(type->parameters))));
     }
     sheet.entries.push_back(parse_entry(name, node, *parameter));
   }

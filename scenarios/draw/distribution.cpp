@@ -14,7 +14,7 @@ namespace {
 
 using Shape = Distribution::Shape;
 
-/// Least share of a normal distribution that a truncation may keep.
+/// Smallest fraction of a normal distribution that a truncation may keep.
 constexpr double kLeastKept = 0.01;
 
 double normal_below(double x) {
@@ -25,14 +25,14 @@ std::string count_problem(const Distribution& d) {
   const std::size_t n = d.numbers.size();
   switch (d.shape) {
     case Shape::constant:
-      return n == 1 ? "" : "needs one number";
+      return n == 1 ? "" : "needs exactly one number";
     case Shape::uniform:
     case Shape::log_uniform:
       return n == 2 ? "" : std::string(to_string(d.shape)) + " needs [low, high]";
     case Shape::normal:
       return n == 2 || n == 4 ? "" : "normal needs [mean, sigma] or [mean, sigma, low, high]";
     case Shape::choice:
-      return n >= 1 ? "" : "choice is empty";
+      return n >= 1 ? "" : "choice needs at least one value";
   }
   return "unknown shape";
 }
@@ -63,12 +63,13 @@ std::string normal_problem(const std::vector<double>& numbers) {
 
 double draw_normal(const std::vector<double>& numbers, sim::Stream& stream) {
   if (numbers.size() == 2) return numbers[0] + numbers[1] * stream.normal();
-  // find_problem has made sure that at least 1 % is kept: 10000 misses have a chance of 1e-43
+  // find_problem ensures that at least 1 % is kept: the probability of 10000 rejections is 1e-43.
   for (int attempt = 0; attempt < 10000; ++attempt) {
     const double value = numbers[0] + numbers[1] * stream.normal();
     if (value >= numbers[2] && value <= numbers[3]) return value;
   }
-  throw BadInput("truncated normal distribution was missed 10000 times");
+  throw BadInput(
+      "no sample of the truncated normal distribution was within its limits in 10000 tries; widen [low, high]");
 }
 
 }  // namespace
@@ -92,7 +93,7 @@ const char* to_string(Distribution::Shape shape) {
 std::string find_problem(const Distribution& d) {
   if (const std::string problem = count_problem(d); !problem.empty()) return problem;
   if (!std::all_of(d.numbers.begin(), d.numbers.end(), [](double x) { return std::isfinite(x); })) {
-    return "a number is not finite";
+    return "contains a number that is not finite";
   }
   switch (d.shape) {
     case Shape::uniform:
@@ -100,7 +101,7 @@ std::string find_problem(const Distribution& d) {
     case Shape::normal:
       return normal_problem(d.numbers);
     case Shape::log_uniform: {
-      if (std::min(d.numbers[0], d.numbers[1]) <= 0.0) return "log_uniform needs numbers above 0";
+      if (std::min(d.numbers[0], d.numbers[1]) <= 0.0) return "log_uniform needs numbers greater than 0";
       return range_problem(d.numbers[0], d.numbers[1]);
     }
     case Shape::constant:
@@ -126,7 +127,7 @@ double draw_number(const Distribution& d, std::uint64_t seed, std::string_view p
       return std::clamp(stream.uniform(d.numbers[0], d.numbers[1]), d.numbers[0], d.numbers[1]);
     case Shape::log_uniform: {
       const double value = std::exp(stream.uniform(std::log(d.numbers[0]), std::log(d.numbers[1])));
-      return std::clamp(value, d.numbers[0], d.numbers[1]);  // exp(log(x)) may round past x
+      return std::clamp(value, d.numbers[0], d.numbers[1]);  // exp(log(x)) may round beyond x
     }
     case Shape::normal:
       return draw_normal(d.numbers, stream);

@@ -1,5 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "scenarios/draw/scenario_text.hpp"
+
+#include <fmt/format.h>
+
 #include "scenarios/errors.hpp"
 
 namespace tumble::scenarios {
@@ -18,7 +21,7 @@ sim::Component draw_part(const Scenario::Part& part, std::uint64_t seed, const s
 }
 
 sim::SensorSpec draw_sensor(const Scenario::Sensor& sensor, const DataSheet& sheet, std::uint64_t seed) {
-  // by name, not by rank: a sensor put in front leaves the draws of the others alone
+  // The stream is named after the sensor, not its index: inserting a sensor does not change the draws of the others.
   const std::string place = "sensors." + sensor.name;
   sim::SensorSpec out{sensor.name, sensor.kind, sensor.device, sensor.site, sheet.values(), {}};
   draw_numbers(sensor.numbers, seed, place, out.values);
@@ -39,8 +42,9 @@ sim::Situation draw_given(const Scenario& scenario, std::span<const DataSheet> s
   for (std::size_t i = 0; i < scenario.sensors.size(); ++i) {
     const Scenario::Sensor& sensor = scenario.sensors[i];
     if (sheets[i].sensor_kind != sensor.kind) {
-      throw BadInput(scenario.file + ":" + std::to_string(sensor.line) + ": sensors." + sensor.name + ": device '" +
-                     sensor.device + "' is of kind '" + sheets[i].sensor_kind + "', not '" + sensor.kind + "'");
+      throw BadInput(fmt::format("{}:{}: sensors.{}: device '{}' is of kind '{}'; it must be of kind '{}'",
+                                 scenario.file, sensor.line, sensor.name, sensor.device, sheets[i].sensor_kind,
+                                 sensor.kind));
     }
     out.sensors.push_back(draw_sensor(sensor, sheets[i], seed));
   }

@@ -41,7 +41,7 @@ void fix(const Scenario& scenario, const std::string& key, const std::string& na
   fix(scenario, key, name, value, find_type(types, part.type)->parameters, part.numbers);
 }
 
-/// `rest` is what follows "sensors.": "imu.output_rate_hz".
+/// `rest` is the key after "sensors.": "imu.output_rate_hz".
 void fix_of_sensor(Scenario& scenario, const std::string& key, const std::string& rest, double value,
                    const Registry& registry) {
   const std::size_t dot = rest.find('.');
@@ -50,7 +50,8 @@ void fix_of_sensor(Scenario& scenario, const std::string& key, const std::string
   for (const Scenario::Sensor& sensor : scenario.sensors) names.push_back(sensor.name);
   const auto at = std::find(names.begin(), names.end(), name);
   if (at == names.end()) fail(scenario, key, "unknown sensor '" + name + "'" + suggestion(name, names));
-  if (dot == std::string::npos) fail(scenario, key, "names no number of the sensor");
+  if (dot == std::string::npos)
+    fail(scenario, key, "does not name a number of the sensor, as in 'sensors.NAME.NUMBER'");
   Scenario::Sensor& sensor = scenario.sensors[static_cast<std::size_t>(at - names.begin())];
   const std::string number = rest.substr(dot + 1);
   const std::string mount = "mount_error.";
@@ -79,7 +80,7 @@ void fix_number(Scenario& scenario, const std::string& key, double value) {
   } else if (place == "sensors") {
     fix_of_sensor(scenario, key, rest, value, registry);
   } else {
-    fail(scenario, key, "no number stands at '" + place + "'" + suggestion(place, kPlaces));
+    fail(scenario, key, "no number has the key '" + place + "'" + suggestion(place, kPlaces));
   }
 }
 

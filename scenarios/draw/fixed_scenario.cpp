@@ -57,7 +57,9 @@ Scenario fixed_as(Scenario scenario, const sim::Situation& situation) {
 
 std::string to_yaml(const Scenario& scenario) {
   const std::vector<DrawnNumber> drawn = drawn_numbers(scenario);
-  if (!drawn.empty()) throw BadInput("scenario " + scenario.name + ": " + drawn.front().place + " is drawn, not fixed");
+  if (!drawn.empty())
+    throw BadInput("scenario " + scenario.name + ": " + drawn.front().place +
+                   " is drawn from a distribution; it must be a fixed number");
   std::string out = "# SPDX-License-Identifier: BSD-3-Clause\nname: " + yaml_word(scenario.name) +
                     "\ndoc: " + yaml_word(scenario.doc) + "\n";
   if (scenario.named_case) out += to_yaml(*scenario.named_case);

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "scenarios/draw/scenario.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 
 #include "scenarios/draw/scenario_text.hpp"
@@ -15,14 +17,14 @@ std::vector<std::string> scenario_names(const DataRoot& data) {
 }
 
 std::vector<std::string> case_names(const DataRoot& data) {
-  // who has kept none has no folder of them
+  // The folder of named cases is optional.
   return std::filesystem::is_directory(data.regressions()) ? yaml_stems(data.regressions())
                                                            : std::vector<std::string>{};
 }
 
 namespace {
 
-/// Of the catalogue; an unknown name is told from the cases' too.
+/// Finds a scenario of the catalogue. An error message also suggests names of cases.
 std::filesystem::path find_scenario(const DataRoot& data, std::span<const std::string> cases, const std::string& name) {
   std::vector<std::string> known = scenario_names(data);
   if (std::binary_search(known.begin(), known.end(), name)) return data.catalogue() / (name + ".yaml");
@@ -38,13 +40,14 @@ Scenario load_scenario(const DataRoot& data, const std::string& name) {
   const std::vector<std::string> cases = case_names(data);
   const bool is_case = std::binary_search(cases.begin(), cases.end(), name);
   if (is_case && std::filesystem::exists(data.catalogue() / (name + ".yaml")))
-    throw BadInput("'" + name + "' is a scenario and a named case; call one of them otherwise");
+    throw BadInput("'" + name + "' names both a scenario and a named case; rename one of them");
   const std::filesystem::path path = is_case ? data.regressions() / (name + ".yaml") : find_scenario(data, cases, name);
   Scenario scenario = parse_scenario(read_text_file(path), path.string(), registry);
   if (scenario.name != name) {
-    throw BadInput(path.string() + ": name is '" + scenario.name + "', must be the file's, '" + name + "'");
+    throw BadInput(
+        fmt::format("{}: name is '{}'; it must be the name of the file, '{}'", path.string(), scenario.name, name));
   }
-  if (is_case && !scenario.named_case) throw BadInput(path.string() + ": key 'case' is missing");
+  if (is_case && !scenario.named_case) throw BadInput(path.string() + ": key 'case' is missing; a named case needs it");
   return scenario;
 }
 

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "scenarios/draw/scenario_text.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <array>
 #include <sstream>
@@ -17,7 +19,7 @@ using Shape = Distribution::Shape;
 using Numbers = std::map<std::string, Distribution>;
 
 constexpr double kLongestDuration_s = 3600.0;
-constexpr sim::Parameter kDuration{"duration_s", 10.0, 0.01, kLongestDuration_s, "s", "length of the situation"};
+constexpr sim::Parameter kDuration{"duration_s", 10.0, 0.01, kLongestDuration_s, "s", "duration of the scenario"};
 
 Distribution parse_distribution(const YamlNode& node) {
   static const std::array<std::string, 4> kShapes = {"uniform", "normal", "log_uniform", "choice"};
@@ -53,7 +55,7 @@ Distribution parse_checked(const YamlNode& node, const sim::Parameter& parameter
   return out;
 }
 
-/// Numbers by name out of a map's entries; keys in `other` are not numbers and are passed over.
+/// Parses the numbers of a map by name; skips the keys in `other`.
 Numbers parse_numbers(const YamlNode& map, std::span<const std::string> other, std::span<const sim::Parameter> known) {
   Numbers out;
   for (const auto& [name, value] : map.entries()) {
@@ -95,7 +97,7 @@ Scenario::Sensor parse_sensor(const YamlNode& node, const Registry& registry) {
   static const std::array<std::string, 5> kOther = {"name", "kind", "device", "site", "mount_error"};
   const auto entries = node.entries();
   for (const char* required : {"name", "kind", "device", "site"}) {
-    if (find_entry(entries, required) == nullptr) node.fail(std::string("key '") + required + "' is missing");
+    if (find_entry(entries, required) == nullptr) node.fail(fmt::format("key '{}' is missing", required));
   }
   const sim::ComponentType& type = known_type(*find_entry(entries, "kind"), registry.sensors);
   Scenario::Sensor out;
@@ -117,7 +119,7 @@ std::vector<Scenario::Sensor> parse_sensors(const YamlNode& list, const Registry
     Scenario::Sensor sensor = parse_sensor(item, registry);
     for (const Scenario::Sensor& other : out) {
       if (other.name == sensor.name)
-        item.fail("a sensor '" + sensor.name + "' stands already in line " + std::to_string(other.line));
+        item.fail(fmt::format("a sensor '{}' exists already in line {}", sensor.name, other.line));
     }
     out.push_back(std::move(sensor));
   }
@@ -147,7 +149,9 @@ Scenario parse_scenario(const std::string& text, const std::string& file, const 
   if (fields.contains("case")) {
     out.named_case = case_from_yaml(fields.at("case"));
     const std::vector<DrawnNumber> drawn = drawn_numbers(out);
-    if (!drawn.empty()) fields.at("case").fail("a case is one draw, but " + drawn.front().place + " is drawn");
+    if (!drawn.empty())
+      fields.at("case").fail(fmt::format(
+          "a case is a single draw, but {} is drawn from a distribution; give a fixed number", drawn.front().place));
   }
   return out;
 }

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "scenarios/draw/strict_yaml.hpp"
 
+#include <fmt/format.h>
+
 #include <yaml-cpp/eventhandler.h>
 #include <yaml-cpp/parser.h>
 
@@ -22,11 +24,11 @@ namespace tumble::scenarios {
 namespace {
 
 constexpr std::uintmax_t kLargestFile = 4u << 20;
-/// Identifiers name files, whose name has 255 bytes at most, a seed and an ending included.
+/// Identifiers become file names. A file name has at most 255 bytes, including a seed and an extension.
 constexpr std::size_t kIdentifierMax = 100;
 
-/// Counts what the parser finds. Each thing in a text takes a byte at least, empty ones the sign that stands for them:
-/// a parser that finds many more turns in a circle, which it does on some texts that are no YAML, for ever.
+/// Counts parser events. Each event consumes at least one byte of text, so many more events than bytes mean an endless
+/// loop. The parser enters such loops on some invalid texts.
 class Counter : public YAML::EventHandler {
  public:
   Counter(const std::string& text, const std::string& file) : most_(4 * text.size() + 64), file_(file) {}
@@ -49,7 +51,7 @@ class Counter : public YAML::EventHandler {
 
  private:
   void count(const YAML::Mark& mark) {
-    if (++found_ > most_) throw BadInput(file_ + ":" + std::to_string(mark.line + 1) + ": not YAML");
+    if (++found_ > most_) throw BadInput(file_ + ":" + std::to_string(mark.line + 1) + ": not valid YAML");
   }
 
   std::size_t most_, found_ = 0;
@@ -80,7 +82,7 @@ std::string read_text_file(const std::filesystem::path& path) {
   std::ifstream stream = open_regular_file(path);
   std::error_code error;
   if (std::filesystem::file_size(path, error) > kLargestFile || error) {
-    throw BadInput(path.string() + ": larger than 4 MiB");
+    throw BadInput(path.string() + ": the file is larger than 4 MiB");
   }
   std::string text((std::istreambuf_iterator<char>(stream)), std::istreambuf_iterator<char>());
   if (stream.bad()) throw BadInput(path.string() + ": cannot be read");
@@ -90,8 +92,8 @@ std::string read_text_file(const std::filesystem::path& path) {
 std::string suggestion(const std::string& name, std::span<const std::string> known) {
   const std::string near = sim::nearest_name(name, known);
   if (!near.empty()) return "; did you mean '" + near + "'?";
-  if (known.empty()) return "; none is known";
-  std::string text = "; known:";
+  if (known.empty()) return "; no names are known";
+  std::string text = "; known names:";
   for (const std::string& each : known) text += " " + each;
   return text;
 }
@@ -106,7 +108,7 @@ YamlNode YamlNode::parse(const std::string& text, const std::string& file) {
     if (document.IsNull()) throw BadInput(file + ": is empty");
     return YamlNode(document, file, "");
   } catch (const YAML::Exception& error) {
-    throw BadInput(file + ":" + std::to_string(error.mark.line + 1) + ": not YAML: " + error.msg);
+    throw BadInput(file + ":" + std::to_string(error.mark.line + 1) + ": not valid YAML: " + error.msg);
   }
 }
 
@@ -115,7 +117,7 @@ void YamlNode::fail(const std::string& what) const {
 }
 
 std::string YamlNode::any_text() const {
-  if (!node_.IsScalar()) fail(std::string("must be text, is ") + kind_of(node_));
+  if (!node_.IsScalar()) fail(std::string("must be text; it is ") + kind_of(node_));
   return node_.Scalar();
 }
 
@@ -132,7 +134,7 @@ std::string YamlNode::identifier() const {
     fail("'" + name + "' must be a lower-case letter followed by letters, digits and underscores");
   }
   if (name.size() > kIdentifierMax) {
-    fail("has " + std::to_string(name.size()) + " characters, must be at most " + std::to_string(kIdentifierMax));
+    fail(fmt::format("has {} characters, must be at most {}", name.size(), kIdentifierMax));
   }
   return name;
 }
@@ -145,18 +147,18 @@ double YamlNode::number_or_infinity() const {
 }
 
 double YamlNode::parse_number(bool infinity_allowed) const {
-  if (!node_.IsScalar()) fail(std::string("must be a number, is ") + kind_of(node_));
+  if (!node_.IsScalar()) fail(std::string("must be a number; it is ") + kind_of(node_));
   const std::string& written = node_.Scalar();
-  // "!" is the tag that the parser gives to quoted text
-  if (node_.Tag() == "!") fail("must be a number, is the text \"" + written + "\"");
+  // The parser gives the tag "!" to quoted text.
+  if (node_.Tag() == "!") fail("must be a number; it is the text \"" + written + "\"");
   if (infinity_allowed && written == ".inf") return std::numeric_limits<double>::infinity();
   if (infinity_allowed && written == "-.inf") return -std::numeric_limits<double>::infinity();
   double value = 0.0;
   const char* const end = written.data() + written.size();
   const auto [stop, error] = std::from_chars(written.data(), end, value);
-  if (error == std::errc::result_out_of_range) fail("'" + written + "' does not fit a double");
-  if (error != std::errc() || stop != end) fail("must be a number, is '" + written + "'");
-  if (!std::isfinite(value)) fail("must be finite, is '" + written + "'");
+  if (error == std::errc::result_out_of_range) fail("'" + written + "' is too large for a double");
+  if (error != std::errc() || stop != end) fail("must be a number; it is '" + written + "'");
+  if (!std::isfinite(value)) fail("must be finite; it is '" + written + "'");
   return value;
 }
 
@@ -165,12 +167,12 @@ std::uint64_t YamlNode::unsigned_integer() const {
   std::uint64_t value = 0;
   const char* const end = written.data() + written.size();
   const auto [stop, error] = std::from_chars(written.data(), end, value);
-  if (error != std::errc() || stop != end) fail("must be an integer from 0 to 2^64-1, is '" + written + "'");
+  if (error != std::errc() || stop != end) fail("must be an integer from 0 to 2^64-1; it is '" + written + "'");
   return value;
 }
 
 std::vector<YamlNode> YamlNode::items() const {
-  if (!node_.IsSequence()) fail(std::string("must be a list, is ") + kind_of(node_));
+  if (!node_.IsSequence()) fail(std::string("must be a list; it is ") + kind_of(node_));
   std::vector<YamlNode> out;
   for (const YAML::Node& item : node_)
     out.push_back(YamlNode(item, file_, place_ + "[" + std::to_string(out.size()) + "]"));
@@ -178,15 +180,15 @@ std::vector<YamlNode> YamlNode::items() const {
 }
 
 std::vector<std::pair<std::string, YamlNode>> YamlNode::entries() const {
-  if (!node_.IsMap()) fail(std::string("must be a map of keys and values, is ") + kind_of(node_));
+  if (!node_.IsMap()) fail(std::string("must be a map of keys and values; it is ") + kind_of(node_));
   std::vector<std::pair<std::string, YamlNode>> out;
   std::set<std::string> seen;
   for (const auto& entry : node_) {
     const YamlNode key(entry.first, file_, place_);
     const std::string name = key.text();
-    if (!seen.insert(name).second) key.fail("key '" + name + "' is given twice");
+    if (!seen.insert(name).second) key.fail(fmt::format("key '{}' is given twice", name));
     YamlNode value(entry.second, file_, join(place_, name));
-    // a block, an alias (marked where its anchor is) and an empty value (marked nowhere) are looked for at their key
+    // Blocks, aliases and empty values report no usable line of their own; use the line of their key.
     value.line_ = key.line_;
     out.emplace_back(name, std::move(value));
   }
@@ -200,7 +202,7 @@ std::map<std::string, YamlNode> YamlNode::fields(std::span<const std::string> re
   if (!node_.IsMap() && !required.empty()) {
     std::string keys;
     for (const std::string& name : required) keys += (keys.empty() ? "" : ", ") + name;
-    fail("must be a map with the keys " + keys + ", is " + kind_of(node_));
+    fail(fmt::format("must be a map with the keys {}; it is {}", keys, kind_of(node_)));
   }
   std::map<std::string, YamlNode> out;
   for (auto& [name, value] : entries()) {
@@ -210,7 +212,7 @@ std::map<std::string, YamlNode> YamlNode::fields(std::span<const std::string> re
     out.emplace(name, value);
   }
   for (const std::string& name : required) {
-    if (!out.contains(name)) fail("key '" + name + "' is missing");
+    if (!out.contains(name)) fail(fmt::format("key '{}' is missing", name));
   }
   return out;
 }

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "scenarios/exchange/estimate_in_bag.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cctype>
 #include <cstdlib>
@@ -18,7 +20,7 @@ namespace {
 
 constexpr std::int64_t kHole_ns = 200000000;
 
-/// Pose of the estimate's frame in the body.
+/// Returns the mounting of the estimate's frame on the body.
 Eigen::Isometry3d mounting_of(const Estimate& estimate, const sim::Sensors& sensors, const StoredTruth* truth) {
   Eigen::Isometry3d T_BA = Eigen::Isometry3d::Identity();
   switch (estimate.frame) {
@@ -28,28 +30,30 @@ Eigen::Isometry3d mounting_of(const Estimate& estimate, const sim::Sensors& sens
       T_BA.translation() = truth != nullptr ? truth->p_BG_m : estimate.centre_B_m;
       break;
     case Frame::imu:
-      if (sensors.imus.empty()) throw BadInput("its poses are of an IMU, and the recording has none");
+      if (sensors.imus.empty())
+        throw BadInput("the poses of the estimate are those of an IMU, but the recording has no IMU");
       return sensors.imus.front().T_BI;
     case Frame::lidar:
-      if (sensors.lidars.empty()) throw BadInput("its poses are of a lidar, and the recording has none");
+      if (sensors.lidars.empty())
+        throw BadInput("the poses of the estimate are those of a lidar, but the recording has no lidar");
       return sensors.lidars.front().T_BL;
   }
   return T_BA;
 }
 
-/// The move by which the scores lay an estimate onto the truth.
+/// Returns the alignment of an estimate with the truth, as in the scores.
 Alignment alignment_of(const Estimate& estimate, const StoredTruth* truth) {
   if (truth == nullptr) return {};
   for (const PoseState& pose : estimate.poses) {
     const std::size_t before = static_cast<std::size_t>(std::max<std::int64_t>(pose.time_ns, 0) / truth->period_ns);
     if (pose.time_ns < 0 || before >= truth->size()) continue;
-    // the two states around it are enough
+    // the two neighbouring states are sufficient
     const sim::Truth around = truth->states(before, std::min(before + 2, truth->size()));
     const TruthTrack track(around, estimate.frame);
     const std::int64_t after_ns = pose.time_ns % truth->period_ns;
     if (track.covers(after_ns)) return Alignment::at(pose, track.pose(after_ns));
   }
-  throw BadInput("the truth knows the place at none of its poses: another clock?");
+  throw BadInput("the truth has no position at any time of the estimate's poses; check that both use the same clock");
 }
 
 Eigen::Matrix3d cross_matrix(const Eigen::Vector3d& v) {
@@ -58,7 +62,7 @@ Eigen::Matrix3d cross_matrix(const Eigen::Vector3d& v) {
   return out;
 }
 
-/// By the alignment, its covariance too.
+/// Applies the alignment to pose and covariance.
 PoseState moved_by(const Alignment& alignment, const PoseState& pose) {
   PoseState out = alignment.apply(pose);
   Eigen::Matrix<double, 6, 6> turn = Eigen::Matrix<double, 6, 6>::Zero();
@@ -67,7 +71,7 @@ PoseState moved_by(const Alignment& alignment, const PoseState& pose) {
   return out;
 }
 
-/// The body's pose by that of A; an error phi of the attitude moves the body's position by phi x (lever in W).
+/// Converts a pose of A to the body. An attitude error phi moves the body's position by phi x (lever arm in W).
 BagTrack::Pose body_pose(const PoseState& moved, const Eigen::Isometry3d& T_AB) {
   const Eigen::Quaterniond q_WA = moved.q_WA.normalized();
   BagTrack::Pose out;
@@ -80,11 +84,11 @@ BagTrack::Pose body_pose(const PoseState& moved, const Eigen::Isometry3d& T_AB) 
   return out;
 }
 
-/// Where the body is at an instant between poses.
+/// Interpolates the body's pose.
 class BodyAt {
  public:
   explicit BodyAt(const std::vector<BagTrack::Pose>& poses) : poses_(poses) {}
-  /// False where no two poses stand around it.
+  /// Returns false if poses are missing on one side.
   bool operator()(std::int64_t time_ns, Eigen::Isometry3d& T_WB) const {
     const auto after = std::lower_bound(poses_.begin(), poses_.end(), time_ns,
                                         [](const BagTrack::Pose& pose, std::int64_t t) { return pose.time_ns < t; });
@@ -104,7 +108,7 @@ class BodyAt {
   const std::vector<BagTrack::Pose>& poses_;
 };
 
-/// The returns of one sweep where the track puts them. `hit_W_m`: parallel to them, or empty.
+/// Returns the points of one sweep, placed by the track. `hit_W_m`: parallel to them, or empty.
 BagCloud cloud_of(const BagTrack& track, const sim::LidarRecord& sweep, const std::vector<Eigen::Vector3f>& hit_W_m) {
   const BodyAt body_at(track.poses);
   BagCloud cloud;
@@ -119,7 +123,7 @@ BagCloud cloud_of(const BagTrack& track, const sim::LidarRecord& sweep, const st
   return cloud;
 }
 
-/// The clouds of the first lidar, one per sweep, made from what `sensors`, `points` and `truth` hold by then.
+/// Adds clouds of the first lidar, one per sweep, created on demand from `sensors`, `points` and `truth`.
 void add_clouds(const sim::Sensors& sensors, const std::vector<PointStore>* points, const StoredTruth* truth,
                 BagTrack& track) {
   if (sensors.lidars.empty()) return;
@@ -137,14 +141,16 @@ void add_clouds(const sim::Sensors& sensors, const std::vector<PointStore>* poin
   };
 }
 
-/// An estimate says which sensors it was made from.
+/// Checks that the estimate was computed from these sensors.
 void require_own(const std::filesystem::path& path, const std::string& own) {
   const std::string made_from = estimated_sensors(path);
   if (made_from.empty() || made_from == own) return;
-  throw BadInput("was made from another recording (its sensors have the digest " + made_from + ", these " + own + ")");
+  throw BadInput(fmt::format(
+      "the estimate was made from another recording (digest of its sensors: {}; digest of this recording: {})",
+      made_from, own));
 }
 
-/// "slam/tumble" as a topic and a frame.
+/// Converts "slam/tumble" to a topic and frame name.
 std::string plain_name(const std::string& method) {
   std::string stem;
   for (const char c : method) stem += std::isalnum(static_cast<unsigned char>(c)) != 0 ? c : '_';
@@ -156,7 +162,8 @@ std::string plain_name(const std::string& method) {
 
 BagTrack in_bag(const std::string& name, const Estimate& estimate, const sim::Sensors& sensors,
                 const std::vector<PointStore>* points, const StoredTruth* truth) {
-  if (estimate.poses.empty()) throw BadInput("holds no poses: a rate or an attitude alone has no place in a bag");
+  if (estimate.poses.empty())
+    throw BadInput("the estimate holds no poses; a bag cannot store a rate or an attitude alone");
   const Eigen::Isometry3d T_AB = mounting_of(estimate, sensors, truth).inverse();
   const Alignment alignment = alignment_of(estimate, truth);
   BagTrack out;

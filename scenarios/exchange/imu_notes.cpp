@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "scenarios/exchange/imu_notes.hpp"
 
+#include <fmt/format.h>
+
 #include <optional>
 
 #include "scenarios/exchange/lidar_rotation.hpp"
@@ -19,17 +21,17 @@ std::string labels_text(const AxisLabels& labels) {
     axes.axis[read] = static_cast<int>(j);
     axes.sign[read] = static_cast<int>(labels.sign[j]);
   }
-  return "caution: gravity does not turn in the accelerometer as the gyro says, but as if the accelerometer's x, y, z "
-         "were " +
-         axes.text() + (labels.gyro_flipped ? " of a gyro of the other sense" : " of the gyro") +
-         ": senses or order of the axes?";
+  return fmt::format(
+      "caution: gravity in the accelerometer rotates as if the accelerometer's axes x, y, z were the axes {}{}; check "
+      "the signs and the order of the axes",
+      axes.text(), labels.gyro_flipped ? " of a gyro with opposite sign" : " of the gyro");
 }
 
 }  // namespace
 
 std::string imu_note(const sim::ImuRecord& imu, double gravity_m_s2) {
   std::vector<ImuSample> samples;
-  // what is wrong with single readings is told where they are read
+  // Errors of single readings are reported by the reader.
   if (!bridge::imu_samples(imu, samples).ok()) return "";
   ImuPlausibility::Params params;
   params.gravity_m_s2 = gravity_m_s2;
@@ -37,11 +39,13 @@ std::string imu_note(const sim::ImuRecord& imu, double gravity_m_s2) {
   ImuPlausibility::State state;
   for (const ImuSample& sample : samples) plausibility.step(sample, state);
   if (const double frozen_s = plausibility.frozen_s(state); frozen_s > 0.0)
-    return "caution: gyro or accelerometer repeats one reading to the last digit for " + rounded(frozen_s) +
-           " s: did it freeze?";
+    return fmt::format(
+        "caution: gyro or accelerometer repeats exactly the same reading for {} s; the sensor may be frozen",
+        rounded(frozen_s));
   if (const std::optional<AxisLabels> labels = plausibility.other_labels(state)) return labels_text(*labels);
   const Status verdict = plausibility.verdict(state);
-  return verdict.ok() ? "" : "caution: the readings contradict each other or gravity: " + verdict.message();
+  return verdict.ok() ? ""
+                      : "caution: the readings are inconsistent with each other or with gravity: " + verdict.message();
 }
 
 std::vector<std::string> imu_notes(const Imported& recording) {

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "scenarios/exchange/lidar_rotation.hpp"
 
+#include <fmt/format.h>
+
 #include <Eigen/SVD>
 #include <algorithm>
 #include <cmath>
@@ -19,15 +21,16 @@ namespace {
 constexpr std::size_t kSpans = 10, kSweepsOfSpan = 12;
 constexpr double kSlowest_rad_s = 0.1, kFastest_rad_s = 2.0;
 constexpr std::size_t kLeastPairs = 12;
-/// Of the median rotation: more, and the two do not see the same thing. A lidar alone is off by a tenth.
+/// Largest error relative to the median rotation; above it, lidar and gyro do not measure the same motion. Lidar alone
+/// has an error of about a tenth.
 constexpr double kAgrees = 0.3;
-/// What explains it must halve the error of what it explains away.
+/// An explanation must reduce the error at least by these factors.
 constexpr double kTells = 0.5, kDelayTells = 0.6;
 constexpr double kDegreesPerRadian = 57.29577951308232;
 constexpr double kDelayMost_s = 0.5, kDelayStep_s = 0.01, kDelaySaid_s = 0.03;
 constexpr std::int64_t kGap_ns = 100'000'000;
 
-/// The sweeps [first, last) as a recording of a lidar alone.
+/// Returns the sweeps [first, last) as a recording with this lidar only.
 sim::Sensors span_alone(const sim::LidarRecord& lidar, const PointStore* aside, std::size_t first, std::size_t last) {
   sim::LidarRecord out = sweep_alone(lidar, aside, first);
   const auto append = [](auto& to, const auto& from) { to.insert(to.end(), from.begin(), from.end()); };
@@ -60,7 +63,7 @@ void add_rotations(const Estimate& estimate, std::vector<SeenRotation>& out) {
   }
 }
 
-/// The gyro's integral, axis by axis: for the few hundredths of a radian between two sweeps that is the rotation.
+/// Integrates the gyro per axis, which is accurate for the few hundredths of a radian between two sweeps.
 class Integral {
  public:
   explicit Integral(const sim::ImuRecord& imu) : imu_(imu) {
@@ -71,7 +74,7 @@ class Integral {
     }
   }
 
-  /// None beyond the readings or across a gap.
+  /// Returns empty outside the readings or across a gap.
   std::optional<Eigen::Vector3d> between(std::int64_t from_ns, std::int64_t to_ns) const {
     const auto first = sample_at(from_ns), last = sample_at(to_ns);
     if (!first || !last) return std::nullopt;
@@ -83,7 +86,7 @@ class Integral {
 
  private:
   std::int64_t start(std::size_t k) const { return k == 0 ? imu_.time_ns[0] - imu_.period_ns : imu_.time_ns[k - 1]; }
-  /// The sample in whose window the instant lies.
+  /// Returns the sample whose window contains the instant.
   std::optional<std::size_t> sample_at(std::int64_t time_ns) const {
     const auto at = std::lower_bound(imu_.time_ns.begin(), imu_.time_ns.end(), time_ns);
     if (at == imu_.time_ns.end() || time_ns < start(0)) return std::nullopt;
@@ -97,12 +100,12 @@ class Integral {
   std::vector<Eigen::Vector3d> sum_;
 };
 
-/// What the lidar saw and what the gyro says of the same instants, both in the axes of the IMU.
+/// Rotations from lidar and gyro over the same intervals, both in IMU axes.
 struct Pairs {
   std::vector<Eigen::Vector3d> seen, said;
   double rotation_rad = 0.0;  // median of `seen`
 
-  /// Median of error(k), as a share of the rotation.
+  /// Returns the median of error(k) relative to the rotation.
   template <class Error>
   double share(Error&& error) const {
     std::vector<double> errors;
@@ -129,8 +132,8 @@ Pairs pairs_at(const Integral& integral, const Eigen::Matrix3d& R_IL, std::span<
   return out;
 }
 
-/// The orthogonal matrix of that determinant, 1 or -1, that takes what is said best to what is seen (Wahba 1965, by
-/// singular values).
+/// Returns the orthogonal matrix of that determinant, 1 or -1, that best maps gyro rotations to lidar rotations (Wahba
+/// 1965, by singular values).
 Eigen::Matrix3d best_orthogonal(const Pairs& pairs, double determinant) {
   Eigen::Matrix3d sum = Eigen::Matrix3d::Zero();
   for (std::size_t k = 0; k < pairs.seen.size(); ++k) sum += pairs.seen[k] * pairs.said[k].transpose();
@@ -140,7 +143,7 @@ Eigen::Matrix3d best_orthogonal(const Pairs& pairs, double determinant) {
   return svd.matrixU() * signs.asDiagonal() * svd.matrixV().transpose();
 }
 
-/// Unit and delay of the pairs, where any mounting and any sense of axes fits them better than what was found before.
+/// Searches for a better unit and delay, independent of mounting and axes.
 void fit_unit(const Pairs& pairs, double delay_s, RotationAgreement& best, double& best_error) {
   RotationAgreement at;
   at.pairs = pairs.seen.size();
@@ -182,42 +185,48 @@ std::string percent(double share) {
 }
 
 std::string pairs_text(const RotationAgreement& found) {
-  return " over " + std::to_string(found.pairs) + " pairs of sweeps";
+  return fmt::format(" over {} pairs of sweeps", found.pairs);
 }
 
-/// Throws where the option that reads them otherwise would mend it.
+/// Throws if reading the gyro in another unit would remove the disagreement.
 std::string unit_text(const std::string& where, const RotationAgreement& found, GyroUnit unit) {
   const bool degrees = unit == GyroUnit::deg_s;
-  const std::string read = std::string("read in ") + (degrees ? "deg/s" : "rad/s") + ", the lidar turns " +
-                           rounded(found.unit) + " times as the gyro says, to within " + percent(found.unit_error) +
-                           pairs_text(found) + ", must be within 0.5 and 2";
+  const std::string read = fmt::format(
+      "with rates in {}, the lidar's rotation is {} times the gyro's rotation, accurate to {}{}, must be within 0.5 "
+      "and 2",
+      degrees ? "deg/s" : "rad/s", rounded(found.unit), percent(found.unit_error), pairs_text(found));
   if ((found.unit < 1.0) == degrees) return "caution: " + read;
   const std::string fits = degrees ? "rad/s" : "deg/s";
-  throw BadInput(where + ": " + read + ": are the rates in " + fits + "? ('--gyro-unit " + fits + "' takes them so)");
+  throw BadInput(fmt::format("{}: {}; the rates may be in {} (set '--gyro-unit {}')", where, read, fits, fits));
 }
 
 std::string delay_text(const RotationAgreement& found) {
   if (std::abs(found.delay_s) < kDelaySaid_s) return "";
-  return "caution: the lidar sees what the gyro says " + rounded(std::abs(found.delay_s)) +
-         (found.delay_s > 0.0 ? " s later" : " s before") +
-         ": two clocks, or stamps of sweeps' ends for their starts? Counted so, ";
+  return fmt::format(
+      "caution: the lidar's rotation follows the gyro's {}{}; check that both use one clock and that sweep stamps are "
+      "start times. With this delay removed, ",
+      rounded(std::abs(found.delay_s)), found.delay_s > 0.0 ? " s later" : " s earlier");
 }
 
 std::string axes_text(const RotationAgreement& found) {
   if (found.error_as_read <= kAgrees && kTells * found.error_as_read <= found.axes_error) {
-    return "the lidar turns as the gyro says" + pairs_text(found) + ", to within " + percent(found.error_as_read) +
-           (kTells * found.next_error > found.axes_error ? ": units, senses and axes agree"
-                                                         : ": units agree; the motion does not tell all axes apart");
+    return fmt::format(
+        "the lidar's rotation equals the gyro's{}, within {}{}", pairs_text(found), percent(found.error_as_read),
+        kTells * found.next_error > found.axes_error ? ": units, signs and axes agree"
+                                                     : ": units agree; this motion cannot distinguish all axes");
   }
-  const std::string off = "caution: the lidar does not turn as the gyro says" + pairs_text(found) + " (off by " +
-                          percent(found.error_as_read) + "), but as if ";
+  const std::string off =
+      fmt::format("caution: the lidar's rotation differs from the gyro's{} (difference {}); it would agree if ",
+                  pairs_text(found), percent(found.error_as_read));
   if (found.axes_error <= kAgrees) {
-    return off + "its axes were " + found.axes.text() + " (off by " + percent(found.axes_error) +
-           "): senses, order of the axes, or the mounting?";
+    return fmt::format(
+        "{}the lidar's axes were {} (difference {}); check the signs and order of the axes, and the mounting", off,
+        found.axes.text(), percent(found.axes_error));
   }
   const Eigen::Quaterniond& q = found.turned;
-  return off + "it were turned by the quaternion x y z w " + rounded(q.x()) + " " + rounded(q.y()) + " " +
-         rounded(q.z()) + " " + rounded(q.w()) + " (off by " + percent(found.turned_error) + "): the mounting?";
+  return fmt::format(
+      "{}the lidar were rotated by the quaternion x y z w {} {} {} {} (difference {}); check the mounting", off,
+      rounded(q.x()), rounded(q.y()), rounded(q.z()), rounded(q.w()), percent(found.turned_error));
 }
 
 }  // namespace
@@ -263,11 +272,11 @@ std::optional<RotationAgreement> rotation_agreement(const sim::ImuRecord& imu, c
     fit_unit(pairs, delay_s, delayed, delayed_error);
     if (step == 0) fit_unit(pairs, delay_s, at_once, at_once_error);
   }
-  // by chance one of a hundred delays fits a little better
+  // one of a hundred delays fits slightly better by chance
   RotationAgreement out = delayed_error < kDelayTells * at_once_error ? delayed : at_once;
   if (out.unit_error > kAgrees) return std::nullopt;
   fit_axes(pairs_at(integral, R_IL, seen, std::llround(1e9 * out.delay_s)), out);
-  // sizes alone may be alike by chance, where a tumble leaves the lidar astray
+  // When tracking fails in a tumble, rotation angles alone may agree by chance.
   if (std::min({out.error_as_read, out.axes_error, out.turned_error}) > kAgrees) return std::nullopt;
   return out;
 }

@@ -23,7 +23,7 @@ Method attitude_autogain() {
   MethodInfo info;
   info.name = "autogain";
   info.kind = Kind::attitude;
-  info.doc = "Madgwick step and complementary step, the rate deciding between them; made for rolling spheres.";
+  info.doc = "Madgwick step and complementary step, weighted by the rate. Made for rolling spheres.";
   info.source = "Zevering et al., IMU-based pose-estimation for spherical robots, IEEE MFI 2021, eqs 2-5";
   info.settings = {&attitude_autogain_settings()};
   return make_method(std::move(info), run_attitude_autogain);

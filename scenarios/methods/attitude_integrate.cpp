@@ -23,8 +23,8 @@ Method attitude_integrate() {
   MethodInfo info;
   info.name = "integrate";
   info.kind = Kind::attitude;
-  info.doc = "Integration of the primary IMU's gyro alone, levelled by its first sample.";
-  info.source = "textbook strapdown";
+  info.doc = "Integrates the gyro of the primary IMU; the first sample gives the initial tilt.";
+  info.source = "textbook strapdown integration";
   info.settings = {&attitude_integrate_settings()};
   return make_method(std::move(info), run_attitude_integrate);
 }

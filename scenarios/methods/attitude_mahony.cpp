@@ -23,7 +23,7 @@ Method attitude_mahony() {
   MethodInfo info;
   info.name = "mahony";
   info.kind = Kind::attitude;
-  info.doc = "The explicit complementary filter on SO(3) with a gyro bias, gyro and accelerometer of the primary IMU.";
+  info.doc = "Explicit complementary filter on SO(3) with gyro bias, on gyro and accelerometer of the primary IMU.";
   info.source = "R. Mahony, T. Hamel, J.-M. Pflimlin, Nonlinear complementary filters, IEEE TAC 53(5), 2008";
   info.settings = {&attitude_mahony_settings()};
   return make_method(std::move(info), run_attitude_mahony);

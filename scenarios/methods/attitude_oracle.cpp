@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include <fmt/format.h>
+
 #include <cstddef>
 #include <cstdint>
 #include <vector>
@@ -14,9 +16,9 @@ namespace tumble::scenarios {
 
 namespace {
 
-/// The IMUs without the rails of their gyros; that of an accelerometer stays.
+/// Returns the sensors with unclipped gyros; accelerometers stay clipped.
 sim::Sensors unclipped_gyros(const sim::Sensors& sensors, const sim::Truth& truth) {
-  if (truth.imus.size() < sensors.imus.size()) throw BadInput("the truth does not hold every IMU");
+  if (truth.imus.size() < sensors.imus.size()) throw BadInput("the truth lacks an IMU of the recording");
   sim::Sensors out;
   out.robot = sensors.robot;
   out.sphere_radius_m = sensors.sphere_radius_m;
@@ -25,7 +27,7 @@ sim::Sensors unclipped_gyros(const sim::Sensors& sensors, const sim::Truth& trut
   for (std::size_t i = 0; i < out.imus.size(); ++i) {
     sim::ImuRecord& imu = out.imus[i];
     if (truth.imus[i].gyro_unclipped_rad_s.size() != imu.time_ns.size()) {
-      throw BadInput("the truth of imu '" + imu.name + "' has not one reading per sample");
+      throw BadInput(fmt::format("the truth of imu '{}' must have one reading per sample", imu.name));
     }
     imu.gyro_rad_s = truth.imus[i].gyro_unclipped_rad_s;
     imu.stated_gyro_range_rad_s = 0.0;
@@ -35,7 +37,7 @@ sim::Sensors unclipped_gyros(const sim::Sensors& sensors, const sim::Truth& trut
 }
 
 Estimate run_attitude_oracle(const sim::Sensors& sensors, const sim::Values& parameters, const OracleInput& oracle) {
-  // the readings themselves are checked too: an oracle shall not run where no method could
+  // Check the original readings too: an oracle must fail where every method must fail.
   Estimate estimate;
   std::vector<ImuSample> samples;
   estimate.status = bridge::primary_imu_samples(sensors, samples);
@@ -49,7 +51,7 @@ Method attitude_oracle() {
   MethodInfo info;
   info.name = "oracle";
   info.kind = Kind::attitude;
-  info.doc = "attitude/tumble given gyros without their rails: noise, bias and bandwidth as read. The bound.";
+  info.doc = "Bound: attitude/tumble with unclipped gyros; noise, bias and bandwidth are unchanged.";
   info.ours = true;
   info.settings = {&attitude_tumble_settings()};
   info.needs_truth = true;

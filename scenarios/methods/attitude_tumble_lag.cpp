@@ -15,8 +15,8 @@ namespace tumble::scenarios {
 
 namespace {
 
-/// What the rate's errors tell of the attitude's: those of readings are the filter's own noise, white and a bias; those
-/// of recovered rates are as the stream states them.
+/// Returns the rate covariance to add to the attitude covariance. Measured rates add nothing, because the filter models
+/// their white noise and bias; recovered rates add the covariance of the stream.
 Eigen::Matrix3d beyond_noise(const RateState& rate) {
   const bool as_read = rate.clipped_axes == 0 && rate.source == RateSource::measured;
   return as_read ? Eigen::Matrix3d::Zero() : rate.covariance_rad2_s2;
@@ -55,9 +55,7 @@ Method attitude_tumble_lag() {
   MethodInfo info;
   info.name = "tumble_lag";
   info.kind = Kind::attitude;
-  info.doc =
-      "The filter of attitude/tumble on the rates of rate/tumble_lag: causal, each attitude at the age at which the "
-      "stream gives out its rate.";
+  info.doc = "The filter of attitude/tumble on the rates of rate/tumble_lag. It is causal and has the same lag.";
   info.ours = true;
   info.settings = {&attitude_tumble_settings()};
   info.robots = {"rig", "pendulum"};

@@ -8,7 +8,7 @@ namespace tumble::scenarios {
 
 namespace {
 
-// the library's defaults are the authors'
+// The library's defaults are the authors' settings.
 const Settings<Vqf::Params>& attitude_vqf_settings() {
   static const Settings<Vqf::Params> all{Vqf::Params{}};
   return all;
@@ -24,7 +24,9 @@ Method attitude_vqf() {
   MethodInfo info;
   info.name = "vqf";
   info.kind = Kind::attitude;
-  info.doc = "Specific force low-passed in a nearly inertial frame, gyro bias at rest and in motion; no magnetometer.";
+  info.doc =
+      "Low-passes the specific force in a nearly inertial frame and estimates the gyro bias at rest and in motion. It "
+      "uses no magnetometer.";
   info.source = "D. Laidig, T. Seel, VQF, Information Fusion 91, 2023";
   info.settings = {&attitude_vqf_settings()};
   return make_method(std::move(info), run_attitude_vqf);

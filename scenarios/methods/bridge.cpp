@@ -16,7 +16,7 @@ namespace tumble::scenarios::bridge {
 
 namespace {
 
-// sim's bit -> the estimator's flag, written out so that neither side can move alone
+// Maps the bits of sim to the estimator's flags explicitly, so that a change on one side cannot pass unnoticed.
 constexpr std::array<std::pair<int, ClipFlag>, 6> kClipBits = {
     {{0, kClipGyroX}, {1, kClipGyroY}, {2, kClipGyroZ}, {3, kClipAccelX}, {4, kClipAccelY}, {5, kClipAccelZ}}};
 
@@ -28,14 +28,14 @@ std::uint8_t clip_flags(std::uint8_t sim_bits) {
   return flags;
 }
 
-// Stamps of another unit are a thousand times off; a device that is read more seldom than it says is not.
+// Stamps in a wrong unit differ at least 1000-fold; slow reading of a device stays below this factor.
 constexpr double kPeriodsMax = 20.0;
 
 Status check_period(const sim::ImuRecord& record, std::span<const ImuSample> samples) {
   if (record.period_ns <= 0 || samples.size() < 3) return {};
   const double step_s = median_period_s(samples), stated_s = seconds(record.period_ns);
   if (step_s > stated_s / kPeriodsMax && step_s < stated_s * kPeriodsMax) return {};
-  return {Trouble::out_of_range, "median step of imu time_ns in s, held to 20 times the stated period and its 20th,",
+  return {Trouble::out_of_range, "median step of imu time_ns in s (must be within a factor of 20 of the stated period)",
           step_s, step_s < stated_s ? stated_s / kPeriodsMax : stated_s * kPeriodsMax};
 }
 
@@ -54,7 +54,8 @@ bool in_range(const sim::ImuRecord& record, const ImuSample& sample) {
   return check_range(record, sample.angular_velocity_rad_s, sample.specific_force_m_s2).ok();
 }
 
-// Single ones that no device of that range reads. Those that last and those that are many stay, to be refused.
+// Removes single readings beyond what the device can measure. Lasting or frequent ones stay, so that the recording is
+// refused.
 void leave_out_wild(const sim::ImuRecord& record, std::vector<ImuSample>& samples) {
   const auto beyond = [&](const ImuSample& sample) { return !in_range(record, sample); };
   const auto count = std::count_if(samples.begin(), samples.end(), beyond);
@@ -67,7 +68,8 @@ void leave_out_wild(const sim::ImuRecord& record, std::vector<ImuSample>& sample
   samples.resize(kept);
 }
 
-// what every method may rely on: finite, of what its device can read, rising at its period, without holes
+// Checks what every method assumes: finite readings within the device's range, increasing stamps at the stated period,
+// no gaps.
 Status check_stream(const sim::ImuRecord& record, std::span<const ImuSample> samples) {
   if (samples.empty()) return {Trouble::empty, "time_ns", 0.0, 1.0};
   if (const Status status = check_samples(samples, kGapMaxS); !status.ok()) return status;
@@ -86,10 +88,11 @@ Status check_range(const sim::ImuRecord& record, const Eigen::Vector3d& gyro_rad
     if (!(bound > 0.0) || reading.cwiseAbs().maxCoeff() <= bound) return {};
     return {Trouble::out_of_range, field, reading.cwiseAbs().maxCoeff(), bound};
   };
-  const Status gyro =
-      beyond(gyro_rad_s, record.stated_gyro_range_rad_s, "angular_velocity_rad_s, held to twice its stated range,");
+  const Status gyro = beyond(gyro_rad_s, record.stated_gyro_range_rad_s,
+                             "angular_velocity_rad_s (must be within twice the stated range)");
   if (!gyro.ok()) return gyro;
-  return beyond(accel_m_s2, record.stated_accel_range_m_s2, "specific_force_m_s2, held to twice its stated range,");
+  return beyond(accel_m_s2, record.stated_accel_range_m_s2,
+                "specific_force_m_s2 (must be within twice the stated range)");
 }
 
 std::vector<bool> find_inliers(const sim::ImuRecord& record) {
@@ -134,7 +137,7 @@ Status unclipped_samples(const sim::ImuRecord& record, const sim::ImuTruth& trut
   twin.gyro_rad_s = truth.gyro_unclipped_rad_s;
   twin.accel_m_s2 = truth.accel_unclipped_m_s2;
   twin.clip_flags.clear();
-  twin.stated_gyro_range_rad_s = twin.stated_accel_range_m_s2 = 0.0;  // without a rail there is no range
+  twin.stated_gyro_range_rad_s = twin.stated_accel_range_m_s2 = 0.0;  // unclipped readings have no range
   return imu_samples(twin, out);
 }
 
@@ -156,7 +159,7 @@ std::size_t sweep_count(const sim::LidarRecord& record) {
   const std::size_t sweeps = record.sweep_start_ns.size();
   const std::size_t points = record.position_L_m.size();
   const std::string place = "lidar '" + record.name + "'";
-  // a lidar without sweeps may come without the closing index
+  // A lidar without sweeps may lack the closing index.
   if (sweeps == 0 && record.sweep_first.empty()) return 0;
   require_length(place, "sweep_first", record.sweep_first.size(), sweeps + 1);
   require_length(place, "offset_ns", record.offset_ns.size(), points);
@@ -164,7 +167,7 @@ std::size_t sweep_count(const sim::LidarRecord& record) {
   require_length(place, "intensity", record.intensity.size(), points);
   for (std::size_t k = 0; k < sweeps; ++k) {
     if (record.sweep_first[k] > record.sweep_first[k + 1]) {
-      throw BadInput(place + ".sweep_first falls at sweep " + std::to_string(k));
+      throw BadInput(place + ".sweep_first decreases at sweep " + std::to_string(k));
     }
   }
   require_length(place, "position_L_m", points, record.sweep_first[sweeps]);

@@ -28,7 +28,7 @@ std::string less_folder(std::string text, const std::filesystem::path& folder) {
 }
 
 std::string with_last_words(const std::string& what, const CommandEnd& end) {
-  return what + (end.last_words.empty() ? "" : "; it said: " + end.last_words);
+  return what + (end.last_words.empty() ? "" : "; its last output was: " + end.last_words);
 }
 
 void require_done(const CommandEnd& end) {
@@ -42,8 +42,9 @@ std::string version_said(Command command, const std::string& place) {
   const CommandEnd end = run_command(command);
   if (end.how != CommandEnd::How::done) throw BadInput(place + with_last_words(end.reason, end));
   const std::string said = read_text_file(command.transcript);
-  if (said.empty()) throw BadInput(place + "it printed nothing, must print what tells this version from others");
-  return fmt::format("{}; said {:016x}", said.substr(0, std::min(said.find('\n'), kFirstLineMax)),
+  if (said.empty())
+    throw BadInput(place + "the version command printed nothing; it must print a text that identifies this version");
+  return fmt::format("{}; digest of the output {:016x}", said.substr(0, std::min(said.find('\n'), kFirstLineMax)),
                      XXH3_64bits(said.data(), said.size()));
 }
 

@@ -22,12 +22,12 @@ void require_stamps(const Table& table, const std::vector<std::int64_t>& stamps_
   const std::string path = table.path.string();
   if (table.rows.size() != stamps_ns.size()) {
     throw BadInput(
-        fmt::format("{}: {} rows, must be {} as there are poses", path, table.rows.size(), stamps_ns.size()));
+        fmt::format("{}: has {} rows; it must have {}, one per pose", path, table.rows.size(), stamps_ns.size()));
   }
   for (std::size_t k = 0; k < stamps_ns.size(); ++k) {
     const Table::Row& row = table.rows[k];
     if (table.integer(row, 0) == stamps_ns[k]) continue;
-    throw BadInput(fmt::format("{}:{}: time {}, must be {} as of the pose of the same row", path, row.line,
+    throw BadInput(fmt::format("{}:{}: time {}; it must be {}, the time of the pose in the same row", path, row.line,
                                table.integer(row, 0), stamps_ns[k]));
   }
 }

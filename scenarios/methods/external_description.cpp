@@ -22,7 +22,7 @@ namespace {
 
 constexpr double kTimeMax_s = 1e6;
 constexpr double kMemoryMax_mib = 1e7;
-constexpr std::size_t kWordMax = 4096;  // std::regex goes a level deeper for each character
+constexpr std::size_t kWordMax = 4096;  // std::regex recurses once per character
 
 const std::regex& placeholder() {
   static const std::regex pattern(R"(\{([a-z0-9_]+)\})");
@@ -48,7 +48,7 @@ ExternalDescription::Output output_named(const YamlNode& node) {
   node.fail("unknown output '" + name + "'" + suggestion(name, known));
 }
 
-/// A robot that there is: a method of another one would run on nothing, without a word.
+/// Returns the name of a known robot. With an unknown robot, the method would silently never run.
 std::string robot_named(const YamlNode& node) {
   const std::string name = node.identifier();
   std::vector<std::string> known;
@@ -58,21 +58,20 @@ std::string robot_named(const YamlNode& node) {
   return name;
 }
 
-/// The words of a command, their placeholders known.
+/// Returns the words of a command after checking their placeholders.
 std::vector<std::string> words_of(const YamlNode& node) {
   std::vector<std::string> words;
   for (const YamlNode& item : node.items()) {
     words.push_back(item.text());
     if (words.back().size() > kWordMax)
-      item.fail("a word of " + std::to_string(words.back().size()) + " characters, must be at most " +
-                std::to_string(kWordMax));
+      item.fail(fmt::format("has a word of {} characters; a word may have at most {}", words.back().size(), kWordMax));
     try {
       placeholders_in(words.back());
     } catch (const BadInput& error) {
       item.fail(error.what());
     }
   }
-  if (words.empty()) node.fail("no word");
+  if (words.empty()) node.fail("must have at least one word");
   return words;
 }
 
@@ -86,8 +85,7 @@ std::string digest_of(const std::string& text) {
   return fmt::format("{:016x}", XXH3_64bits(text.data(), text.size()));
 }
 
-/// The files that the words of a command name by {folder}, as "{folder}/mine" or inside of a line for a shell, in the
-/// order of their names.
+/// Returns the sorted files that the words of a command name by {folder}, as "{folder}/mine" or inside a shell line.
 std::set<std::filesystem::path> own_files(const std::vector<std::string>& command,
                                           const std::filesystem::path& folder) {
   static const std::regex pattern(R"(\{folder\}/([^\s{}"';|&<>()]{1,512}))");
@@ -113,7 +111,7 @@ std::uint64_t digest_of_file(const std::filesystem::path& file) {
   return XXH3_64bits_digest(state.get());
 }
 
-/// Of the description and of its command's own files: a program that was compiled anew is another version.
+/// Digests the description and the command's own files, so that a recompiled program counts as another version.
 std::string digest_of_command(const std::string& text, const ExternalDescription& description) {
   std::string all = text;
   for (const std::filesystem::path& file : own_files(description.command, description.file.parent_path()))
@@ -121,7 +119,7 @@ std::string digest_of_command(const std::string& text, const ExternalDescription
   return digest_of(all);
 }
 
-/// What a function of Python cannot have: it gives its answer back and leaves no file.
+/// Keys not allowed for Python functions, which return their answer directly.
 constexpr std::array<const char*, 2> kOfCommands = {"version", "output"};
 constexpr std::array<const char*, 2> kOfPython = {"function", "interpreter"};
 
@@ -132,29 +130,30 @@ bool names_output(const std::vector<std::string>& command) {
 
 void read_command(const std::map<std::string, YamlNode>& fields, ExternalDescription& out) {
   for (const char* key : kOfPython)
-    if (fields.contains(key)) fields.at(key).fail("is of a function of Python, and this is a command");
+    if (fields.contains(key)) fields.at(key).fail("applies to a Python function only, but this method is a command");
   out.command = words_of(fields.at("command"));
-  if (!names_output(out.command)) fields.at("command").fail("no word names {output}, where the result is looked for");
+  if (!names_output(out.command))
+    fields.at("command").fail("no word of the command contains {output}, the path of the result");
   out.output = out.kind == Kind::rate ? ExternalDescription::Output::rates : ExternalDescription::Output::tum;
   if (fields.contains("output")) out.output = output_named(fields.at("output"));
   if ((out.output == ExternalDescription::Output::rates) != (out.kind == Kind::rate) &&
       out.output != ExternalDescription::Output::estimate)
-    fields.at("output").fail("rates are the output of kind rate, and a TUM file is that of the others");
+    fields.at("output").fail("kind rate needs the output 'rates'; the other kinds need a TUM file");
   if (fields.contains("version")) out.version = words_of(fields.at("version"));
 }
 
 void read_python(const std::map<std::string, YamlNode>& fields, ExternalDescription& out) {
   for (const char* key : kOfCommands)
-    if (fields.contains(key)) fields.at(key).fail("is of a command, and this is a function of Python");
+    if (fields.contains(key)) fields.at(key).fail("applies to a command only, but this method is a Python function");
   out.python = out.file.parent_path() / fields.at("python").text();
   if (!std::filesystem::is_regular_file(out.python))
-    fields.at("python").fail("'" + out.python.string() + "' is no file");
+    fields.at("python").fail("'" + out.python.string() + "' is not a file");
   out.function = fields.contains("function") ? fields.at("function").text() : to_string(out.kind);
   if (fields.contains("interpreter"))
     for (const YamlNode& item : fields.at("interpreter").items()) out.interpreter.push_back(item.text());
 }
 
-/// The kinds whose names the pattern's second group finds in the text.
+/// Returns the kinds found in the text by the pattern's second group.
 std::vector<Kind> kinds_found(const std::string& text, const std::regex& pattern) {
   std::vector<Kind> found;
   for (std::sregex_iterator it(text.begin(), text.end(), pattern), end; it != end; ++it)
@@ -163,16 +162,17 @@ std::vector<Kind> kinds_found(const std::string& text, const std::regex& pattern
   return found;
 }
 
-/// The one kind after which a function of the text is named, or where there is none what is assigned.
+/// Returns the kind of the text's only method function, or, without a function, of a matching assignment.
 Kind kind_of_function(const std::string& text, const std::string& file) {
   static const std::regex defined(R"((^|\n)def[ \t]{1,8}(rate|attitude|position|slam)[ \t]{0,8}\()");
   static const std::regex assigned(R"((^|\n)(rate|attitude|position|slam)[ \t]{0,8}=(?!=))");
   std::vector<Kind> found = kinds_found(text, defined);
   if (found.empty()) found = kinds_found(text, assigned);
   if (found.size() != 1)
-    throw BadInput(file + ": defines " + std::to_string(found.size()) +
-                   " functions named rate, attitude, position or slam, must be one (a NAME.yaml can name another, and "
-                   "whatever else can be called)");
+    throw BadInput(
+        fmt::format("{}: defines {} functions named rate, attitude, position or slam; it must define exactly one (a "
+                    "file NAME.yaml can name another function)",
+                    file, found.size()));
   return found.front();
 }
 
@@ -206,9 +206,9 @@ std::vector<std::string> placeholders_in(const std::string& word) {
     const std::string name = (*it)[1];
     if (std::find(known.begin(), known.end(), name) == known.end())
       throw BadInput("unknown placeholder '{" + name + "}'" +
-                     (sim::nearest_name(name, known).empty()
-                          ? suggestion(name, known)  // which lists them
-                          : suggestion(name, known) + " (there are " + fmt::format("{}", fmt::join(known, " ")) + ")"));
+                     (sim::nearest_name(name, known).empty() ? suggestion(name, known)
+                                                             : suggestion(name, known) + " (known placeholders: " +
+                                                                   fmt::format("{}", fmt::join(known, " ")) + ")"));
     out.push_back(name);
   }
   return out;
@@ -235,7 +235,7 @@ ExternalDescription read_external(const std::filesystem::path& file) {
       "version", "frame",  "environment", "output",      "time_limit_s", "memory_limit_mib"};
   const auto fields = root.fields(required, optional);
   const auto given = [&](const char* key) { return fields.contains(key); };
-  if (given("command") == given("python")) root.fail("must have one of the keys 'command' and 'python'");
+  if (given("command") == given("python")) root.fail("must have exactly one of the keys 'command' and 'python'");
 
   ExternalDescription out;
   out.file = std::filesystem::absolute(file);

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "scenarios/methods/external_result.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -21,13 +23,13 @@ namespace tumble::scenarios {
 
 namespace {
 
-constexpr std::int64_t kStampTolerance_ns = 1000;  // stamps that went through seconds in double
+constexpr std::int64_t kStampTolerance_ns = 1000;  // tolerance for stamps stored as seconds in a double
 constexpr const char* kRateColumns = "time_ns,wx_rad_s,wy_rad_s,wz_rad_s";
 constexpr const char* kWithCovariance = "time_ns,wx_rad_s,wy_rad_s,wz_rad_s,cxx,cxy,cxz,cyy,cyz,czz";
 
 std::string header_line(const std::filesystem::path& file) {
   std::ifstream stream(file);
-  if (!stream) throw BadInput(file.filename().string() + ": the command did not leave it");
+  if (!stream) throw BadInput(file.filename().string() + ": the command did not write this file");
   std::string line;
   std::getline(stream, line);
   while (!line.empty() && (line.back() == '\r' || line.back() == ' ')) line.pop_back();
@@ -42,26 +44,26 @@ Eigen::Matrix3d covariance(const Table& table, const Table::Row& row) {
   return out;
 }
 
-/// One row per sample of the first IMU, in their order.
+/// Reads one row per sample of the first IMU, in order.
 std::vector<RateState> read_rates(const std::filesystem::path& file, const sim::Sensors& sensors) {
-  if (sensors.imus.empty()) throw BadInput("the recording has no IMU, whose samples rates belong to");
+  if (sensors.imus.empty()) throw BadInput("the recording has no IMU; a rate method needs the samples of an IMU");
   const std::vector<std::int64_t>& stamps = sensors.imus.front().time_ns;
   const std::string header = header_line(file);
   const bool with_covariance = header == kWithCovariance;
   if (!with_covariance && header != kRateColumns)
-    throw BadInput(file.filename().string() + ":1: header '" + header.substr(0, 120) + "', must be '" + kRateColumns +
-                   "', or that with ',cxx,cxy,cxz,cyy,cyz,czz'");
+    throw BadInput(fmt::format("{}:1: header '{}', must be '{}' or the same with ',cxx,cxy,cxz,cyy,cyz,czz' added",
+                               file.filename().string(), header.substr(0, 120), kRateColumns));
   const Table table = Table::read(file, ',', header, with_covariance ? 10 : 4);
   if (table.rows.size() != stamps.size())
-    throw BadInput(file.filename().string() + ": " + std::to_string(table.rows.size()) + " rows, must be " +
-                   std::to_string(stamps.size()) + ", one per sample of " + sensors.imus.front().name);
+    throw BadInput(fmt::format("{}: {} rows, must be {}, one per sample of {}", file.filename().string(),
+                               table.rows.size(), stamps.size(), sensors.imus.front().name));
   std::vector<RateState> rates(stamps.size());
   for (std::size_t k = 0; k < rates.size(); ++k) {
     const Table::Row& row = table.rows[k];
     const std::int64_t time_ns = table.integer(row, 0);
     if (time_ns < stamps[k] - kStampTolerance_ns || time_ns > stamps[k] + kStampTolerance_ns)
-      throw BadInput(file.filename().string() + ":" + std::to_string(row.line) + ": time " + std::to_string(time_ns) +
-                     " ns, sample " + std::to_string(k) + " is of " + std::to_string(stamps[k]) + " ns");
+      throw BadInput(fmt::format("{}:{}: time {} ns, but sample {} has the time {} ns", file.filename().string(),
+                                 row.line, time_ns, k, stamps[k]));
     rates[k].time_ns = stamps[k];
     rates[k].w_WI_I_rad_s = {table.number(row, 1), table.number(row, 2), table.number(row, 3)};
     if (with_covariance) rates[k].covariance_rad2_s2 = covariance(table, row);
@@ -69,7 +71,7 @@ std::vector<RateState> read_rates(const std::filesystem::path& file, const sim::
   return rates;
 }
 
-/// First numbers of the lines of a TUM file, as they stand; those that are none, which its reader complains of, end it.
+/// Returns the first numbers of a TUM file's lines; stops at the first invalid line, which the TUM reader reports.
 std::vector<double> stamps_of(const std::filesystem::path& file) {
   std::vector<double> stamps_s;
   std::ifstream stream(file);
@@ -81,16 +83,16 @@ std::vector<double> stamps_of(const std::filesystem::path& file) {
     stamps_s.push_back(stamp_s);
   }
   constexpr double kOrigin_s = 1e-9 * static_cast<double>(kExternalBagOrigin_ns);
-  // in its own unit the first stamp of a bag may be any; as seconds it is this
+  // The stamps are those of the bag, in seconds.
   if (!stamps_s.empty() && stamps_s.front() > kOrigin_s / 2 && stamps_s.back() < kOrigin_s * 2)
     for (double& stamp_s : stamps_s) stamp_s -= kOrigin_s;
   return stamps_s;
 }
 
-/// A TUM file of poses in the frame stated.
+/// Reads poses of the stated frame from a TUM file.
 Estimate read_poses(const ExternalDescription& description, const std::filesystem::path& file) {
   if (!std::filesystem::is_regular_file(file))
-    throw BadInput(file.filename().string() + ": the command did not leave it");
+    throw BadInput(file.filename().string() + ": the command did not write this file");
   Kind kind{};
   std::string method;
   Estimate estimate = read_estimate(file, kind, method, description.frame);
@@ -107,8 +109,8 @@ Estimate read_folder(const ExternalDescription& description, const std::filesyst
   std::string method;
   Estimate estimate = read_estimate(folder, kind, method, description.frame);
   if (kind != description.kind)
-    throw BadInput(std::string("the command left an estimate of kind ") + to_string(kind) + ", " +
-                   description.file.filename().string() + " states " + to_string(description.kind));
+    throw BadInput(fmt::format("the command wrote an estimate of kind {}, but {} states kind {}", to_string(kind),
+                               description.file.filename().string(), to_string(description.kind)));
   return estimate;
 }
 
@@ -123,7 +125,7 @@ void require_sizes(const AnswerBounds& bounds, ExternalDescription::Output outpu
   }
 }
 
-/// Row k of a table by its line: that is looked for in the file only when something has to be said about it.
+/// Returns a function that locates row k in the file; the file is only scanned when a message needs the line.
 AnswerBounds::Place rows_of(const std::filesystem::path& file, bool headed) {
   return [file, headed](std::size_t row) {
     std::ifstream stream(file);
@@ -148,7 +150,7 @@ void require_sense(const AnswerBounds& bounds, const Estimate& estimate, Externa
   bounds.require_slam(estimate);
 }
 
-/// Any PLY with x, y and z; normals and deviations where it has them.
+/// Reads any PLY file with x, y and z; normals and standard deviations are optional.
 std::vector<MapPoint> read_points(const std::filesystem::path& file) {
   const Cloud cloud = read_cloud(file);
   const auto column = [&](const char* name) { return cloud.find(name); };
@@ -157,7 +159,7 @@ std::vector<MapPoint> read_points(const std::filesystem::path& file) {
   const auto given = [](const auto& columns) {
     return std::ranges::all_of(columns, [](const auto* each) { return each != nullptr; });
   };
-  if (!given(place)) throw BadInput(file.filename().string() + ": must have x, y and z");
+  if (!given(place)) throw BadInput(file.filename().string() + ": columns x, y and z are needed");
   std::vector<MapPoint> points(cloud.points);
   for (std::size_t k = 0; k < points.size(); ++k) {
     const auto vector = [k](const auto& columns) -> Eigen::Vector3f {
@@ -182,7 +184,7 @@ Estimate read_external_result(const ExternalDescription& description, const std:
       estimate.rates = read_rates(output, sensors);
       break;
     case ExternalDescription::Output::tum:
-      // before it is read: as seconds such stamps soon are beyond what a time can be, and that is no help
+      // Checked before parsing: stamps in a wrong unit may overflow the time type and give an unhelpful message.
       bounds.require_unit(stamps_of(output), "seconds", rows_of(output, false));
       estimate = read_poses(description, output);
       break;

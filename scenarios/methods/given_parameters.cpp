@@ -27,7 +27,8 @@ GivenParameter parsed(const std::string& text) {
     const auto [stop, error] = std::from_chars(text.data() + equals + 1, end, out.value);
     good = error == std::errc() && stop == end;
   }
-  if (!good) throw BadInput("'" + text + "': must be METHOD.PARAMETER=NUMBER, as rate/tumble_lag.lag_s=0.5");
+  if (!good)
+    throw BadInput("'" + text + "': must have the form METHOD.PARAMETER=NUMBER, for example rate/tumble_lag.lag_s=0.5");
   return out;
 }
 
@@ -63,7 +64,7 @@ std::vector<Method> with_parameters(std::span<const MethodPointer> methods, std:
         throw BadInput(error.what());
       }
     }
-    if (!concerned) throw BadInput("'" + text + "': no method '" + given.method + "' is to run");
+    if (!concerned) throw BadInput("'" + text + "': this run does not include the method '" + given.method + "'");
   }
   std::vector<Method> out;
   for (std::size_t k = 0; k < methods.size(); ++k) out.push_back(with(*methods[k], chosen[k]));

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "scenarios/methods/map_file.hpp"
 
+#include <fmt/format.h>
+
 #include <array>
 #include <bit>
 #include <charconv>
@@ -18,7 +20,7 @@ namespace tumble::scenarios {
 
 namespace {
 
-static_assert(std::endian::native == std::endian::little, "maps are written as they stand in memory");
+static_assert(std::endian::native == std::endian::little, "maps are written in the byte order of memory");
 
 constexpr std::array<const char*, 7> kProperties = {"x", "y", "z", "nx", "ny", "nz", "sigma"};
 using Row = std::array<float, kProperties.size()>;
@@ -31,13 +33,13 @@ std::vector<std::string> header(std::size_t points) {
   return lines;
 }
 
-// the number of points that a header of ours announces
+// Returns the number of points stated in the header.
 std::size_t read_header(std::istream& file, const std::filesystem::path& path) {
   const std::vector<std::string> expected = header(0);
   std::size_t points = 0;
   for (const std::string& line : expected) {
     std::string found;
-    if (!std::getline(file, found)) throw BadInput(path.string() + ": truncated in its header");
+    if (!std::getline(file, found)) throw BadInput(path.string() + ": the header is truncated");
     const std::string prefix = "element vertex ";
     if (line.starts_with(prefix) && found.starts_with(prefix)) {
       const char* end = found.data() + found.size();
@@ -45,7 +47,7 @@ std::size_t read_header(std::istream& file, const std::filesystem::path& path) {
       if (error == std::errc() && stop == end) continue;
     }
     if (found != line)
-      throw BadInput(path.string() + ": '" + shortened(found) + "' in the header, must be '" + line + "'");
+      throw BadInput(path.string() + ": '" + shortened(found) + "' in the header; this line must be '" + line + "'");
   }
   return points;
 }
@@ -72,8 +74,7 @@ std::vector<MapPoint> read_map(const std::filesystem::path& path) {
   file.seekg(0, std::ios::end);
   const auto bytes = static_cast<std::uintmax_t>(file.tellg() - data);
   if (bytes / sizeof(Row) != points || bytes % sizeof(Row) != 0) {
-    throw BadInput(path.string() + ": truncated: " + std::to_string(bytes) + " bytes of data for " +
-                   std::to_string(points) + " points");
+    throw BadInput(fmt::format("{}: truncated: it has {} bytes of data for {} points", path.string(), bytes, points));
   }
   file.seekg(data);
   std::vector<MapPoint> map(points);

@@ -32,7 +32,7 @@ baselines::AutogainFusion::Params fusion_params(const sim::Sensors& sensors, con
   return params;
 }
 
-// as published, the attitude is the autogain filter's, of the readings as they are
+// As published: the autogain filter estimates the attitude from unmodified readings.
 Estimate run_position_autogain_fusion(const sim::Sensors& sensors, const sim::Values& parameters, const OracleInput&) {
   Estimate estimate;
   estimate.frame = Frame::centre;
@@ -62,7 +62,8 @@ Method position_autogain_fusion() {
   MethodInfo info;
   info.name = "autogain_fusion";
   info.kind = Kind::position;
-  info.doc = "Rolling averaged with the limited integral of the acceleration, on the attitude of autogain.";
+  info.doc =
+      "Averages the rolling velocity and the limited integral of the acceleration, with the attitude of autogain.";
   info.source = "Zevering et al., IMU-based pose-estimation for spherical robots, IEEE MFI 2021, eqs 2-13";
   info.settings = {&attitude_settings(), &fusion_settings()};
   info.robots = {"sphere"};

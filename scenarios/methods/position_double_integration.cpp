@@ -51,7 +51,7 @@ Method position_double_integration() {
   MethodInfo info;
   info.name = "double_integration";
   info.kind = Kind::position;
-  info.doc = "The accelerometer integrated twice with the integrated attitude: nothing bounds its drift.";
+  info.doc = "Integrates the accelerometer twice with the integrated attitude; the drift is unbounded.";
   info.source = "textbook strapdown inertial navigation";
   info.settings = {&rest_settings(), &position_double_integration_settings()};
   info.robots = {"sphere"};

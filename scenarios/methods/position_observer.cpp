@@ -9,7 +9,6 @@ namespace tumble::scenarios {
 
 namespace {
 
-// thresholds of the library, whose own defaults they are
 const Settings<baselines::SlipObserver::Params>& position_observer_settings() {
   static const Settings<baselines::SlipObserver::Params> all(
       baselines::SlipObserver::Params{},
@@ -21,7 +20,7 @@ baselines::SlipObserver::Params observer_params(const sim::Sensors& sensors, con
   baselines::SlipObserver::Params params;
   params.radius_m = sensors.sphere_radius_m;
   params.gravity_m_s2 = sensors.gravity_m_s2;
-  // from the centre of mass, which the calibration refers to; the geometric centre is some mm away
+  // The calibration refers to the centre of mass, a few millimetres from the geometric centre.
   params.lever_arm_m = bridge::lever_arm_I_m(sensors.imus.front());
   position_observer_settings().apply(parameters, params);
   return params;
@@ -60,8 +59,9 @@ Method position_observer() {
   info.name = "observer";
   info.kind = Kind::position;
   info.doc =
-      "Rolling plus a contact velocity, integrated from what acceleration and rolling disagree in during events.";
-  info.source = "ours, kept to compare with: superseded by position/tumble";
+      "Rolling velocity plus a contact velocity. During slip events, the contact velocity integrates the difference "
+      "between measured and rolling acceleration.";
+  info.source = "our own, for comparison only; superseded by position/tumble";
   info.settings = {&rest_settings(), &position_observer_settings()};
   info.robots = {"sphere"};
   return make_method(std::move(info), run_position_observer);

@@ -13,7 +13,7 @@ namespace tumble::scenarios {
 namespace {
 
 constexpr std::int64_t kEdgeNs = 400'000'000;
-constexpr double kLevelTiltRad = 0.005;  // a floor tilted by less is level
+constexpr double kLevelTiltRad = 0.005;  // smaller tilts of the floor count as level
 
 bool prepare(const char* method, const sim::Sensors& sensors, MergedImus& imus, Estimate& estimate) {
   estimate.frame = Frame::centre;
@@ -27,7 +27,7 @@ std::size_t physics_index(const sim::Truth& truth, std::int64_t time_ns, std::si
   return std::min(static_cast<std::size_t>(std::max<std::int64_t>(time_ns, 0) / truth.period_ns), count - 1);
 }
 
-/// Without what the exact attitude leaves no doubt of.
+/// Omits parameters that the exact attitude makes unnecessary.
 const Settings<RollingSmoother::Params>& settings_with_attitude() {
   static const Settings<RollingSmoother::Params> all =
       oracle_settings({"gyro_range_rad_s", "tilt_sigma_rad", "gyro_bias_sigma_rad_s", "gyro_scale_sigma",
@@ -47,11 +47,11 @@ Estimate run_exact_attitude(const sim::Sensors& sensors, const sim::Values& para
   const sim::Truth& truth = *oracle.truth;
   const std::vector<std::int64_t>& times_ns = sensors.imus.front().time_ns;
   if (truth.imus.empty() || truth.imus.front().rate_rad_s.size() != times_ns.size() || truth.q_WB.empty()) {
-    throw BadInput("the truth does not belong to the recording: rates of the primary IMU are missing");
+    throw BadInput("the truth does not belong to this recording: it has no rates of the primary IMU");
   }
   const Eigen::Matrix3d R_BI = truth.imus.front().T_BI.linear();
   std::size_t next = 0;
-  for (ImuSample& sample : imus.samples) {  // a mean over readings of the primary IMU
+  for (ImuSample& sample : imus.samples) {  // average over readings of the primary IMU
     Eigen::Vector3d sum = Eigen::Vector3d::Zero();
     const std::size_t first = next;
     while (next < times_ns.size() && times_ns[next] <= sample.time_ns) sum += truth.imus.front().rate_rad_s[next++];
@@ -71,7 +71,7 @@ Estimate run_exact_attitude(const sim::Sensors& sensors, const sim::Values& para
   return estimate;
 }
 
-/// An edge tilts the normal for a moment, a slope for longer: short spells of `incline` are bumps.
+/// An edge tilts the contact normal only briefly: short intervals of `incline` become bumps.
 void edges_are_bumps(std::int64_t period_ns, std::vector<RollingMode>& modes) {
   for (std::size_t begin = 0; begin < modes.size();) {
     std::size_t end = begin;
@@ -84,7 +84,7 @@ void edges_are_bumps(std::int64_t period_ns, std::vector<RollingMode>& modes) {
   }
 }
 
-/// Modes at the samples, by the labels and normals of the truth.
+/// Returns the mode of each sample from the labels and normals of the truth.
 std::vector<RollingMode> true_modes(const sim::Truth& truth, const std::vector<ImuSample>& samples) {
   std::vector<RollingMode> at_step(truth.label.size(), RollingMode::grip);
   for (const sim::ContactTruth& contact : truth.contacts) {
@@ -110,7 +110,7 @@ Estimate run_exact_contact(const sim::Sensors& sensors, const sim::Values& param
   Estimate estimate;
   MergedImus imus;
   if (!prepare("position/oracle_contact", sensors, imus, estimate)) return estimate;
-  if (oracle.truth->label.empty()) throw BadInput("the truth holds no state of contact");
+  if (oracle.truth->label.empty()) throw BadInput("the truth has no contact states");
   RollingSmoother::Params params = rolling_smoother_params(sensors, imus, settings_with_contact(), parameters);
   smooth(params, imus, true_modes(*oracle.truth, imus.samples), estimate);
   return estimate;
@@ -122,7 +122,9 @@ Method position_oracle() {
   MethodInfo info;
   info.name = "oracle";
   info.kind = Kind::position;
-  info.doc = "Our smoother given the exact attitude at all times: what the other sensors and the contact leave.";
+  info.doc =
+      "Bound: our smoother with the exact attitude at all times; shows the error of the other sensors and of the "
+      "contact.";
   info.ours = true;
   info.settings = {&settings_with_attitude()};
   info.needs_truth = true;
@@ -134,7 +136,9 @@ Method position_oracle_contact() {
   MethodInfo info;
   info.name = "oracle_contact";
   info.kind = Kind::position;
-  info.doc = "Our smoother told at each instant whether the contact grips, slips or is lost: what the sensors leave.";
+  info.doc =
+      "Bound: our smoother with the true contact state (grip, slip or none) at all times; shows the error of the "
+      "sensors.";
   info.ours = true;
   info.settings = {&settings_with_contact()};
   info.needs_truth = true;

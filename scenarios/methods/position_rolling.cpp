@@ -43,7 +43,7 @@ Method position_rolling() {
   info.name = "rolling";
   info.kind = Kind::position;
   info.doc =
-      "Rolling without slip on a level plane: attitude by integration after the gyro's bias at rest, v = r w x n.";
+      "Rolling without slip on a level plane: integrates the gyro after removal of its bias at rest; v = r w x n.";
   info.source = "textbook rolling constraint";
   info.settings = {&rest_settings(), &position_rolling_settings()};
   info.robots = {"sphere"};

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "scenarios/methods/python_exchange.hpp"
 
+#include <fmt/format.h>
+
 #include <bit>
 #include <cmath>
 #include <cstring>
@@ -29,7 +31,7 @@ std::size_t aligned(std::size_t size) {
   return (size + kAlignment - 1) / kAlignment * kAlignment;
 }
 
-/// Arrays that stand somewhere, to be written one after the other; what is added must outlive it.
+/// Collects arrays to be written consecutively. Added arrays must outlive this object.
 class Arrays {
  public:
   template <typename Value>
@@ -38,7 +40,7 @@ class Arrays {
     if (columns > 0) shape.push_back(columns);
     return place(dtype, shape, std::as_bytes(std::span(rows)));
   }
-  /// A matrix, row by row.
+  /// Adds a matrix, row by row.
   json add(const Eigen::Isometry3d& T) {
     const Eigen::Matrix<double, 4, 4, Eigen::RowMajor> rows = T.matrix();
     matrices_.emplace_back(rows.data(), rows.data() + rows.size());
@@ -68,7 +70,7 @@ class Arrays {
   }
 
   std::vector<std::span<const std::byte>> bytes_;
-  std::deque<std::vector<double>> matrices_;  // their addresses stay
+  std::deque<std::vector<double>> matrices_;  // deque: addresses stay valid
   std::size_t offset_ = 0;
 };
 
@@ -140,17 +142,17 @@ json of_series(const sim::SeriesRecord& series, Arrays& arrays) {
           {"constants", std::move(constants)}};
 }
 
-/// The memory of an answer: its text, and arrays that are where the text says.
+/// Reads an answer in memory: its text, and the arrays that the text describes.
 class Answer {
  public:
   Answer(const SharedMemory& memory, const AnswerBounds& bounds) {
-    // a function can make the memory larger than what it was asked for
+    // The function can make the memory larger than the size that it was given.
     const std::uintmax_t most = bounds.table_bytes() + bounds.map_bytes();
     if (memory.size() > most)
-      throw BadInput("the answer has " + std::to_string(memory.size()) + " bytes, must be at most " +
-                     std::to_string(most) + " for this recording");
+      throw BadInput(
+          fmt::format("the answer has {} bytes, must be at most {} for this recording", memory.size(), most));
     bytes_ = memory.contents();
-    if (bytes_.empty()) throw BadInput("the function ended the interpreter and left no answer");
+    if (bytes_.empty()) throw BadInput("the function ended the interpreter without an answer");
     std::uint64_t length = 0;
     if (bytes_.size() >= sizeof(length)) std::memcpy(&length, bytes_.data(), sizeof(length));
     if (length == 0 || length > bytes_.size() - sizeof(length)) fail();
@@ -165,7 +167,7 @@ class Answer {
   }
   bool has(const char* name) const { return text_.contains("arrays") && text_["arrays"].contains(name); }
 
-  /// Rows of `columns` each; `rows` is how many there must be, or any number.
+  /// Returns rows of `columns` values; `rows` is the required number, or any.
   template <typename Value>
   std::vector<Value> array(const char* name, const char* dtype, std::size_t columns,
                            std::optional<std::size_t> rows) const {
@@ -191,7 +193,7 @@ class Answer {
 
  private:
   [[noreturn]] static void fail() {
-    throw BadInput("the answer in memory is damaged: did the function write into it?");
+    throw BadInput("the answer in memory is damaged; check whether the function wrote into it");
   }
 
   std::string bytes_;
@@ -204,7 +206,7 @@ Eigen::Vector3d row_of(const std::vector<double>& rows, std::size_t k) {
 }
 
 void read_rates(const Answer& answer, const sim::Sensors& sensors, Estimate& estimate) {
-  if (sensors.imus.empty()) throw BadInput("the recording has no IMU, whose samples rates belong to");
+  if (sensors.imus.empty()) throw BadInput("the recording has no IMU; a rate method needs the samples of an IMU");
   const std::vector<std::int64_t>& stamps = sensors.imus.front().time_ns;
   const std::vector<double> rates = answer.array<double>("rate", "<f8", 3, stamps.size());
   std::vector<double> covariances;
@@ -219,7 +221,7 @@ void read_rates(const Answer& answer, const sim::Sensors& sensors, Estimate& est
   }
 }
 
-/// Of a position, a map and an attitude; the last has no positions.
+/// Reads the poses of kinds position, slam and attitude; attitude has no positions.
 std::vector<PoseState> read_poses(const Answer& answer) {
   const auto times_ns = answer.array<std::int64_t>("time_ns", "<i8", 1, {});
   const auto quaternions = answer.array<double>("quaternion", "<f8", 4, times_ns.size());
@@ -231,7 +233,7 @@ std::vector<PoseState> read_poses(const Answer& answer) {
     poses[k].p_WA_m = row_of(positions, k);
     const Eigen::Quaterniond q{Eigen::Map<const Eigen::Vector4d>(&quaternions[4 * k])};
     if (!(std::abs(q.coeffs().stableNorm() - 1.0) <= kQuaternionTolerance) || (k > 0 && times_ns[k] <= times_ns[k - 1]))
-      throw BadInput("pose " + std::to_string(k) + " of the answer has no attitude, or a time that does not rise");
+      throw BadInput(fmt::format("pose {} of the answer has no valid attitude, or its time does not increase", k));
     poses[k].q_WA = q.normalized();
   }
   return poses;
@@ -274,7 +276,7 @@ Estimate read_answer(const SharedMemory& memory, Kind kind, Frame frame, const s
     return estimate;
   }
   estimate.poses = read_poses(answer);
-  const AnswerBounds::Place place = [](std::size_t k) { return "pose " + std::to_string(k) + " of the answer"; };
+  const AnswerBounds::Place place = [](std::size_t k) { return fmt::format("pose {} of the answer", k); };
   bounds.require_unit(estimate, "nanoseconds", place);
   bounds.require_poses(estimate.poses, place);
   if (kind == Kind::attitude) {
@@ -284,7 +286,7 @@ Estimate read_answer(const SharedMemory& memory, Kind kind, Frame frame, const s
   if (kind == Kind::slam && answer.has("map")) read_map(answer, estimate);
   bounds.require_slam(estimate);
   if (const std::string complaint = turning_complaint(estimate, sensors); !complaint.empty())
-    throw BadInput("the answer: " + complaint);
+    throw BadInput("the answer is invalid: " + complaint);
   return estimate;
 }
 

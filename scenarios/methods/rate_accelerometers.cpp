@@ -19,8 +19,8 @@ const Settings<baselines::AccelerometerRate::Params>& rate_accelerometers_settin
   return all;
 }
 
-// The specific force of `other` at the stamps of the primary, in its axes; NaN before, after and at a rail. The gyro of
-// `other` is never read.
+// Returns the specific force of `other` in its axes at the primary's stamps; NaN outside its readings and where
+// clipped. The gyro of `other` is never used.
 Status auxiliary_imu(const sim::ImuRecord& primary, const sim::ImuRecord& other, AuxiliaryAccelerometer& out) {
   std::vector<ImuSample> there;
   if (Status status = bridge::imu_samples(other, there); !status.ok()) return status;
@@ -73,8 +73,9 @@ Method rate_accelerometers() {
   info.name = "accelerometers";
   info.kind = Kind::rate;
   info.doc =
-      "Gyro-free: an extended Kalman filter on the differences of all accelerometers, the reference's too (never its "
-      "gyro), and on the gyro's free axes. Made for long fast rotation with a wide spread of accelerometers.";
+      "Gyro-free extended Kalman filter on the differences of all accelerometers and on the unclipped gyro axes. It "
+      "uses the accelerometer of the reference IMU too, but not its gyro. Made for long fast rotation with "
+      "accelerometers far apart.";
   info.source = "the family of Pachter's and Lee's gyro-free inertial systems";
   info.settings = {&rate_accelerometers_settings()};
   return make_method(std::move(info), run_rate_accelerometers);

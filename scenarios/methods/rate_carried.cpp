@@ -23,8 +23,8 @@ Method rate_carried() {
   info.name = "carried";
   info.kind = Kind::rate;
   info.doc =
-      "A smoother over the recording of a body that is carried, not in flight: gravity turning in the sensor tells the "
-      "rate that a clipped gyro lost.";
+      "Smoother over the whole recording of a hand-held body. Gravity's rotation in the sensor axes determines the "
+      "rate of a clipped gyro.";
   info.ours = true;
   info.settings = {&carried_settings()};
   return make_method(std::move(info), at_sample_times<run_rate_carried>);

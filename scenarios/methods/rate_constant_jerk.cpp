@@ -6,7 +6,7 @@ namespace tumble::scenarios {
 
 namespace {
 
-// of the other kinds are fixed
+// parameters of the other kinds are fixed
 const Settings<baselines::ClippedBaseline::Params>& rate_constant_jerk_settings() {
   static const Settings<baselines::ClippedBaseline::Params> all(
       {.kind = baselines::ClippedBaseline::Kind::constant_jerk},
@@ -25,8 +25,8 @@ Method rate_constant_jerk() {
   info.name = "constant_jerk";
   info.kind = Kind::rate;
   info.doc =
-      "A smoother per axis whose angular jerk is a random walk and whose rate stays bounded, clipped readings as "
-      "bounds. Made for swings that pass the rail once, without impacts while they are clipped.";
+      "Smoother per axis with random-walk angular jerk and bounded rate; clipped readings are bounds. Made for motions "
+      "that pass the rail once, without impacts while clipped.";
   info.source = "textbook: Rauch, Tung and Striebel 1965 with a constant-jerk model (Matern 5/2)";
   info.settings = {&rate_constant_jerk_settings()};
   return make_method(std::move(info), run_rate_constant_jerk);

@@ -6,7 +6,7 @@ namespace tumble::scenarios {
 
 namespace {
 
-// of the other kinds are fixed
+// parameters of the other kinds are fixed
 const Settings<baselines::ClippedBaseline::Params>& rate_interpolate_settings() {
   static const Settings<baselines::ClippedBaseline::Params> all(
       {.kind = baselines::ClippedBaseline::Kind::interpolate},
@@ -26,8 +26,8 @@ Method rate_interpolate() {
   info.name = "interpolate";
   info.kind = Kind::rate;
   info.doc =
-      "A cubic over each clipped gap, value and slope continued from both sides and held beyond the rail. Made for "
-      "gaps that are short beside the motion, without impacts in them.";
+      "Cubic interpolation over each clipped gap, with value and slope of both ends, kept beyond the rail. Made for "
+      "gaps that are short relative to the motion and contain no impact.";
   info.source = "textbook: cubic interpolation";
   info.settings = {&rate_interpolate_settings()};
   return make_method(std::move(info), run_rate_interpolate);

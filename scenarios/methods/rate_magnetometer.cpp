@@ -39,8 +39,8 @@ Method rate_magnetometer() {
   info.name = "magnetometer";
   info.kind = Kind::rate;
   info.doc =
-      "An extended Kalman filter that follows the turning of the magnetic field beside the gyro's free axes. Made for "
-      "fast spin across the field in the open; without a magnetometer in the recording smoothness alone is left.";
+      "Extended Kalman filter on the rotation of the magnetic field and the unclipped gyro axes. Made for fast spin "
+      "across an undisturbed field; without a magnetometer, only smoothness constrains the rate.";
   info.source = "the family of Tan's filters for spinning bodies";
   info.settings = {&rate_magnetometer_settings()};
   return make_method(std::move(info), run_rate_magnetometer);

@@ -19,11 +19,11 @@ Estimate run_rate_oracle(const sim::Sensors& sensors, const sim::Values&, const 
 
 Status unclipped_rates(const sim::Sensors& sensors, const sim::Truth& truth, std::vector<RateState>& out) {
   out.clear();
-  // the readings themselves are checked too: an oracle shall not run where no method could
+  // Check the original readings too: an oracle must fail where every method must fail.
   std::vector<ImuSample> samples;
   Status status = bridge::primary_imu_samples(sensors, samples);
   if (!status.ok()) return status;
-  if (truth.imus.empty()) throw BadInput("the truth holds no IMU");
+  if (truth.imus.empty()) throw BadInput("the truth has no IMU");
   status = bridge::unclipped_samples(sensors.imus.front(), truth.imus.front(), samples);
   if (!status.ok()) return status;
   return raw_rates(sensors, samples, out);
@@ -33,7 +33,7 @@ Method rate_oracle() {
   MethodInfo info;
   info.name = "oracle";
   info.kind = Kind::rate;
-  info.doc = "The same gyro without its rail: noise, bias and bandwidth as read, nothing clipped. The bound.";
+  info.doc = "Bound: the same gyro without saturation; noise, bias and bandwidth are unchanged.";
   info.ours = true;
   info.needs_truth = true;
   return make_method(std::move(info), at_sample_times<run_rate_oracle>);

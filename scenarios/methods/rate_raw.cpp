@@ -34,8 +34,10 @@ Method rate_raw() {
   MethodInfo info;
   info.name = "raw";
   info.kind = Kind::rate;
-  info.doc = "The primary IMU's gyro as it is, clipped where it clips; its variance is the data sheet's noise.";
-  info.source = "no method: the baseline";
+  info.doc =
+      "Unchanged gyro readings of the primary IMU, including clipped ones; the variance is the noise of the data "
+      "sheet.";
+  info.source = "baseline without a method";
   info.baseline = true;
   return make_method(std::move(info), run_rate_raw);
 }

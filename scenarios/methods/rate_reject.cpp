@@ -6,7 +6,7 @@ namespace tumble::scenarios {
 
 namespace {
 
-// of the other kinds are fixed
+// parameters of the other kinds are fixed
 const Settings<baselines::ClippedBaseline::Params>& rate_reject_settings() {
   static const Settings<baselines::ClippedBaseline::Params> all(
       {.kind = baselines::ClippedBaseline::Kind::reject},
@@ -25,9 +25,9 @@ Method rate_reject() {
   info.name = "reject";
   info.kind = Kind::rate;
   info.doc =
-      "Clipped rows are dropped and the rate is a random walk pinned by its process noise alone, forward in time. Made "
-      "for gaps shorter than the time between two corrections by a lidar, which this stage does not have.";
-  info.source = "He et al., Point-LIO, Advanced Intelligent Systems 2023: its treatment of saturated readings";
+      "Drops clipped readings; the rate is then a random walk with the given process noise, forward in time. Made for "
+      "gaps shorter than the time between two lidar corrections, which this method does not have.";
+  info.source = "He et al., Point-LIO, Advanced Intelligent Systems 2023: treatment of saturated readings";
   info.settings = {&rate_reject_settings()};
   return make_method(std::move(info), run_rate_reject);
 }

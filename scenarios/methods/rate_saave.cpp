@@ -51,14 +51,15 @@ Status saave_rates(const sim::Sensors& sensors, std::span<const ImuSample> sampl
   return Saave(params).estimate(samples, out);
 }
 
-// the figure: tests/bench/rate_statistics hill 4201 4225 --method raw --method saave --exact-mounting
+// Reproduce the figure with: tests/bench/rate_statistics hill 4201 4225 --method raw --method saave --exact-mounting
 Method rate_saave() {
   MethodInfo info;
   info.name = "saave";
   info.kind = Kind::rate;
   info.doc =
-      "The clipped axis from the centripetal specific force of free flight, then a white-noise-on-jerk smoother. With "
-      "the exact lever arm its median error on `hill` is 83.5 % below the clipped gyro's (83.4 % published).";
+      "Estimates the clipped axis from the centripetal force in free flight, then applies a white-noise-on-jerk "
+      "smoother. With the exact lever arm, its median error on `hill` is 83.5 % below that of the clipped gyro (83.4 % "
+      "published).";
   info.source = "Deschenes et al., Saturation-Aware Angular Velocity Estimation, ICRA 2024";
   info.settings = {&saave_settings()};
   info.robots = {"rig", "pendulum"};

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "scenarios/methods/registry.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <limits>
 #include <utility>
@@ -40,7 +42,7 @@ std::vector<Method> all_methods() {
       attitude_tumble_lag(),
       attitude_tumble_batch(),
       attitude_oracle(),
-      position_rolling(),  // the first of a kind is what the others are held against, where no raw one is
+      position_rolling(),  // Without a baseline, the first method of a kind is the reference.
       position_double_integration(),
       position_observer(),
       position_autogain_fusion(),
@@ -72,12 +74,12 @@ std::vector<Method> all_methods() {
   return all;
 }
 
-/// The name of one of ours would stand for two things in the results.
+/// A name of a built-in method would be ambiguous in the results.
 MethodPointer method_of_file(const std::string& file, double time_limit_s) {
   auto method = std::make_shared<const Method>(external_method(file, time_limit_s));
   for (const Method& own : methods()) {
     if (full_name(own.info) == full_name(method->info))
-      throw BadInput(file + ": " + full_name(own.info) + " is a method of this build; name yours otherwise");
+      throw BadInput(file + ": " + full_name(own.info) + " is a method of this build; choose another name for yours");
   }
   return method;
 }
@@ -109,7 +111,7 @@ std::string MethodInfo::why_not(const Subject& subject) const {
   const bool known = !robots.empty() && !subject.robot.empty();
   if (known && std::find(robots.begin(), robots.end(), subject.robot) == robots.end())
     return "does not apply to the robot '" + subject.robot + "'";
-  if (kind == Kind::slam && !subject.has_lidar) return "needs a lidar, and there is none";
+  if (kind == Kind::slam && !subject.has_lidar) return "needs a lidar, but the recording has none";
   return {};
 }
 
@@ -121,11 +123,11 @@ Method make_method(MethodInfo info, RunCore run) {
       std::make_shared<const std::vector<sim::Parameter>>(joined_rows(settings, info.parameters_first));
   info.parameters = *parameters;
   const bool needs_truth = info.needs_truth;
-  // keeps `parameters`, which the info refers to
+  // The capture owns `parameters`, which the info refers to.
   RunMethod wrapped = [name, settings, parameters, needs_truth, run](
                           const sim::Sensors& sensors, const sim::Values& given, const OracleInput& oracle) {
     if (needs_truth && oracle.truth == nullptr) {
-      throw BadInput("method " + name + " needs the truth, and this recording has none");
+      throw BadInput(fmt::format("method {} needs the truth, but this recording has none", name));
     }
     try {
       const sim::Values resolved = resolve_settings("method " + name, given, settings);
@@ -162,14 +164,15 @@ std::vector<MethodPointer> find_methods(std::span<const std::string> names) {
 
 std::vector<MethodPointer> find_methods_within(std::span<const std::string> names, double time_limit_s) {
   std::vector<MethodPointer> found;
-  std::map<std::string, std::string> asked;  // what brought each method
+  std::map<std::string, std::string> asked;  // argument that selected each method
   for (const std::string& name : names) {
     for (MethodPointer& method : find_within(name, time_limit_s)) {
       const auto [before, is_new] = asked.emplace(full_name(method->info), name);
       if (is_new) {
         found.push_back(std::move(method));
       } else if (is_method_file(name) && before->second != name) {
-        throw BadInput("'" + before->second + "' and '" + name + "' are both " + full_name(method->info));
+        throw BadInput(
+            fmt::format("'{}' and '{}' have the same name, {}", before->second, name, full_name(method->info)));
       }
     }
   }

@@ -14,8 +14,8 @@ namespace tumble::scenarios {
 
 namespace {
 
-/// Times of a record's samples, and the jitter that was mended [s]. Stamps that are no times (they go back) stay: the
-/// bridge refuses them.
+/// Sample times of a record, and the jitter removed from the stamps [s]. Decreasing stamps are left for the bridge to
+/// reject.
 struct SampleTimes {
   std::vector<std::int64_t> times_ns;
   double mended_s = 0.0;

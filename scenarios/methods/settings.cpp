@@ -11,7 +11,7 @@ namespace tumble::scenarios {
 
 namespace {
 
-/// "m/s^2" as names end in it: "_m_s2".
+/// Returns the suffix of names for a unit: "_m_s2" for "m/s^2".
 std::string suffix_of(std::string_view unit) {
   std::string out = "_";
   for (const char c : unit) {
@@ -52,7 +52,7 @@ void SettingsTable::add(const std::string& field_name, double value, const Field
   sim::Parameter row{texts_.emplace_back(name_of(field_name)), value, field.low, field.high, field.unit, field.meaning};
   const bool stated = is_among(field_name, options_.stated);
   if (stated) {
-    row.doc = texts_.emplace_back(std::string(field.meaning) + "; unless set, the recording's where it states it");
+    row.doc = texts_.emplace_back(std::string(field.meaning) + "; default: the value stated in the recording, if any");
     stated_.insert(row.name);
   }
   if (whole) whole_.insert(row.name);

@@ -32,8 +32,8 @@ Estimate run_slam_icp(const sim::Sensors& sensors, const sim::Values& parameters
 
 Method slam_icp() {
   return rig_slam({.name = "icp",
-                   .doc = "Sweeps deskewed with the rates of saave, registered point-to-plane to a voxel map.",
-                   .source = "after Deschenes et al., ICRA 2024, with a registration of our own",
+                   .doc = "Deskews sweeps with the rates of saave and registers them point to plane to a voxel map.",
+                   .source = "after Deschenes et al., ICRA 2024, with our own registration",
                    .settings = {&slam_icp_chain_settings(), &slam_icp_rate_settings()}},
                   run_slam_icp);
 }

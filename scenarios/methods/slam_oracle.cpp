@@ -26,13 +26,12 @@ Estimate run_slam_oracle(const sim::Sensors& sensors, const sim::Values& paramet
 }  // namespace
 
 Method slam_oracle() {
-  return rig_slam(
-      {.name = "oracle",
-       .doc = "The chain of tumble with the gyro's unclipped twin; the accelerometer stays as read. The bound.",
-       .ours = true,
-       .settings = {&slam_oracle_settings()},
-       .needs_truth = true},
-      at_sample_times<run_slam_oracle>);
+  return rig_slam({.name = "oracle",
+                   .doc = "Bound: the chain of tumble with an unclipped gyro; the accelerometer is unchanged.",
+                   .ours = true,
+                   .settings = {&slam_oracle_settings()},
+                   .needs_truth = true},
+                  at_sample_times<run_slam_oracle>);
 }
 
 }  // namespace tumble::scenarios

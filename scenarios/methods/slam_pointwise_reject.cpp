@@ -30,7 +30,7 @@ void run_filter(const sim::Sensors& sensors, std::span<const ImuSample> samples,
   const sim::LidarRecord& lidar = sensors.lidars.front();
   const double rail = sure_range(sensors.imus.front().stated_accel_range_m_s2);
   std::size_t next = 0;
-  // the IMU up to the first sample at or after the sweep's end
+  // The IMU must reach a sample at or after the sweep's end.
   const auto covers = [&](const bridge::Sweep& sweep) {
     while (next < samples.size() && (next == 0 || samples[next - 1].time_ns < sweep.end_ns)) {
       unsigned clipped = estimate.rates[next].clipped_axes;
@@ -80,9 +80,8 @@ Method slam_pointwise_reject() {
   return rig_slam(
       {.name = "pointwise_reject",
        .doc =
-           "A filter that takes each point at its own instant and each IMU reading as a measurement of a random "
-           "motion, "
-           "clipped axes left out. Not modelled: biases after the rest at the start, gravity and mounting as states.",
+           "Filter that processes each point at its own time and each IMU reading as a measurement of a random motion, "
+           "without clipped axes. Not modelled: biases after the initial rest, gravity and mounting as states.",
        .source = "the family of Point-LIO, He et al., Advanced Intelligent Systems 2023",
        .settings = {&slam_pointwise_reject_settings()}},
       run_slam_pointwise_reject);

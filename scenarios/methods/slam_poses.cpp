@@ -5,12 +5,12 @@
 #include "scenarios/methods/sweep_log.hpp"
 #include "tumble/mapping/voxel_map.hpp"
 
-/// Maps of the rolling sphere from the poses of a position method, as published: nothing is registered.
+/// Builds maps of the rolling sphere from the poses of a position method, as published, without registration.
 namespace tumble::scenarios {
 
 namespace {
 
-/// The map's numbers as those of a registration are called.
+/// Parameters of the map, named as those of the registration methods.
 struct MapParams {
   VoxelMap::Params map;
   double nearest_m = 0.3;
@@ -18,7 +18,8 @@ struct MapParams {
   template <class Self, class Visitor>
   static void fields(Self& p, Visitor& visit) {
     visit.group("map_", p.map);
-    visit(p.nearest_m, {"nearest_m", "m", 0.0, 100.0, "nearer returns are the sphere's own"});
+    visit(p.nearest_m,
+          {"nearest_m", "m", 0.0, 100.0, "range below which returns belong to the sphere itself and are dropped"});
   }
 };
 
@@ -40,7 +41,7 @@ const Method& tumble() {
   return method;
 }
 
-/// Poses of the body in time order, asked for in time order too.
+/// Interpolates poses of the body; query times must increase.
 class Track {
  public:
   Track(const std::vector<PoseState>& poses, const Eigen::Vector3d& centre_B_m)
@@ -48,7 +49,7 @@ class Track {
   bool covers(std::int64_t time_ns) const {
     return !poses_.empty() && time_ns >= poses_.front().time_ns && time_ns <= poses_.back().time_ns;
   }
-  /// Interpolated; O(1) for times near the last one asked for.
+  /// O(1) for times close to the previous query.
   Eigen::Isometry3d at(std::int64_t time_ns) {
     while (next_ > 1 && poses_[next_ - 1].time_ns > time_ns) --next_;
     while (next_ + 1 < poses_.size() && poses_[next_].time_ns < time_ns) ++next_;
@@ -64,8 +65,8 @@ class Track {
   std::size_t next_ = 1;
 };
 
-// the lidar's place is known from the centre of mass, some mm from the centre; methods that do not say where take them
-// for one
+// The lidar is calibrated from the centre of mass, a few millimetres from the sphere's centre. Methods that do not
+// estimate this offset assume zero.
 Estimate map_from_poses(const Method& position, const sim::Sensors& sensors, const sim::Values& parameters) {
   Estimate estimate = position.run(sensors, values_of(position, parameters), {});
   estimate.contacts.clear();
@@ -120,7 +121,7 @@ Estimate run_poses_tumble(const sim::Sensors& sensors, const sim::Values& parame
   return map_from_poses(tumble(), sensors, parameters);
 }
 
-/// A map from the poses of `position`.
+/// Returns a slam method that maps from the poses of `position`.
 Method posed(MethodInfo info, const Method& position, RunCore run) {
   info.kind = Kind::slam;
   info.settings = stages_after({&map_settings()}, position);
@@ -133,7 +134,7 @@ Method posed(MethodInfo info, const Method& position, RunCore run) {
 Method slam_poses_rolling() {
   MethodInfo info;
   info.name = "poses_rolling";
-  info.doc = "A map from the poses of rolling; nothing is registered.";
+  info.doc = "Maps with the poses of the rolling constraint, without registration.";
   info.source = "textbook rolling constraint";
   return posed(std::move(info), rolling(), run_poses_rolling);
 }
@@ -141,7 +142,7 @@ Method slam_poses_rolling() {
 Method slam_poses_autogain_fusion() {
   MethodInfo info;
   info.name = "poses_autogain_fusion";
-  info.doc = "A map from the poses of autogain_fusion, as published; nothing is registered.";
+  info.doc = "Maps with the published poses of autogain_fusion, without registration.";
   info.source = "Zevering et al., IMU-based pose-estimation for spherical robots, IEEE MFI 2021";
   return posed(std::move(info), autogain_fusion(), run_poses_autogain_fusion);
 }
@@ -149,7 +150,7 @@ Method slam_poses_autogain_fusion() {
 Method slam_poses_tumble() {
   MethodInfo info;
   info.name = "poses_tumble";
-  info.doc = "A map from the poses of our position method; nothing is registered.";
+  info.doc = "Maps with the poses of our position method, without registration.";
   info.ours = true;
   return posed(std::move(info), tumble(), run_poses_tumble);
 }

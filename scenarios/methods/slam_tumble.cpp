@@ -45,8 +45,8 @@ Estimate run_slam_tumble(const sim::Sensors& sensors, const sim::Values& paramet
 
 Method slam_tumble() {
   return rig_slam({.name = "tumble",
-                   .doc = "The chain of icp with the rates of rate/tumble, the saturation deficit of clipped axes "
-                          "estimated in the registration.",
+                   .doc = "The chain of icp with the rates of rate/tumble; the registration estimates the saturation "
+                          "deficit of clipped axes.",
                    .ours = true,
                    .settings = {&slam_tumble_chain_settings(), &slam_tumble_rate_settings()}},
                   at_sample_times<run_slam_tumble>);

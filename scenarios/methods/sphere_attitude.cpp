@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "scenarios/methods/sphere_attitude.hpp"
 
+#include <fmt/format.h>
+
 #include <string>
 
 #include "scenarios/errors.hpp"
@@ -39,7 +41,7 @@ const Settings<RestParams>& rest_settings() {
 
 void require_sphere(const char* method, const sim::Sensors& sensors) {
   if (!(sensors.sphere_radius_m > 0.0)) {
-    throw BadInput(std::string("method ") + method + " needs a sphere: sphere_radius_m is 0");
+    throw BadInput(fmt::format("method {} needs the recording of a sphere, but sphere_radius_m is 0", method));
   }
 }
 

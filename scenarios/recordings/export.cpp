@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "scenarios/recordings/export.hpp"
 
+#include <fmt/format.h>
+
 #include <array>
 #include <optional>
 #include <utility>
@@ -52,8 +54,7 @@ Notes write_bag(const path& recording, const path& out, const ExportChoices& cho
   ExportNames names = export_names(sensors);
   Notes left_out;
   for (const sim::SeriesRecord& series : sensors.series)
-    left_out.push_back("'" + series.name + "', a " + series.kind +
-                       ", is left out: bags of ours have no message for it");
+    left_out.push_back("'" + series.name + "', a " + series.kind + ", is left out: bags have no message type for it");
   return joined(joined(std::move(names.imus.notes), names.lidars.notes), left_out);
 }
 
@@ -74,7 +75,7 @@ Notes write_sweeps(const path& recording, const path& out, const ExportChoices&)
   return export_names(sensors).lidars.notes;
 }
 
-/// Sorted by name.
+/// sorted by name
 const std::array<Format, 9> kFormats = {{
     {"csv", write_csv},
     {"kitti", write_kitti},
@@ -112,8 +113,8 @@ Notes export_recording(const path& recording, const std::string& format, const p
   std::string known;
   for (const std::string& name : export_formats()) known += " " + name;
   const std::string near = sim::nearest_name(format, export_formats());
-  throw BadInput("unknown format '" + format + "'" + (near.empty() ? "" : "; did you mean '" + near + "'?") +
-                 " (known:" + known + ")");
+  throw BadInput(fmt::format("unknown format '{}'{} (known formats:{})", format,
+                             near.empty() ? "" : "; did you mean '" + near + "'?", known));
 }
 
 }  // namespace tumble::scenarios

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "scenarios/recordings/export_names.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cctype>
 
@@ -8,22 +10,22 @@ namespace tumble::scenarios {
 
 namespace {
 
-/// Of the bags (bag.hpp), and of a CSV's truth.
+/// Names used by bags (bag.hpp) and by a CSV's truth.
 const std::set<std::string>& own_names() {
   static const std::set<std::string> names = {"body", "clock", "tf", "tf_static", "truth", "world"};
   return names;
 }
 
-/// Frames in which readers, ours among them, look for no sensor.
+/// Frames that readers, including ours, do not treat as sensors.
 const std::set<std::string>& frames_of_no_sensor() {
   static const std::set<std::string> names = {"base_link", "map", "odom"};
   return names;
 }
 
-/// What a sensor would be called if it were alone.
+/// Preferred name of a sensor.
 struct Claim {
   std::string sensor, name;
-  bool own;  ///< the name that the recording has, else a number in the place of one that cannot be written
+  bool own;  ///< the recording's own name, not a number that replaces an invalid name
   std::string given = {};
 };
 
@@ -40,11 +42,12 @@ void add_claims(const std::vector<Record>& records, const std::string& kind, con
 
 std::string why_another(const Claim& claim) {
   const bool sensors = !own_names().contains(claim.name) && !frames_of_no_sensor().contains(claim.name);
-  return "'" + claim.name + "' is " + (sensors ? "another sensor's name too" : "a topic or frame that is no sensor's") +
-         ": " + claim.sensor + " is written as '" + claim.given + "'";
+  return fmt::format("'{}' is {}: {} is written as '{}'", claim.name,
+                     sensors ? "also the name of another sensor" : "a topic or frame that does not belong to a sensor",
+                     claim.sensor, claim.given);
 }
 
-/// Of sensors or of their truth.
+/// For sensors or their truth.
 template <class Recorded>
 ExportNames names_of(const Recorded& recorded) {
   std::vector<Claim> claims;

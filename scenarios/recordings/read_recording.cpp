@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include <fmt/format.h>
+
 #include <algorithm>
 
 #include "scenarios/errors.hpp"
@@ -11,10 +13,10 @@ namespace tumble::scenarios {
 
 namespace {
 
-/// Archive that reads every field out of a group.
+/// Archive that reads every field from a group.
 class RecordingReader {
  public:
-  /// `scratch`: where columns are set aside that are not kept in memory.
+  /// `scratch`: folder for columns that are not kept in memory.
   explicit RecordingReader(hdf5::Group group, std::filesystem::path scratch = {})
       : group_(std::move(group)), scratch_(std::move(scratch)) {}
 
@@ -25,14 +27,14 @@ class RecordingReader {
     std::vector<Eigen::Vector4d> rows;
     group_.read(name, rows);
     if (rows.size() != 4 || rows[3] != Eigen::Vector4d(0.0, 0.0, 0.0, 1.0)) {
-      group_.fail(name, "must be a 4 x 4 matrix that ends in 0 0 0 1");
+      group_.fail(name, "must be a 4 x 4 matrix with the last row 0 0 0 1");
     }
     for (int i = 0; i < 3; ++i) pose.matrix().row(i) = rows[static_cast<std::size_t>(i)].transpose();
   }
   void point(const char* name, Eigen::Vector3d& point, const char*) {
     std::vector<Eigen::Vector3d> rows;
     group_.read(name, rows);
-    if (rows.size() != 1) group_.fail(name, "must have one row");
+    if (rows.size() != 1) group_.fail(name, "must have exactly one row");
     point = rows[0];
   }
   template <class Row>
@@ -59,7 +61,8 @@ class RecordingReader {
     if (!group_.has_attribute(name)) return;
     const std::string word = group_.text_attribute(name);
     const auto* found = std::find(kPointTimes.begin(), kPointTimes.end(), word);
-    if (found == kPointTimes.end()) group_.fail(name, "is '" + word + "', must be measured, not_skewed or unknown");
+    if (found == kPointTimes.end())
+      group_.fail(name, fmt::format("is '{}', must be measured, not_skewed or unknown", word));
     given = static_cast<sim::PointTimes>(found - kPointTimes.begin());
   }
   void texts(const char* name, std::vector<std::string>& texts) { texts = group_.read_texts(name); }
@@ -82,7 +85,7 @@ class RecordingReader {
     if (group_.has(name)) list(name, records, fields);
   }
 
-  /// Absent in files that others wrote.
+  /// missing in files of other programs
   std::string digest_or_empty() const { return group_.has_attribute("digest") ? group_.text_attribute("digest") : ""; }
 
  private:
@@ -95,7 +98,7 @@ template <class Columns>
 void require_one_length(const Columns& columns, const std::string& file) {
   for (const std::size_t other : {columns.point_W_m.size(), columns.normal_W.size(), columns.slip_velocity_W_m_s.size(),
                                   columns.normal_force_n.size(), columns.surface_id.size()}) {
-    if (other != columns.time_ns.size()) throw BadInput(file + ": truth/contacts: datasets differ in length");
+    if (other != columns.time_ns.size()) throw BadInput(file + ": truth/contacts: the datasets differ in length");
   }
 }
 
@@ -112,18 +115,17 @@ std::vector<sim::ContactTruth> from_columns(const ContactColumns& columns, const
 
 void require_format(const hdf5::Group& root) {
   if (!root.has_attribute("format") || root.text_attribute("format") != kRecordingFormat) {
-    root.fail("format", std::string("is not a recording: attribute must be '") + kRecordingFormat + "'");
+    root.fail("format", std::string("is not a recording: the attribute must be '") + kRecordingFormat + "'");
   }
   const std::int64_t version = root.int_attribute("format_version");
   if (version != kRecordingVersion) {
-    root.fail("format_version",
-              "is " + std::to_string(version) + ", this build reads " + std::to_string(kRecordingVersion));
+    root.fail("format_version", fmt::format("is {}; this build reads version {}", version, kRecordingVersion));
   }
 }
 
 hdf5::Group truth_group(const hdf5::InputFile& file, const std::filesystem::path& path) {
   require_format(file.root());
-  if (!file.root().has("truth")) throw BadInput(path.string() + ": holds no truth (a real recording?)");
+  if (!file.root().has("truth")) throw BadInput(path.string() + ": has no truth; it may be a real recording");
   return file.root().open("truth");
 }
 
@@ -131,7 +133,8 @@ void require_sound(const std::string& file, const std::string& problem, const st
                    const std::string& found) {
   if (!problem.empty()) throw BadInput(file + ": " + problem);
   if (!stored.empty() && stored != found) {
-    throw BadInput(file + ": damaged or changed: the digest of its data is " + found + ", the one stored " + stored);
+    throw BadInput(fmt::format("{}: damaged or changed: the digest of its data is {}, but the stored digest is {}",
+                               file, found, stored));
   }
 }
 

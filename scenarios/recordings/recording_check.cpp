@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "scenarios/recordings/recording_check.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cctype>
 #include <cmath>
@@ -15,7 +17,7 @@ namespace {
 
 using Lengths = std::initializer_list<std::pair<const char*, std::size_t>>;
 
-/// Rotations and quaternions that have been written with few digits pass, a wrong order of components does not.
+/// Accepts rotations and quaternions written with few digits, but not a wrong component order.
 constexpr double kUnitTolerance = 1e-6;
 constexpr std::int64_t kTimeMax_ns = 100'000'000'000'000'000;
 
@@ -23,13 +25,12 @@ std::string in(const std::string& place, const std::string& problem) {
   return problem.empty() ? "" : place + ": " + problem;
 }
 
-/// All lengths must be the first one's.
+/// Requires that all lengths equal the first.
 std::string length_problem(const Lengths& lengths) {
   const auto& [first_name, first] = *lengths.begin();
   for (const auto& [name, length] : lengths) {
     if (length == first) continue;
-    return std::string(name) + " has " + std::to_string(length) + " rows, " + first_name + " has " +
-           std::to_string(first);
+    return fmt::format("{} has {} rows, but {} has {}", name, length, first_name, first);
   }
   return "";
 }
@@ -39,17 +40,17 @@ std::string pose_problem(const char* name, const Eigen::Isometry3d& pose) {
   if (!pose.matrix().allFinite()) return std::string(name) + " is not finite";
   const double departure = (rotation.transpose() * rotation - Eigen::Matrix3d::Identity()).cwiseAbs().maxCoeff();
   if (!(departure <= kUnitTolerance) || rotation.determinant() < 0.0)
-    return std::string(name) + " is not a rotation and a shift";
+    return std::string(name) + " is not a rotation with a translation";
   return "";
 }
 
 std::string at_least(const char* name, double value, double bound) {
   if (std::isfinite(value) && value >= bound) return "";
-  return std::string(name) + " is " + std::to_string(value) + ", must be at least " + std::to_string(bound);
+  return fmt::format("{} is {}, must be at least {}", name, value, bound);
 }
 
 std::string positive(const char* name, std::int64_t value) {
-  return value > 0 ? "" : std::string(name) + " is " + std::to_string(value) + ", must be above 0";
+  return value > 0 ? "" : fmt::format("{} is {}; it must be greater than 0", name, value);
 }
 
 std::string first_of(std::initializer_list<std::string> problems) {
@@ -57,14 +58,13 @@ std::string first_of(std::initializer_list<std::string> problems) {
   return found == problems.end() ? "" : *found;
 }
 
-/// Of rows that a sensor may do without.
+/// For rows that a sensor may lack.
 std::string optional_length_problem(const char* name, std::size_t length, std::size_t needed) {
   if (length == 0 || length == needed) return "";
-  return std::string(name) + " has " + std::to_string(length) + " rows, must have " + std::to_string(needed) +
-         " or none";
+  return fmt::format("{} has {} rows, must have {} or none", name, length, needed);
 }
 
-/// A name as it may stand in a table: UTF-8 without control characters.
+/// Names must be UTF-8 without control characters, for tables.
 std::string text_problem(const char* name, const std::string& text) {
   std::size_t following = 0;
   for (const unsigned char c : text) {
@@ -77,14 +77,14 @@ std::string text_problem(const char* name, const std::string& text) {
   return following == 0 ? "" : std::string(name) + " is not plain text in UTF-8";
 }
 
-/// Times count from the start of the recording: beyond three years they are another clock's, and their differences may
-/// not fit.
+/// Times count from the start of the recording. Beyond three years they belong to another clock, and differences may
+/// overflow.
 std::string times_problem(const char* name, const std::vector<std::int64_t>& times_ns) {
   const auto far = [](std::int64_t t) { return t > kTimeMax_ns || t < -kTimeMax_ns; };
   const auto found = std::find_if(times_ns.begin(), times_ns.end(), far);
   if (found == times_ns.end()) return "";
-  return std::string(name) + " is " + std::to_string(*found) + " in row " + std::to_string(found - times_ns.begin()) +
-         ", must be within 1e17 ns of the recording's start";
+  return fmt::format("{} is {} in row {}; it must be within 1e17 ns of the start of the recording", name, *found,
+                     found - times_ns.begin());
 }
 
 std::string imu_problem(const sim::ImuRecord& imu) {
@@ -107,20 +107,20 @@ std::string sweep_problem(const sim::LidarRecord& lidar, std::size_t points) {
   const std::size_t sweeps = lidar.sweep_start_ns.size();
   if (sweeps == 0 && points == 0 && lidar.sweep_first.empty()) return "";
   if (lidar.sweep_first.size() != sweeps + 1) {
-    return "sweep_first has " + std::to_string(lidar.sweep_first.size()) +
-           " rows, must have one more than sweep_start_ns (" + std::to_string(sweeps) + ")";
+    return fmt::format("sweep_first has {} rows, must have one more than sweep_start_ns ({})", lidar.sweep_first.size(),
+                       sweeps);
   }
   if (lidar.sweep_first.front() != 0 || lidar.sweep_first.back() != points) {
-    return "sweep_first must go from 0 to the number of points, " + std::to_string(points);
+    return "sweep_first must increase from 0 to the number of points, " + std::to_string(points);
   }
-  if (!std::is_sorted(lidar.sweep_first.begin(), lidar.sweep_first.end())) return "sweep_first falls";
+  if (!std::is_sorted(lidar.sweep_first.begin(), lidar.sweep_first.end())) return "sweep_first decreases";
   const auto stuck = [](std::int64_t a, std::int64_t b) { return a >= b; };
   const auto& start = lidar.sweep_start_ns;
-  if (std::adjacent_find(start.begin(), start.end(), stuck) != start.end()) return "sweep_start_ns does not rise";
+  if (std::adjacent_find(start.begin(), start.end(), stuck) != start.end()) return "sweep_start_ns does not increase";
   return "";
 }
 
-/// What `judge(row, index)` says of the first row that it finds wrong.
+/// Returns the first problem that `judge(row, index)` reports.
 template <class Row, class Judge>
 std::string first_wrong(std::span<const Row> rows, const Judge& judge, std::size_t first = 0) {
   std::string problem;
@@ -145,18 +145,17 @@ template <class Offsets>
 std::string offset_problem(const Offsets& offsets) {
   return first_wrong(offsets, [](std::uint32_t offset, std::size_t i) -> std::string {
     if (offset == 0) return "";
-    return "offset_ns is " + std::to_string(offset) + " at point " + std::to_string(i) +
-           ", must be 0 where points have no times of their own";
+    return fmt::format("offset_ns is {} at point {}; it must be 0 if points have no time stamps", offset, i);
   });
 }
 
 template <class Offsets>
 std::string point_times_problem(const sim::LidarRecord& lidar, const Offsets& offsets) {
-  if (lidar.point_times > sim::PointTimes::unknown) return "point_times is none of measured, not_skewed, unknown";
+  if (lidar.point_times > sim::PointTimes::unknown) return "point_times is not one of measured, not_skewed, unknown";
   return lidar.point_times == sim::PointTimes::measured ? "" : offset_problem(offsets);
 }
 
-/// `points`: the record itself, or where its points are set aside.
+/// `points`: the record itself, or its points on disk.
 template <class Points>
 std::string lidar_problem(const sim::LidarRecord& lidar, const Points& points) {
   return first_of({text_problem("name", lidar.name), text_problem("device", lidar.device),
@@ -170,14 +169,14 @@ std::string lidar_problem(const sim::LidarRecord& lidar, const Points& points) {
                    sweep_problem(lidar, points.position_L_m.size()), point_times_problem(lidar, points.offset_ns)});
 }
 
-/// A name as it may stand in the head of a column: letters, digits and _.
+/// Names of columns consist of letters, digits and _.
 std::string column_problem(const std::string& name) {
   const auto plain = [](unsigned char c) { return std::isalnum(c) != 0 || c == '_'; };
   if (!name.empty() && std::all_of(name.begin(), name.end(), plain)) return "";
-  return "name must be letters, digits and _, at least one";
+  return "the name must consist of letters, digits and _, at least one";
 }
 
-/// Of quantities or constants of a sensor, whose names are told apart.
+/// Checks the unique names of a sensor's quantities or constants.
 template <class Record>
 std::string names_problem(const std::string& list, const std::vector<Record>& records) {
   std::set<std::string> names;
@@ -185,12 +184,12 @@ std::string names_problem(const std::string& list, const std::vector<Record>& re
   for (std::size_t i = 0; i < records.size() && problem.empty(); ++i) {
     const std::string& name = records[i].name;
     problem = in(list + "/" + std::to_string(i),
-                 first_of({column_problem(name), names.insert(name).second ? "" : "name is another's too"}));
+                 first_of({column_problem(name), names.insert(name).second ? "" : "the name is used twice"}));
   }
   return problem;
 }
 
-/// Of readings or of their truth.
+/// For readings or their truth.
 template <class Quantity>
 std::string quantities_problem(const std::vector<Quantity>& quantities) {
   std::string problem = names_problem("quantities", quantities);
@@ -206,7 +205,7 @@ std::string series_problem(const sim::SeriesRecord& series) {
                                   quantities_problem(series.quantities), names_problem("constants", series.constants)});
   for (std::size_t i = 0; i < series.constants.size() && problem.empty(); ++i) {
     if (!std::isfinite(series.constants[i].value))
-      problem = in("constants/" + std::to_string(i), "value is not finite");
+      problem = in("constants/" + std::to_string(i), "the value is not finite");
   }
   for (std::size_t i = 0; i < series.quantities.size() && problem.empty(); ++i) {
     const sim::Quantity& quantity = series.quantities[i];
@@ -222,9 +221,9 @@ std::string series_truth_problem(const sim::SeriesTruth& series) {
       {text_problem("name", series.name), pose_problem("T_BX", series.T_BX), quantities_problem(series.quantities)});
 }
 
-/// What a sensor's readings and their truth do not have in common.
+/// Returns how a sensor's readings and their truth differ in structure.
 std::string series_mismatch(const sim::SeriesRecord& series, const sim::SeriesTruth& truth) {
-  if (truth.quantities.empty()) return "";  // a reference knows none
+  if (truth.quantities.empty()) return "";  // a reference has none
   if (truth.quantities.size() != series.quantities.size()) return "truth and sensor differ in the number of quantities";
   std::string problem;
   for (std::size_t i = 0; i < truth.quantities.size() && problem.empty(); ++i) {
@@ -234,12 +233,12 @@ std::string series_mismatch(const sim::SeriesRecord& series, const sim::SeriesTr
   return problem;
 }
 
-/// `imu`: a sim::ImuTruth, or one whose rows are set aside; so with the other truths.
+/// `imu`: a sim::ImuTruth, or one on disk; the other truths likewise.
 template <class Imu>
 std::string imu_truth_problem(const Imu& imu) {
   return first_of(
       {pose_problem("T_BI", imu.T_BI),
-       // a reference knows poses alone, or rates beside them
+       // a reference may have poses only, or also rates
        optional_length_problem("specific_force_I_m_s2", imu.specific_force_m_s2.size(), imu.rate_rad_s.size()),
        length_problem({{"specific_force_I_m_s2", imu.specific_force_m_s2.size()},
                        {"gyro_unclipped_I_rad_s", imu.gyro_unclipped_rad_s.size()},
@@ -256,7 +255,7 @@ std::string imu_truth_problem(const Imu& imu) {
 std::string surface_problem(std::int32_t id, std::size_t surfaces) {
   // -1: unknown, -2: the robot's own cage
   if (id >= -2 && id < static_cast<std::int64_t>(surfaces)) return "";
-  return "surface_id " + std::to_string(id) + " has no name in surfaces (" + std::to_string(surfaces) + ")";
+  return fmt::format("surface_id {} has no name in surfaces ({})", id, surfaces);
 }
 
 template <class Lidar>
@@ -267,11 +266,11 @@ std::string lidar_truth_problem(const Lidar& lidar, std::size_t surfaces) {
        first_wrong(lidar.surface_id, [&](std::int32_t id, std::size_t) { return surface_problem(id, surfaces); })});
 }
 
-/// Of times that must not fall.
+/// Checks that times do not decrease.
 class RisingTimes {
  public:
   std::string operator()(std::int64_t time_ns, std::size_t) {
-    if (time_ns < before_) return "time_ns: falls or is negative";
+    if (time_ns < before_) return "time_ns: decreases or is negative";
     before_ = time_ns;
     return "";
   }
@@ -301,14 +300,14 @@ std::string contacts_problem(const StoredContacts& contacts, std::size_t surface
 }
 
 std::string attitude_problem(const Eigen::Quaterniond& q_WB, std::size_t) {
-  const bool unknown = q_WB.coeffs().array().isNaN().all();  // of a reference, where it saw nothing
+  const bool unknown = q_WB.coeffs().array().isNaN().all();  // a reference without a measurement
   if (unknown || std::abs(q_WB.squaredNorm() - 1.0) <= kUnitTolerance) return "";
   return "q_WB is not of unit length";
 }
 
 std::string label_problem(sim::ContactLabel label, std::size_t) {
   if (label <= sim::ContactLabel::slide) return "";
-  return "label " + std::to_string(static_cast<int>(label)) + " is unknown, the largest is 3";
+  return fmt::format("label {} is unknown; the largest is 3", static_cast<int>(label));
 }
 
 template <class Truth>
@@ -379,7 +378,7 @@ std::string find_mismatch(const sim::Sensors& sensors, const sim::Truth& truth) 
                                              imu.magnetic_field_t.size())}));
   }
   for (std::size_t i = 0; i < truth.lidars.size() && problem.empty(); ++i) {
-    // as find_problem holds it, the number of points, wherever they are
+    // find_problem ensured that it ends in the number of points
     const std::vector<std::uint64_t>& first = sensors.lidars[i].sweep_first;
     problem = in("lidars/" + std::to_string(i),
                  optional_length_problem("truth hit_W_m", truth.lidars[i].hit_W_m.size(),

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "scenarios/recordings/recording_clock.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <limits>
 
@@ -10,7 +12,7 @@ namespace tumble::scenarios {
 
 namespace {
 
-/// A clock that began so shortly before the first stamp is the recording's own.
+/// A clock that starts less than this before the first stamp belongs to the recording.
 constexpr std::int64_t kOwnZero_ns = 1000000000;
 
 void shift(sim::Sensors& sensors, std::int64_t by_ns) {
@@ -44,7 +46,7 @@ std::pair<std::int64_t, std::int64_t> span_of(const sim::Sensors& sensors) {
     first = std::min(first, series.time_ns.front());
     last = std::max(last, series.time_ns.back());
   }
-  if (first > last) throw BadInput("the recording holds no reading");
+  if (first > last) throw BadInput("the recording has no readings");
   return {first, last};
 }
 
@@ -68,9 +70,10 @@ void attach_imus(Imported& recording, Imported imu) {
   const auto [imu_first, imu_last] = span_of(imu.sensors);
   const std::int64_t ahead_ns = imu.info.origin_ns - recording.info.origin_ns;
   if (imu_first + ahead_ns > last || imu_last + ahead_ns < first) {
-    throw BadInput("the IMU's readings reach from " + std::to_string(imu_first + ahead_ns) + " to " +
-                   std::to_string(imu_last + ahead_ns) + " ns of the sweeps' clock, the sweeps from " +
-                   std::to_string(first) + " to " + std::to_string(last) + " ns: another clock?");
+    throw BadInput(
+        fmt::format("the IMU readings are from {} to {} ns of the sweeps' clock, but the sweeps are from {} to {} ns; "
+                    "check that both use the same clock",
+                    imu_first + ahead_ns, imu_last + ahead_ns, first, last));
   }
   shift(recording.sensors, recording.info.origin_ns - origin_ns);
   shift(imu.sensors, imu.info.origin_ns - origin_ns);

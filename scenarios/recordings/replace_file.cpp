@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "scenarios/recordings/replace_file.hpp"
 
+#include <fmt/format.h>
+
 #include <fcntl.h>
 #include <sys/stat.h>
 #include <unistd.h>
@@ -20,7 +22,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr int kLinksMax = 40;  // as the system follows
+constexpr int kLinksMax = 40;  // the system's limit
 
 [[noreturn]] void fail(const fs::path& path, const std::string& reason) {
   throw BadInput(path.string() + ": cannot be written: " + reason);
@@ -30,7 +32,7 @@ constexpr int kLinksMax = 40;  // as the system follows
   fail(path, std::generic_category().message(error));
 }
 
-/// Closes itself.
+/// RAII file descriptor.
 class Descriptor {
  public:
   explicit Descriptor(int number) : number_(number) {}
@@ -52,7 +54,7 @@ std::optional<struct stat> status_of(const fs::path& path) {
   return found;
 }
 
-/// Where a file of this name is: behind its symbolic links, also when there is nothing at their end.
+/// Resolves symbolic links, even dangling ones.
 fs::path behind_links(const fs::path& path) {
   fs::path place = path;
   std::error_code error;
@@ -69,22 +71,22 @@ void require_replaceable(const fs::path& given, const fs::path& place) {
   const std::optional<struct stat> old = status_of(place);
   if (!old) return;
   if (S_ISDIR(old->st_mode)) fail(given, EISDIR);
-  if (!S_ISREG(old->st_mode)) fail(given, "it is no regular file, but a device, a pipe or a socket");
+  if (!S_ISREG(old->st_mode)) fail(given, "it is not a regular file but a device, a pipe or a socket");
   if (access(place.c_str(), W_OK) != 0) fail(given, errno);
 }
 
-/// A folder that is read keeps what it holds: none of its files is written over, at any depth.
+/// Input folders must not be modified, at any depth.
 void require_outside(const fs::path& output, std::span<const fs::path> inputs) {
   std::error_code error;
   const fs::path place = fs::canonical(output, error);
-  if (error) return;  // nothing stands there
+  if (error) return;  // does not exist
   for (const fs::path& input : inputs) {
     if (!fs::is_directory(input, error)) continue;
     const fs::path folder = fs::canonical(input, error);
     if (error) continue;
     const bool within = std::mismatch(folder.begin(), folder.end(), place.begin(), place.end()).first == folder.end();
     if (within && place != folder)
-      fail(output, "it is a file of " + input.string() + ", which is read; name another output");
+      fail(output, fmt::format("the output is a file of the input {}; name another output", input.string()));
   }
 }
 
@@ -128,16 +130,16 @@ void OutputFile::move_into_place() {
   Descriptor file(open(unfinished_.c_str(), O_RDONLY | O_CLOEXEC));
   if (file.get() < 0) fail(given_, errno);
   if (const std::optional<struct stat> old = status_of(place_)) {
-    // what became of the place in the meantime counts too
+    // the path may have changed in the meantime
     require_replaceable(given_, place_);
     const std::optional<struct stat> own = status_of(unfinished_);
     const bool same_owner = own && own->st_uid == old->st_uid && own->st_gid == old->st_gid;
     if (!same_owner && fchown(file.get(), old->st_uid, old->st_gid) != 0) {
-      fail(given_, "it belongs to somebody else, and its owner cannot be kept");
+      fail(given_, "the file belongs to another user, and its owner cannot be kept");
     }
     if (fchmod(file.get(), old->st_mode & 07777) != 0) fail(given_, errno);
   }
-  // a full disk may show only here, when the system has promised more than it has
+  // a full disk may be reported only here
   if (fsync(file.get()) != 0 || !file.close()) fail(given_, errno);
   if (rename(unfinished_.c_str(), place_.c_str()) != 0) fail(given_, errno);
   moved_ = true;
@@ -153,8 +155,9 @@ OutputFolder::OutputFolder(const fs::path& folder) : folder_(folder) {
   const bool empty = fs::is_empty(folder, error);
   if (error) fail(folder, error.message());
   if (!empty) {
-    throw BadInput(folder.string() +
-                   ": holds files already, which would be taken for this run's; name a new folder or empty this one");
+    throw BadInput(
+        folder.string() +
+        ": contains files already, which would mix with those of this run; name a new folder or empty this one");
   }
   on_signal_.emplace(folder, made_ ? Unfinished::Kind::folder : Unfinished::Kind::contents);
 }
@@ -189,7 +192,7 @@ void require_not_an_input(const fs::path& output, std::span<const fs::path> inpu
   for (const fs::path& input : inputs) {
     const std::optional<struct stat> other = input.empty() ? std::nullopt : status_of(input);
     if (other && other->st_dev == own->st_dev && other->st_ino == own->st_ino) {
-      throw BadInput(output.string() + ": is both read and written; name another output");
+      throw BadInput(output.string() + ": is both input and output; name another output");
     }
   }
 }

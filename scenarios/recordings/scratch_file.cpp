@@ -29,12 +29,12 @@ std::filesystem::path scratch_folder_of(const std::filesystem::path& output) {
 
 ScratchFile::ScratchFile(std::filesystem::path folder) : folder_(std::move(folder)) {
   if (folder_.empty()) folder_ = ".";
-  // without a name from the start, where the file system has that
+  // Create the file without a name if the file system supports this.
   descriptor_ = open(folder_.c_str(), O_TMPFILE | O_RDWR | O_CLOEXEC, 0600);
   if (descriptor_ >= 0) return;
   std::string name = (folder_ / ".tumble_scratch.XXXXXX").string();
   descriptor_ = mkostemp(name.data(), O_CLOEXEC);
-  if (descriptor_ < 0) fail(folder_, "no scratch file can be made there", errno);
+  if (descriptor_ < 0) fail(folder_, "cannot create a temporary file in this folder", errno);
   unlink(name.c_str());
 }
 
@@ -46,7 +46,7 @@ void ScratchFile::write(std::uint64_t at, std::span<const std::byte> bytes) {
   while (!bytes.empty()) {
     const ssize_t written = pwrite(descriptor_, bytes.data(), bytes.size(), static_cast<off_t>(at));
     if (written < 0 && errno == EINTR) continue;
-    if (written < 0) fail(folder_, "points cannot be set aside there", errno);
+    if (written < 0) fail(folder_, "cannot write points to a temporary file in this folder", errno);
     bytes = bytes.subspan(static_cast<std::size_t>(written));
     at += static_cast<std::uint64_t>(written);
     bytes_ = std::max(bytes_, at);
@@ -57,7 +57,7 @@ void ScratchFile::read(std::uint64_t at, std::span<std::byte> bytes) const {
   while (!bytes.empty()) {
     const ssize_t got = pread(descriptor_, bytes.data(), bytes.size(), static_cast<off_t>(at));
     if (got < 0 && errno == EINTR) continue;
-    if (got <= 0) fail(folder_, "what was set aside there cannot be read", got < 0 ? errno : EIO);
+    if (got <= 0) fail(folder_, "cannot read the temporary file in this folder", got < 0 ? errno : EIO);
     bytes = bytes.subspan(static_cast<std::size_t>(got));
     at += static_cast<std::uint64_t>(got);
   }

@@ -12,7 +12,7 @@ ScratchFolder::ScratchFolder(const std::string& use) {
   const SignalsWait until_listed;
   std::string name = (std::filesystem::temp_directory_path() / ("tumble-" + use + "-XXXXXX")).string();
   if (mkdtemp(name.data()) == nullptr)
-    throw std::filesystem::filesystem_error("no temporary folder", name, {errno, std::generic_category()});
+    throw std::filesystem::filesystem_error("cannot create a temporary folder", name, {errno, std::generic_category()});
   path_ = name;
   on_signal_.emplace(path_, Unfinished::Kind::folder);
 }

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "scenarios/recordings/table_file.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <charconv>
 #include <cmath>
@@ -20,7 +22,7 @@ namespace tumble::scenarios {
 
 namespace {
 
-/// Bytes of a table that are written at a time.
+/// Write block size [bytes].
 constexpr std::size_t kBlock = 1 << 16;
 
 std::vector<std::string> split(const std::string& line, char separator) {
@@ -29,18 +31,18 @@ std::vector<std::string> split(const std::string& line, char separator) {
   while (begin <= line.size()) {
     std::size_t end = line.find(separator, begin);
     if (end == std::string::npos) end = line.size();
-    // runs of blanks separate once
+    // consecutive blanks separate once
     if (separator != ' ' || end > begin) cells.push_back(line.substr(begin, end - begin));
     begin = end + 1;
   }
   return cells;
 }
 
-/// The longest line of a table: a pose's covariance takes less than a thousand bytes. A file without line ends, or a
-/// device that gives zeros for ever, would be read into memory else.
+/// Longest line; a pose with covariance has less than a thousand bytes. Protects the memory from files without line
+/// ends and endless devices.
 constexpr std::size_t kLineMax = 1 << 20;
 
-/// As std::getline. Throws BadInput for a line beyond kLineMax.
+/// Like std::getline. Throws BadInput for a line longer than kLineMax.
 bool read_line(std::istream& file, const std::filesystem::path& path, int number, std::string& line) {
   line.clear();
   auto& bytes = *file.rdbuf();
@@ -48,8 +50,8 @@ bool read_line(std::istream& file, const std::filesystem::path& path, int number
     if (c == '\n') return true;
     line += static_cast<char>(c);
     if (line.size() > kLineMax)
-      throw BadInput(path.string() + ":" + std::to_string(number) + ": has more than " + std::to_string(kLineMax) +
-                     " bytes: no line of a table");
+      throw BadInput(fmt::format("{}:{}: the line has more than {} bytes; it is not a line of a table", path.string(),
+                                 number, kLineMax));
   }
   return !line.empty();
 }
@@ -119,12 +121,12 @@ Table Table::read(const std::filesystem::path& path, char separator, const std::
   bool header_due = !header.empty();
   while (read_line(file, path, number + 1, line)) {
     ++number;
-    if (number == 1 && line.starts_with("\xef\xbb\xbf")) line.erase(0, 3);  // as editors on Windows begin a file
+    if (number == 1 && line.starts_with("\xef\xbb\xbf")) line.erase(0, 3);  // byte order mark of editors on Windows
     if (!line.empty() && line.back() == '\r') line.pop_back();
     if (separator == ' ') std::replace(line.begin(), line.end(), '\t', ' ');
     if (header_due) {
       if (line != header)
-        throw BadInput(path.string() + ":1: header is '" + shortened(line) + "', must be '" + header + "'");
+        throw BadInput(fmt::format("{}:1: header is '{}', must be '{}'", path.string(), shortened(line), header));
       header_due = false;
       continue;
     }
@@ -136,7 +138,7 @@ Table Table::read(const std::filesystem::path& path, char separator, const std::
     }
     table.rows.push_back(std::move(row));
   }
-  if (header_due) throw BadInput(path.string() + ": empty, must begin with '" + header + "'");
+  if (header_due) throw BadInput(path.string() + ": the file is empty; it must begin with '" + header + "'");
   return table;
 }
 
@@ -164,7 +166,7 @@ std::int64_t Table::time_ns(const Row& row, std::size_t column) const {
   const bool plain = text.find_first_not_of("-0123456789.") == std::string::npos;
   std::int64_t whole = 0;
   std::int64_t fraction = 0;
-  // epoch seconds with nine decimals do not fit a double: whole and fraction apart
+  // Epoch seconds with nine decimals exceed a double: parse whole and fraction separately.
   if (plain && point != std::string::npos && point > 0 && parse(text.substr(0, point), whole)) {
     std::string digits = text.substr(point + 1, 9);
     digits.append(9 - digits.size(), '0');

@@ -29,7 +29,7 @@ std::vector<AttitudeError> attitude_errors(const ScoredEstimate& scored) {
       q_align = Eigen::AngleAxisd(heading, Eigen::Vector3d::UnitZ());
     }
     const Eigen::Quaterniond e = q_align * attitude.q_WA * q_true.conjugate();
-    // equal to 2 acos(sqrt(w^2 + z^2)) and 2 atan|z / w| without the loss of digits
+    // Equal to 2 acos(sqrt(w^2 + z^2)) and 2 atan|z / w|, but without cancellation.
     errors.push_back({2.0 * std::atan2(std::hypot(e.x(), e.y()), std::hypot(e.w(), e.z())),
                       2.0 * std::atan2(std::abs(e.z()), std::abs(e.w())), rotation_angle_rad(e),
                       truth.at_rest(attitude.time_ns)});
@@ -48,7 +48,7 @@ bool rmse(const ScoredEstimate& scored, double& value) {
   return true;
 }
 
-/// Squared errors of the tilt over their stated variances, in motion.
+/// Returns squared tilt errors divided by their estimated variances, while in motion.
 std::vector<double> normalised_tilt_errors(const ScoredEstimate& scored) {
   const TruthTrack& truth = truth_track(scored);
   std::vector<double> normalised;
@@ -92,34 +92,36 @@ std::vector<Metric> attitude_metrics() {
         Place::headline},
        Kind::attitude,
        rmse<&AttitudeError::inclination_rad, false>},
-      {{"heading_rmse_rad", Unit::rad, "rms error about the vertical, in motion, zero at the start", Sense::lower,
-        Place::held},
+      {{"heading_rmse_rad", Unit::rad, "rms heading error in motion, with the heading aligned at the start",
+        Sense::lower, Place::held},
        Kind::attitude,
        rmse<&AttitudeError::heading_rad, false>},
       {{"inclination_coverage_3sigma", Unit::share,
-        "share of the errors of the tilt per horizontal axis, in motion, within three stated standard deviations",
+        "share of tilt errors (per horizontal axis, in motion) within three reported standard deviations",
         Sense::two_sided, Place::held, kNormal3Sigma, Compared::by_difference},
        Kind::attitude,
        tilt_coverage},
       {{"inclination_nees_median", Unit::number,
-        "median of the same errors squared over their stated variances, as a multiple of a normal variable's",
+        "median of squared tilt error over reported variance, in motion, relative to the median of a normal "
+        "distribution",
         Sense::two_sided, Place::held, 1.0},
        Kind::attitude,
        tilt_nees_median},
-      {{"attitude_rmse_rad", Unit::rad, "rms angle of the whole attitude error, in motion", Sense::lower},
+      {{"attitude_rmse_rad", Unit::rad, "rms angle of the attitude error, in motion", Sense::lower},
        Kind::attitude,
        rmse<&AttitudeError::total_rad, false>},
-      {{"inclination_rmse_rest_rad", Unit::rad, "the same as inclination_rmse_rad, at rest", Sense::lower},
+      {{"inclination_rmse_rest_rad", Unit::rad, "rms angle between estimated and true vertical, at rest", Sense::lower},
        Kind::attitude,
        rmse<&AttitudeError::inclination_rad, true>},
-      {{"heading_rmse_rest_rad", Unit::rad, "the same as heading_rmse_rad, at rest", Sense::lower},
+      {{"heading_rmse_rest_rad", Unit::rad, "rms heading error at rest, with the heading aligned at the start",
+        Sense::lower},
        Kind::attitude,
        rmse<&AttitudeError::heading_rad, true>},
-      {{"attitude_rmse_rest_rad", Unit::rad, "the same as attitude_rmse_rad, at rest", Sense::lower},
+      {{"attitude_rmse_rest_rad", Unit::rad, "rms angle of the attitude error, at rest", Sense::lower},
        Kind::attitude,
        rmse<&AttitudeError::total_rad, true>},
-      {{"attitude_step_rest_rms_rad", Unit::rad, "rms change from sample to sample at standstill (jitter)",
-        Sense::lower},
+      {{"attitude_step_rest_rms_rad", Unit::rad,
+        "rms change of the attitude from sample to sample at standstill (jitter)", Sense::lower},
        Kind::attitude,
        step_rest_rms},
   };

@@ -12,7 +12,7 @@
 #include "scenarios/scoring/families.hpp"
 #include "scenarios/statistics/statistics.hpp"
 
-/// Errors of the rate over clipped samples that are alike: as deep, as long or with as many axes clipped.
+/// Rate errors over clipped samples of similar clipping depth, clipping duration or number of clipped axes.
 namespace tumble::scenarios {
 
 namespace {
@@ -31,7 +31,7 @@ constexpr const auto& edges() {
   if constexpr (kAxis == BinAxis::count) return kCountEdges;
 }
 
-/// Of each sample: how long the segment of clipped samples is that it belongs to; 0 where it is not clipped.
+/// Returns for each sample the duration of its segment of clipped samples; 0 if not clipped.
 std::vector<double> segment_lengths_s(const ScoredEstimate& scored) {
   const ClippingTruth& truth = clipping_truth(scored);
   const double period_s = 1e-9 * static_cast<double>(scored.sensors().imus.front().period_ns);
@@ -47,7 +47,7 @@ std::vector<double> segment_lengths_s(const ScoredEstimate& scored) {
   return lengths;
 }
 
-/// The measure by which a rate at a clipped sample is sorted.
+/// Returns the measure by which a clipped sample is binned.
 template <BinAxis kAxis>
 double measure(const ScoredEstimate& scored, const PairedRate& pair) {
   if constexpr (kAxis == BinAxis::depth) return clipping_truth(scored).depth_rad_s(pair.sample);
@@ -72,10 +72,11 @@ void add_bin(const char* axis, const std::string& words, std::vector<Metric>& al
     return BinnedMetric{base, axis, edges<kAxis>()[kBin], edges<kAxis>()[kBin + 1]}.name();
   };
   all.push_back({{name("rate_error_median_rad_s"), Unit::rad_s,
-                  "median norm of the rate error over clipped samples " + words, Sense::lower},
+                  "median rate error (norm) over clipped samples " + words, Sense::lower},
                  Kind::rate,
                  error_in_bin<kAxis, kBin, 50>});
-  all.push_back({{name("rate_error_p99_rad_s"), Unit::rad_s, "99th percentile of the same", Sense::lower},
+  all.push_back({{name("rate_error_p99_rad_s"), Unit::rad_s,
+                  "99th percentile of the rate error (norm) over the same samples", Sense::lower},
                  Kind::rate,
                  error_in_bin<kAxis, kBin, 99>});
 }
@@ -89,22 +90,23 @@ void add_bins(const char* axis, const std::string& words, std::vector<Metric>& a
 
 std::vector<MetricInfo> binned_rate_quantities() {
   return {
-      {"rate_error_median_rad_s", Unit::rad_s, "median norm of the rate error over clipped samples that are alike",
+      {"rate_error_median_rad_s", Unit::rad_s, "median rate error (norm) over clipped samples of one bin",
        Sense::lower},
-      {"rate_error_p99_rad_s", Unit::rad_s, "99th percentile of the same", Sense::lower},
-      {"clip_depth_rad_s", Unit::rad_s, "largest loss of an axis to the rail"},
-      {"clip_length_s", Unit::s, "length of the segment of clipped samples"},
+      {"rate_error_p99_rad_s", Unit::rad_s, "99th percentile of the rate error (norm) over clipped samples of one bin",
+       Sense::lower},
+      {"clip_depth_rad_s", Unit::rad_s, "largest saturation deficit of an axis"},
+      {"clip_length_s", Unit::s, "length of a segment of clipped samples"},
       {"clipped_axes", Unit::number, "number of clipped axes"},
   };
 }
 
 std::vector<Metric> binned_rate_metrics() {
   std::vector<Metric> all;
-  add_bins<BinAxis::depth>("clip_depth_rad_s", "whose axis with the largest loss lost so much to the rail", all,
+  add_bins<BinAxis::depth>("clip_depth_rad_s", "whose largest saturation deficit is in this bin", all,
                            std::make_index_sequence<kDepthEdges.size() - 1>());
-  add_bins<BinAxis::length>("clip_length_s", "in segments of such length", all,
+  add_bins<BinAxis::length>("clip_length_s", "in segments of this length", all,
                             std::make_index_sequence<kLengthEdges.size() - 1>());
-  add_bins<BinAxis::count>("clipped_axes", "with so many axes clipped", all,
+  add_bins<BinAxis::count>("clipped_axes", "with this number of clipped axes", all,
                            std::make_index_sequence<kCountEdges.size() - 1>());
   return all;
 }

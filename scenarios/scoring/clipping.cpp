@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "scenarios/scoring/clipping.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <string>
@@ -23,17 +25,19 @@ double noise_rad_s(const sim::ImuRecord& record) {
 }  // namespace
 
 ClippingTruth::ClippingTruth(const sim::Sensors& sensors, const sim::Truth& truth) {
-  if (sensors.imus.empty() || truth.imus.empty()) throw BadInput("no IMU to score rates against");
+  if (sensors.imus.empty() || truth.imus.empty())
+    throw BadInput("the recording or the truth has no IMU; rates cannot be scored");
   record_ = &sensors.imus.front();
   truth_ = &truth.imus.front();
   tolerance_rad_s_ = std::max(kToleranceMinRadS, noise_rad_s(*record_));
   const std::size_t count = record_->time_ns.size();
   if (truth_->rate_rad_s.empty() && count > 0)
-    throw BadInput("the truth holds no rates of imu '" + record_->name + "': a reference of poses?");
+    throw BadInput(
+        fmt::format("the truth has no rates of imu '{}'; it may be a reference that has poses only", record_->name));
   const bool reference = truth_->gyro_unclipped_rad_s.empty() && count > 0;
   if (record_->gyro_rad_s.size() != count || truth_->rate_rad_s.size() != count ||
       (!reference && truth_->gyro_unclipped_rad_s.size() != count)) {
-    throw BadInput("imu '" + record_->name + "' and its truth differ in length");
+    throw BadInput(fmt::format("the readings of imu '{}' and its truth differ in number", record_->name));
   }
   if (reference) reference_axes_ = clipped_by_reference(record_->gyro_rad_s, truth_->rate_rad_s);
 }

@@ -9,17 +9,18 @@ namespace tumble::scenarios {
 
 namespace {
 
-constexpr float kToleranceM = 0.25f;     // Deschenes et al.: a map point farther from the surface is an outlier
-constexpr float kFineToleranceM = 0.1f;  // of a map that is sharp, not only whole
-constexpr double kOutliersMax = 0.15;    // the same: a larger share of them is a failed map
-constexpr float kSurfaceCellM = 0.1f;    // the seen surface counts once per cell, however often it was hit
-constexpr float kErrorLimitM = 0.5f;     // an outlier counts as this far, however far it is
-constexpr float kSamePointM = 1e-3f;     // points of one such cell were drawn twice
-constexpr double kSeenRangeM = 100.0;    // of the frame's start; farther hits nobody maps
+constexpr float kToleranceM = 0.25f;     // Deschenes et al.: map points farther from the surface are outliers
+constexpr float kFineToleranceM = 0.1f;  // stricter tolerance for a sharp map
+constexpr double kOutliersMax = 0.15;    // Deschenes et al.: a larger share of outliers is a failed map
+constexpr float kSurfaceCellM = 0.1f;    // each cell of the seen surface counts once, however often it was hit
+constexpr float kErrorLimitM = 0.5f;     // the distance of outliers is limited to this
+constexpr float kSamePointM = 1e-3f;     // points in one cell of this size are duplicates
+constexpr double kSeenRangeM = 100.0;    // farther hits from the start are not expected in maps
 
-static_assert(kErrorLimitM > kToleranceM && kErrorLimitM > kFineToleranceM, "what lies at the limit is within none");
+static_assert(kErrorLimitM > kToleranceM && kErrorLimitM > kFineToleranceM,
+              "an error at the limit must be outside both tolerances");
 
-// map points in W, by the alignment of position and yaw at the start
+// Returns the map points in W, aligned by position and yaw at the start.
 std::vector<Eigen::Vector3f> map_in_world(const ScoredEstimate& scored) {
   const Estimate& estimate = scored.estimate();
   const Eigen::Isometry3d to_world = paired_track(scored).alignment.transform();
@@ -31,7 +32,7 @@ std::vector<Eigen::Vector3f> map_in_world(const ScoredEstimate& scored) {
   return points;
 }
 
-// every sweep's true hits of the static world; the robot's own cage has no surface id
+// Returns the true hits of all sweeps on the static world; the robot's own cage has no surface id.
 std::vector<Eigen::Vector3f> seen_surface(const sim::Truth& truth) {
   std::vector<Eigen::Vector3f> hits;
   const sim::LidarTruth& lidar = truth.lidars.front();
@@ -42,7 +43,7 @@ std::vector<Eigen::Vector3f> seen_surface(const sim::Truth& truth) {
   return one_per_cell(hits, kSurfaceCellM);
 }
 
-// of the finite map points to the true surface, each at most kErrorLimitM; the scored estimate has a surface
+// Returns the distances of the finite map points to the true surface, at most kErrorLimitM each. Requires a surface.
 std::vector<float> map_distances_m(const ScoredEstimate& scored) {
   std::vector<Eigen::Vector3f> finite;
   for (const Eigen::Vector3f& point : scored.once(map_in_world)) {
@@ -97,8 +98,7 @@ bool map_coverage(const ScoredEstimate& scored, double& value) {
   return true;
 }
 
-// a method that leaves no map has failed to map
-// a trajectory alone, without sweeps, comes of a program that draws no map
+// A method without a map has failed. A trajectory without sweeps comes from an external program that does not map.
 bool failed(const ScoredEstimate& scored, double& value) {
   const Estimate& estimate = scored.estimate();
   if (scored.surface() == nullptr || (estimate.sweeps.empty() && estimate.map.empty())) return false;
@@ -116,25 +116,27 @@ std::vector<Metric> map_metrics() {
         Place::headline, kNoTarget, Compared::by_difference},
        Kind::slam,
        overlap},
-      {{"map_overlap_0_10", Unit::share, "the same within 0.10 m", Sense::higher, Place::held, kNoTarget,
-        Compared::by_difference},
+      {{"map_overlap_0_10", Unit::share, "share of map points within 0.10 m of the true surface", Sense::higher,
+        Place::held, kNoTarget, Compared::by_difference},
        Kind::slam,
        fine_overlap},
-      {{"map_coverage", Unit::share, "share of the truly seen surface (cells of 0.1 m) within 0.25 m of a map point",
+      {{"map_coverage", Unit::share, "share of the visible true surface (cells of 0.1 m) within 0.25 m of a map point",
         Sense::higher, Place::held, kNoTarget, Compared::by_difference},
        Kind::slam,
        map_coverage},
-      {{"map_error_mean_m", Unit::m, "mean distance of map points to the true surface, each at most 0.5 m",
-        Sense::lower, Place::held},
+      {{"map_error_mean_m", Unit::m,
+        "mean distance of map points to the true surface, with each distance limited to 0.5 m", Sense::lower,
+        Place::held},
        Kind::slam,
        mean_error},
-      {{"map_unique_share", Unit::share, "map points that are left with one per cell of 1 mm: below 1, drawn twice",
+      {{"map_unique_share", Unit::share,
+        "number of 1 mm cells with a map point, over the number of map points; below 1 if points are inserted twice",
         Sense::higher, Place::held, kNoTarget, Compared::by_difference},
        Kind::slam,
        unique_share},
       {{"map_failed", Unit::verdict,
-        "1 when more than 15 % of the map lies off the surface, or sweeps were taken and there is none", Sense::lower,
-        Place::held},
+        "1 if more than 15 % of the map is off the surface, or if there were sweeps but no map; otherwise 0",
+        Sense::lower, Place::held},
        Kind::slam,
        failed},
   };

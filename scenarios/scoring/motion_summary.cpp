@@ -18,7 +18,7 @@ constexpr double kMovingRate_rad_s = 0.3;
 constexpr double kImpact_m_s2 = 20.0;
 constexpr std::int64_t kQuiet_ns = 20'000'000;
 
-/// Indices of the first and the last moving physics sample; first > last when nothing moves.
+/// Indices of the first and last moving physics sample; first > last if nothing moves.
 struct MovingSpan {
   std::size_t first = 1, last = 0;
 };
@@ -63,7 +63,7 @@ MotionSummary summarise_motion(const sim::Sensors& sensors, const sim::Truth& tr
   const ClippingTruth clipping(sensors, truth);
   if (truth.period_ns <= 0 || truth.label.size() != truth.p_WB_m.size() ||
       truth.f_B_m_s2.size() != truth.p_WB_m.size()) {
-    throw BadInput("the truth's physics samples differ in length");
+    throw BadInput("the physics samples of the truth differ in number");
   }
   MotionSummary out;
   for (std::size_t k = 1; k < truth.p_WB_m.size(); ++k) out.path_m += (truth.p_WB_m[k] - truth.p_WB_m[k - 1]).norm();

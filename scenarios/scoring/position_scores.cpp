@@ -10,9 +10,9 @@ namespace tumble::scenarios {
 
 namespace {
 
-// a share of less than this path says nothing
+// minimum path for relative errors
 constexpr double kPathMinM = 0.05;
-constexpr double kUnmovedM = 0.02;  // before, nothing can be wrong
+constexpr double kUnmovedM = 0.02;  // errors before this motion are not scored
 
 bool end_error(const ScoredEstimate& scored, double& value) {
   const std::vector<PairedPose>& poses = paired_track(scored).poses;
@@ -36,7 +36,7 @@ bool height_error_max(const ScoredEstimate& scored, double& value) {
   value = 0.0;
   for (const PairedPose& pose : poses) {
     const double error = std::abs(pose.estimate.p_WA_m.z() - pose.truth.p_WA_m.z());
-    // not std::max: a NaN has to come through
+    // unlike std::max, this propagates NaN
     if (!(error <= value)) value = error;
     if (std::isnan(value)) break;
   }
@@ -63,8 +63,8 @@ bool rest_drift(const ScoredEstimate& scored, double& value) {
   return any;
 }
 
-/// Squared errors over their stated variances, once it moves. In the axes that the covariance is stated in: those of
-/// the estimate's own world.
+/// Returns squared errors divided by their reported variances, once the body moves. Errors are in the axes of the
+/// covariance: those of the estimate's world.
 std::vector<double> normalised_position_errors(const ScoredEstimate& scored) {
   const Estimate& estimate = scored.estimate();
   const PairedTrack& track = paired_track(scored);
@@ -95,28 +95,28 @@ bool nees_median(const ScoredEstimate& scored, double& value) {
 
 std::vector<Metric> position_metrics() {
   return {
-      {{"position_end_error_m", Unit::m, "distance to the truth at the end, position and yaw aligned at the start",
+      {{"position_end_error_m", Unit::m, "position error at the end, with position and yaw aligned at the start",
         Sense::lower},
        Kind::position,
        end_error},
-      {{"position_end_error_share", Unit::share, "position error at the end as a share of the true path", Sense::lower,
-        Place::headline},
+      {{"position_end_error_share", Unit::share, "position error at the end, as a share of the length of the true path",
+        Sense::lower, Place::headline},
        Kind::position,
        end_error_share},
-      {{"position_height_error_max_m", Unit::m, "largest error of height", Sense::lower, Place::held},
+      {{"position_height_error_max_m", Unit::m, "largest height error", Sense::lower, Place::held},
        Kind::position,
        height_error_max},
       {{"position_coverage_3sigma", Unit::share,
-        "share of the errors per axis, once it moves, within three stated standard deviations", Sense::two_sided,
-        Place::held, kNormal3Sigma, Compared::by_difference},
+        "share of position errors (per axis, after motion starts) within three reported standard deviations",
+        Sense::two_sided, Place::held, kNormal3Sigma, Compared::by_difference},
        Kind::position,
        position_coverage_3sigma},
       {{"position_nees_median", Unit::number,
-        "median of the same errors squared over their stated variances, as a multiple of a normal variable's",
+        "median of squared position error over reported variance, relative to the median of a normal distribution",
         Sense::two_sided, Place::held, 1.0},
        Kind::position,
        nees_median},
-      {{"position_rest_drift_m", Unit::m, "largest drift within one spell of standstill", Sense::lower},
+      {{"position_rest_drift_m", Unit::m, "largest position drift during one standstill", Sense::lower},
        Kind::position,
        rest_drift},
   };

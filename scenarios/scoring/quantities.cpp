@@ -4,14 +4,14 @@
 #include "scenarios/scoring/cost.hpp"
 #include "scenarios/scoring/families.hpp"
 
-/// What is stored beside the metrics and shown as they are.
+/// Quantities stored in addition to the metrics and shown in the same way.
 namespace tumble::scenarios {
 
 std::vector<MetricInfo> cost_quantities() {
   return {
-      {"estimate_cpu_s", Unit::s, "CPU time of the estimate alone"},
+      {"estimate_cpu_s", Unit::s, "CPU time of the estimate, without reading and scoring"},
       {"simulate_cpu_s", Unit::s, "CPU time of the simulation"},
-      {"estimate_peak_mib", Unit::mib, "memory at the peak of the estimate, beyond the recording"},
+      {"estimate_peak_mib", Unit::mib, "peak memory of the estimate, in addition to the recording"},
   };
 }
 
@@ -27,19 +27,19 @@ bool is_cost(std::string_view name) {
 
 std::vector<MetricInfo> motion_quantities() {
   return {
-      {"motion_moving_s", Unit::s, "time between first and last movement"},
-      {"motion_path_m", Unit::m, "length of the path of the centre of mass"},
-      {"motion_peak_rate_rad_s", Unit::rad_s, "largest rate"},
-      {"motion_peak_accel_m_s2", Unit::m_s2, "largest reading before the rail"},
-      {"motion_flight_share", Unit::share, "of the moving time, without contact"},
-      {"motion_impacts", Unit::number, "number of onsets"},
-      {"motion_clips", Unit::verdict, "1 when any sample of the primary gyro is clipped"},
-      {"motion_clipped_share", Unit::share, "of the moving samples, with a clipped gyro axis"},
-      {"motion_clipped_samples", Unit::number, "number of those"},
-      {"motion_clip_depth_max_rad_s", Unit::rad_s, "largest loss to the rail"},
-      {"motion_clip_length_max_s", Unit::s, "longest segment clipped"},
-      {"motion_several_axes_share", Unit::share, "of the clipped samples, with two axes or more"},
-      {"motion_accel_clipped_share", Unit::share, "of the moving samples, with a clipped accelerometer axis"},
+      {"motion_moving_s", Unit::s, "time between first and last motion"},
+      {"motion_path_m", Unit::m, "path length of the centre of mass"},
+      {"motion_peak_rate_rad_s", Unit::rad_s, "largest angular velocity"},
+      {"motion_peak_accel_m_s2", Unit::m_s2, "largest specific force without saturation"},
+      {"motion_flight_share", Unit::share, "share of the motion time without contact"},
+      {"motion_impacts", Unit::number, "number of impacts"},
+      {"motion_clips", Unit::verdict, "1 if any sample of the primary gyro is clipped, otherwise 0"},
+      {"motion_clipped_share", Unit::share, "share of the samples in motion with a clipped gyro axis"},
+      {"motion_clipped_samples", Unit::number, "number of samples in motion with a clipped gyro axis"},
+      {"motion_clip_depth_max_rad_s", Unit::rad_s, "largest saturation deficit of a gyro axis"},
+      {"motion_clip_length_max_s", Unit::s, "longest segment of clipped samples"},
+      {"motion_several_axes_share", Unit::share, "share of the clipped samples with at least two clipped axes"},
+      {"motion_accel_clipped_share", Unit::share, "share of the samples in motion with a clipped accelerometer axis"},
   };
 }
 

@@ -13,7 +13,7 @@ namespace tumble::scenarios {
 
 namespace {
 
-// errors of the estimate at samples with and without a clipped axis
+// Errors of the estimate at samples with and without a clipped axis.
 struct ErrorNorms {
   std::vector<double> clipped_rad_s, free_rad_s;
 };
@@ -43,7 +43,8 @@ bool clipped_max(const ScoredEstimate& scored, double& value) {
   return quantile_of(scored.once(error_norms).clipped_rad_s, 1.0, value);
 }
 
-// A segment: samples in a row with a clipped axis. Its error is the norm of the mean of its error vectors, an offset.
+// A segment consists of consecutive samples with a clipped axis. Its error is the norm of its mean error vector, thus
+// an offset.
 bool segment_max(const ScoredEstimate& scored, double& value) {
   std::vector<double> offsets;
   Eigen::Vector3d sum = Eigen::Vector3d::Zero();
@@ -65,7 +66,7 @@ bool segment_max(const ScoredEstimate& scored, double& value) {
   return quantile_of(offsets, 1.0, value);
 }
 
-// whether the robot touched anything while the sample that ends at time_ns was taken
+// Returns true if the robot touched anything during the sample that ends at time_ns.
 bool in_contact(const ScoredEstimate& scored, std::int64_t time_ns) {
   const sim::Truth& truth = scored.truth();
   if (truth.period_ns <= 0 || truth.label.empty()) return false;
@@ -79,7 +80,7 @@ bool in_contact(const ScoredEstimate& scored, std::int64_t time_ns) {
   return false;
 }
 
-// squared errors of clipped axes over their reported variances: of all samples, of those in flight, of those in contact
+// Squared errors of clipped axes divided by their reported variances: all samples, in flight, in contact.
 struct NormalisedErrors {
   std::vector<double> all, flight, impact;
 };
@@ -131,47 +132,47 @@ bool nees_impact(const ScoredEstimate& scored, double& value) {
 std::vector<Metric> rate_metrics() {
   return {
       {{"rate_error_clipped_median_rad_s", Unit::rad_s,
-        "median norm of the rate error at samples where at least one gyro axis is clipped", Sense::lower,
-        Place::headline},
+        "median rate error (norm) over samples with at least one clipped gyro axis", Sense::lower, Place::headline},
        Kind::rate,
        clipped_median},
       {{"rate_error_clipped_p99_rad_s", Unit::rad_s,
-        "99th percentile of the norm of the rate error at samples where at least one gyro axis is clipped",
-        Sense::lower, Place::headline},
+        "99th percentile of the rate error (norm) over samples with at least one clipped gyro axis", Sense::lower,
+        Place::headline},
        Kind::rate,
        clipped_p99},
-      {{"rate_error_free_median_rad_s", Unit::rad_s, "median norm of the rate error at all other samples", Sense::lower,
-        Place::held},
+      {{"rate_error_free_median_rad_s", Unit::rad_s,
+        "median rate error (norm) over samples without a clipped gyro axis", Sense::lower, Place::held},
        Kind::rate,
        free_median},
       {{"rate_coverage_3sigma", Unit::share,
-        "share of clipped axes whose error lies within three reported standard deviations", Sense::two_sided,
+        "share of clipped axes whose rate error is within three reported standard deviations", Sense::two_sided,
         Place::held, kNormal3Sigma, Compared::by_difference},
        Kind::rate,
        rate_coverage_3sigma},
-      {{"rate_error_clipped_max_rad_s", Unit::rad_s, "largest norm of the rate error at clipped samples", Sense::lower},
+      {{"rate_error_clipped_max_rad_s", Unit::rad_s, "largest rate error (norm) over clipped samples", Sense::lower},
        Kind::rate,
        clipped_max},
       {{"rate_error_segment_max_rad_s", Unit::rad_s,
-        "largest, over segments of clipped samples in a row, of the norm of the mean error: what offsets a map",
+        "largest mean rate error (norm) of a segment of consecutive clipped samples; this error displaces a map",
         Sense::lower},
        Kind::rate,
        segment_max},
-      {{"rate_coverage_3sigma_flight", Unit::share,
-        "rate_coverage_3sigma of the samples in which the robot touched nothing", Sense::two_sided, Place::detail,
-        kNormal3Sigma, Compared::by_difference},
+      {{"rate_coverage_3sigma_flight", Unit::share, "rate_coverage_3sigma over samples without contact",
+        Sense::two_sided, Place::detail, kNormal3Sigma, Compared::by_difference},
        Kind::rate,
        coverage_3sigma_flight},
-      {{"rate_coverage_3sigma_impact", Unit::share, "rate_coverage_3sigma of all other samples", Sense::two_sided,
+      {{"rate_coverage_3sigma_impact", Unit::share, "rate_coverage_3sigma over samples with contact", Sense::two_sided,
         Place::detail, kNormal3Sigma, Compared::by_difference},
        Kind::rate,
        coverage_3sigma_impact},
       {{"rate_nees_flight", Unit::number,
-        "mean, over clipped axes of samples in flight, of the squared error over the reported variance; 1 is honest",
+        "mean squared rate error over reported variance, over clipped axes without contact; 1 for an honest covariance",
         Sense::two_sided, Place::held, 1.0},
        Kind::rate,
        nees_flight},
-      {{"rate_nees_impact", Unit::number, "the same over all other samples", Sense::two_sided, Place::held, 1.0},
+      {{"rate_nees_impact", Unit::number,
+        "mean squared rate error over reported variance, over clipped axes with contact; 1 for an honest covariance",
+        Sense::two_sided, Place::held, 1.0},
        Kind::rate,
        nees_impact},
   };

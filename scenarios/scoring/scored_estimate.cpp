@@ -7,7 +7,7 @@ namespace tumble::scenarios {
 
 ScoredEstimate::ScoredEstimate(const Estimate& estimate, const ScoringInput& input)
     : estimate_(&estimate), input_(input) {
-  if (input.sensors == nullptr || input.truth == nullptr) throw BadInput("scoring needs the sensors and the truth");
+  if (input.sensors == nullptr || input.truth == nullptr) throw BadInput("scoring needs both sensor data and truth");
 }
 
 }  // namespace tumble::scenarios

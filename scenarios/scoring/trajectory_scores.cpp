@@ -9,7 +9,7 @@ namespace tumble::scenarios {
 namespace {
 
 constexpr double kSegmentM = 1.0;
-// segments begin at every such step of the path, so that standing still does not count many times
+// Segments start at every such step of the path, so that rest does not count many times.
 constexpr double kSegmentStepM = 0.05;
 
 bool ate(const ScoredEstimate& scored, double& value) {
@@ -36,7 +36,7 @@ struct SegmentErrors {
   std::vector<double> rotation_rad;
 };
 
-// motion from pose a to pose b in the axes of a
+// Returns the motion from pose a to pose b in the axes of a.
 Eigen::Isometry3d relative(const PoseState& a, const PoseState& b) {
   const Eigen::Quaterniond q_Wa_inverse = a.q_WA.conjugate();
   return Eigen::Translation3d(q_Wa_inverse * (b.p_WA_m - a.p_WA_m)) * (q_Wa_inverse * b.q_WA);
@@ -79,18 +79,24 @@ bool rpe_rad(const ScoredEstimate& scored, double& value) {
 
 std::vector<Metric> trajectory_metrics(Kind kind) {
   return {
-      {{"ate_m", Unit::m, "rms position error, position and yaw aligned at the start only", Sense::lower, Place::held},
+      {{"ate_m", Unit::m, "rms position error, with position and yaw aligned at the start only", Sense::lower,
+        Place::held},
        kind,
        ate},
-      {{"ate_rad", Unit::rad, "the same: rotation, up to pi; a body that turns shows here what its stamps are late by",
+      {{"ate_rad", Unit::rad,
+        "rms rotation error, up to pi, with position and yaw aligned at the start only; includes the error from late "
+        "time stamps",
         Sense::lower, Place::held},
        kind,
        ate_rotation},
-      {{"rpe_1m_m", Unit::m, "rms error of the relative motion over 1 m of true path: translation", Sense::lower,
+      {{"rpe_1m_m", Unit::m, "rms translation error of the relative motion over 1 m of true path", Sense::lower,
         Place::held},
        kind,
        rpe_m},
-      {{"rpe_1m_rad", Unit::rad, "the same: rotation, up to pi", Sense::lower, Place::held}, kind, rpe_rad},
+      {{"rpe_1m_rad", Unit::rad, "rms rotation error of the relative motion over 1 m of true path, up to pi",
+        Sense::lower, Place::held},
+       kind,
+       rpe_rad},
   };
 }
 

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "scenarios/scoring/truth_track.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <string>
@@ -14,10 +16,10 @@ namespace {
 Eigen::Isometry3d mounting(const sim::Truth& truth, Frame frame) {
   switch (frame) {
     case Frame::imu:
-      if (truth.imus.empty()) throw BadInput("the truth holds no IMU to score poses of frame imu");
+      if (truth.imus.empty()) throw BadInput("the truth has no IMU; poses of frame imu cannot be scored");
       return truth.imus.front().T_BI;
     case Frame::lidar:
-      if (truth.lidars.empty()) throw BadInput("the truth holds no lidar to score poses of frame lidar");
+      if (truth.lidars.empty()) throw BadInput("the truth has no lidar; poses of frame lidar cannot be scored");
       return truth.lidars.front().T_BL;
     case Frame::body:
       break;
@@ -27,7 +29,7 @@ Eigen::Isometry3d mounting(const sim::Truth& truth, Frame frame) {
   return Eigen::Isometry3d::Identity();
 }
 
-// a sample is at rest when every sample within the window around it is slow
+// A sample is at rest if every sample within the window around it is slow.
 std::vector<bool> rest_mask(const sim::Truth& truth) {
   const std::size_t count = truth.p_WB_m.size();
   const bool no_position =
@@ -53,8 +55,9 @@ std::vector<bool> rest_mask(const sim::Truth& truth) {
 
 TruthTrack::TruthTrack(const sim::Truth& truth, Frame frame) : truth_(&truth), T_BA_(mounting(truth, frame)) {
   const std::size_t count = truth.p_WB_m.size();
-  if (count == 0) throw BadInput("the truth holds no motion");
-  if (truth.period_ns <= 0) throw BadInput("truth.period_ns is " + std::to_string(truth.period_ns) + ", must be > 0");
+  if (count == 0) throw BadInput("the truth has no motion");
+  if (truth.period_ns <= 0)
+    throw BadInput(fmt::format("truth.period_ns is {}; it must be greater than 0", truth.period_ns));
   require_length("truth", "q_WB", truth.q_WB.size(), count);
   require_length("truth", "v_WB_m_s", truth.v_WB_m_s.size(), count);
   require_length("truth", "w_WB_B_rad_s", truth.w_WB_B_rad_s.size(), count);
@@ -93,7 +96,7 @@ Eigen::Vector3d TruthTrack::position(std::size_t index) const {
 TruthTrack::Between TruthTrack::between(std::int64_t time_ns) const {
   const auto index = static_cast<std::size_t>(time_ns / truth_->period_ns);
   const double share = static_cast<double>(time_ns % truth_->period_ns) / static_cast<double>(truth_->period_ns);
-  // at a sample the next one has no part, and may be unknown
+  // Exactly at a sample, avoid the next one, which may be unknown.
   return {index, share > 0.0 ? std::min(index + 1, truth_->p_WB_m.size() - 1) : index, share};
 }
 

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "scenarios/statistics/bootstrap.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <array>
 #include <boost/math/distributions/normal.hpp>
@@ -18,27 +20,27 @@ namespace tumble::scenarios {
 
 namespace {
 
-constexpr std::size_t kValuesMin = 6;  // a 95 % interval of the median needs as many: 2 / 2^5 > 5 %
+constexpr std::size_t kValuesMin = 6;  // a 95 % interval of the median needs six values: 2 / 2^5 > 5 %
 
-// in double: the place of a rank needs no more digits, and long double takes three times as long
+// double precision is sufficient for ranks and three times as fast as long double
 using Quick = boost::math::policies::policy<boost::math::policies::promote_double<false>>;
 
 double middle_of(double below, double above) {
   return below == above ? below : 0.5 * (below + above);
 }
 
-/// Median of a sorted sample.
+/// Returns the median of a sorted sample.
 double sorted_median(std::span<const double> sorted) {
   const std::size_t n = sorted.size();
   return middle_of(sorted[(n - 1) / 2], sorted[n / 2]);
 }
 
-/// Acceleration from the jackknife, statistics.md (S3). Of an even sample the medians left are two, as often each:
-/// none.
+/// Returns the acceleration from the jackknife, statistics.md (S3). It is zero for an even sample size, where two
+/// medians remain, equally often.
 double acceleration(std::span<const double> sorted) {
   const std::size_t n = sorted.size(), m = n / 2;
   if (n % 2 == 0) return 0.0;
-  // what is left when one above, one below and the median itself is taken out, and how often
+  // medians after removing a value above, a value below, or the median itself, with their counts
   const std::array<std::pair<double, double>, 3> left = {{{middle_of(sorted[m - 1], sorted[m]), static_cast<double>(m)},
                                                           {middle_of(sorted[m], sorted[m + 1]), static_cast<double>(m)},
                                                           {middle_of(sorted[m - 1], sorted[m + 1]), 1.0}}};
@@ -56,10 +58,9 @@ double acceleration(std::span<const double> sorted) {
 }  // namespace
 
 MedianBootstrap::MedianBootstrap(std::size_t size, std::size_t resamples) : size_(size) {
-  if (size == 0) throw BadInput("bootstrap: there is no value");
-  if (resamples < 100)
-    throw BadInput("bootstrap: resamples is " + std::to_string(resamples) + ", must be at least 100");
-  // statistics.md (S1): the lower middle of n uniform numbers, and the one above it given that
+  if (size == 0) throw BadInput("bootstrap: there are no values");
+  if (resamples < 100) throw BadInput(fmt::format("bootstrap: resamples is {}, must be at least 100", resamples));
+  // statistics.md (S1): the lower middle of n uniform numbers, and the one above, conditional on it
   sim::Stream stream(size, "statistics.bootstrap");
   const auto n = static_cast<double>(size);
   const std::size_t rank = (size + 1) / 2;
@@ -76,9 +77,9 @@ MedianBootstrap::MedianBootstrap(std::size_t size, std::size_t resamples) : size
 
 Interval MedianBootstrap::interval(std::span<const double> values, double risk) const {
   if (values.size() != size_)
-    throw BadInput("bootstrap: " + std::to_string(values.size()) + " values, made for " + std::to_string(size_));
+    throw BadInput(fmt::format("bootstrap: {} values, but the bootstrap was made for {}", values.size(), size_));
   if (!(risk > 0.0 && risk < 1.0))
-    throw BadInput("bootstrap: risk is " + std::to_string(risk) + ", must be within (0, 1)");
+    throw BadInput(fmt::format("bootstrap: risk is {}, must be within (0, 1)", std::to_string(risk)));
   std::vector<double> sorted(values.begin(), values.end());
   if (std::any_of(sorted.begin(), sorted.end(), [](double v) { return std::isnan(v); }))
     throw BadInput("bootstrap: a value is NaN");

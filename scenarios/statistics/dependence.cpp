@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "scenarios/statistics/dependence.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <boost/math/distributions/chi_squared.hpp>
 #include <boost/math/distributions/students_t.hpp>
@@ -23,7 +25,8 @@ using CompletePairs = std::vector<std::pair<double, double>>;
 
 CompletePairs complete_pairs(std::span<const double> x, std::span<const double> y) {
   if (x.size() != y.size())
-    throw BadInput("dependence: " + std::to_string(x.size()) + " numbers beside " + std::to_string(y.size()));
+    throw BadInput(fmt::format("dependence: {} first numbers; the second set must be as long, but its length is {}",
+                               x.size(), y.size()));
   CompletePairs pairs;
   for (std::size_t i = 0; i < x.size(); ++i) {
     if (!std::isnan(x[i]) && !std::isnan(y[i])) pairs.emplace_back(x[i], y[i]);
@@ -42,7 +45,7 @@ double mean(std::span<const double> values) {
   return std::accumulate(values.begin(), values.end(), 0.0) / static_cast<double>(values.size());
 }
 
-/// Ends of the classes of sorted pairs, as many as are wanted at most. What has one x is never parted.
+/// Returns the ends of at most `wanted` classes of sorted pairs. Equal x are never separated.
 std::vector<std::size_t> class_ends(const CompletePairs& sorted, std::size_t wanted) {
   const std::size_t n = sorted.size();
   std::vector<std::size_t> distinct;
@@ -76,7 +79,8 @@ Interval centre_of(std::span<const double> values, Centre centre) {
   if (centre == Centre::median) return median_interval(values);
   for (const double value : values) {
     if (value != 0.0 && value != 1.0)
-      throw BadInput("dependence: a share of values with " + std::to_string(value) + ", must be 0 or 1");
+      throw BadInput(
+          fmt::format("dependence: a value is {}; for a share, each value must be 0 or 1", std::to_string(value)));
   }
   const auto count = static_cast<std::int64_t>(std::count(values.begin(), values.end(), 1.0));
   return share_interval(count, static_cast<std::int64_t>(values.size()));
@@ -106,7 +110,7 @@ Correlation rank_correlation(std::span<const double> x, std::span<const double> 
   Correlation out;
   if (pairs.size() < kIntervalMin) return out;
   const std::vector<double> a = mean_ranks(column(pairs, &Pair::first)), b = mean_ranks(column(pairs, &Pair::second));
-  const double middle = mean(a);  // of both: the mean of all ranks
+  const double middle = mean(a);  // same for both: the mean of all ranks
   double ab = 0.0, aa = 0.0, bb = 0.0;
   for (std::size_t i = 0; i < a.size(); ++i) {
     ab += (a[i] - middle) * (b[i] - middle);

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "scenarios/statistics/paired.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <boost/math/distributions/binomial.hpp>
 #include <boost/math/distributions/normal.hpp>
@@ -14,7 +16,7 @@ namespace tumble::scenarios {
 
 namespace {
 
-/// Of the differences that count, by rising size. Twice the mean rank of a tie is a whole number.
+/// Ranks of the non-zero differences by size. Twice the mean rank of a tie is an integer.
 struct SignedRanks {
   std::vector<std::size_t> doubled;
   std::size_t total = 0, positive = 0;  ///< sums of the doubled ranks
@@ -43,9 +45,9 @@ SignedRanks signed_ranks(std::span<const double> differences) {
   return out;
 }
 
-/// Chance that a sum of ranks of random signs reaches `sum`, by the distribution of all signs.
+/// Returns the probability that the rank sum with random signs reaches `sum`, from the exact distribution.
 double exact_chance(const SignedRanks& ranks, std::size_t sum) {
-  std::vector<double> chance(ranks.total + 1, 0.0);  // of each sum of the positive ranks
+  std::vector<double> chance(ranks.total + 1, 0.0);  // probability of each sum of the positive ranks
   chance[0] = 1.0;
   std::size_t reached = 0;
   for (const std::size_t rank : ranks.doubled) {
@@ -94,8 +96,7 @@ double sign_test(std::span<const double> differences) {
 
 double paired_failures_test(std::int64_t only_first, std::int64_t only_second) {
   if (only_first < 0 || only_second < 0)
-    throw BadInput("paired failures: " + std::to_string(std::min(only_first, only_second)) +
-                   " draws, must be at least 0");
+    throw BadInput(fmt::format("paired failures: {} draws, must be at least 0", std::min(only_first, only_second)));
   const auto n = static_cast<double>(only_first + only_second);
   if (n == 0.0) return 1.0;
   const boost::math::binomial fair(n, 0.5);

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "scenarios/statistics/sample_size.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <boost/math/distributions/normal.hpp>
 #include <cmath>
@@ -18,7 +20,7 @@ namespace {
 void require(const Plan& plan) {
   for (const auto& [name, value] : {std::pair{"risk", plan.risk}, std::pair{"power", plan.power}}) {
     if (!(value > 0.0 && value < 1.0))
-      throw BadInput(std::string("plan: ") + name + " is " + std::to_string(value) + ", must be within (0, 1)");
+      throw BadInput(fmt::format("plan: {} is {}, must be within (0, 1)", name, std::to_string(value)));
   }
 }
 
@@ -26,17 +28,17 @@ double normal_quantile(double share) {
   return quantile(boost::math::normal(), share);
 }
 
-/// Signs all alike, of as few differences as can be: 2 / 2^n <= risk.
+/// Returns the smallest number of differences that can reach the risk: 2 / 2^n <= risk, with equal signs.
 double fewest(double risk) {
   return std::ceil(1.0 - std::log2(risk));
 }
 
-/// Share of the pairs of differences whose sum is positive, half of those whose sum is zero: statistics.md (S9).
+/// Returns the share of pairs of differences with a positive sum, counting zero sums half: statistics.md (S9).
 double positive_sums(std::vector<double> differences) {
   std::sort(differences.begin(), differences.end());
   double count = 0.0;
   for (auto i = differences.begin(); i != differences.end(); ++i) {
-    // those after it alone, so that no pair counts twice
+    // only later differences, so that each pair counts once
     const auto [first, last] = std::equal_range(i + 1, differences.end(), -*i);
     count += static_cast<double>(differences.end() - last) + 0.5 * static_cast<double>(last - first);
   }
@@ -66,8 +68,9 @@ double pairs_for_signed_rank(std::span<const double> differences, const Plan& pl
 double pairs_for_failures(std::int64_t only_first, std::int64_t only_second, std::int64_t pairs, const Plan& plan) {
   require(plan);
   if (only_first < 0 || only_second < 0 || only_first + only_second > pairs)
-    throw BadInput("plan: " + std::to_string(only_first) + " and " + std::to_string(only_second) +
-                   " failures of one alone, must be within " + std::to_string(pairs) + " pairs");
+    throw BadInput(
+        fmt::format("plan: {} and {} failures of only one method; their sum must be at most the number of pairs, {}",
+                    only_first, only_second, pairs));
   if (only_first == only_second) return kInfinity;
   const auto n = static_cast<double>(pairs);
   const double either = static_cast<double>(only_first + only_second) / n;

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "scenarios/statistics/sequential.hpp"
 
+#include <fmt/format.h>
+
 #include <boost/math/distributions/normal.hpp>
 #include <cmath>
 #include <string>
@@ -17,15 +19,19 @@ double spent_by(double risk, double share) {
 }
 
 SequentialSignTest::SequentialSignTest(double risk) : risk_(risk) {
-  if (!(risk > 0.0 && risk < 1.0)) throw BadInput("risk is " + std::to_string(risk) + ", must be within (0, 1)");
+  if (!(risk > 0.0 && risk < 1.0))
+    throw BadInput(fmt::format("risk is {}, must be within (0, 1)", std::to_string(risk)));
 }
 
 SequentialSignTest::Verdict SequentialSignTest::look(double share, std::int64_t negative, std::int64_t positive) {
   if (!(share > 0.0 && share <= 1.0 && share >= share_))
-    throw BadInput("share of the draws seen is " + std::to_string(share) + ", must be within (0, 1] and not fall");
+    throw BadInput(fmt::format("share of the draws seen is {}; it must be within (0, 1] and must not decrease",
+                               std::to_string(share)));
   if (negative < 0 || positive < 0 || negative + positive < pairs_)
-    throw BadInput("pairs are " + std::to_string(negative) + " and " + std::to_string(positive) + ", were " +
-                   std::to_string(pairs_) + " at the look before");
+    throw BadInput(
+        fmt::format("the numbers of pairs are {} and {}; at the previous look there were {} pairs in all, and the "
+                    "number must not decrease",
+                    negative, positive, pairs_));
   if (verdict_ != Verdict::open) return verdict_;
   share_ = share;
   toss(negative + positive - pairs_);
@@ -35,7 +41,7 @@ SequentialSignTest::Verdict SequentialSignTest::look(double share, std::int64_t 
   return verdict_;
 }
 
-/// statistics.md (S20): each pair adds a positive sign or none.
+/// statistics.md (S20): each pair adds one positive sign or none.
 void SequentialSignTest::toss(std::int64_t pairs) {
   for (std::int64_t k = 0; k < pairs; ++k) {
     going_on_.push_back(0.0);
@@ -45,10 +51,10 @@ void SequentialSignTest::toss(std::int64_t pairs) {
   pairs_ += pairs;
 }
 
-/// statistics.md (S21). The distribution is symmetric: what is stopped above is stopped below as well.
+/// statistics.md (S21). The distribution is symmetric, so both sides stop equally.
 void SequentialSignTest::stop_beyond(double allowed) {
   std::size_t stopped = 0;
-  // never both sides of one number
+  // never stop both sides of one number
   while (2 * stopped + 1 < going_on_.size()) {
     const double more = going_on_[going_on_.size() - 1 - stopped];
     if (spent_a_side_ + more > allowed) break;

@@ -14,12 +14,12 @@ namespace tumble::scenarios {
 
 namespace {
 
-/// Whose spread a quantity shows: the draws' own values; the share of draws that have it; all clipped samples of all
-/// draws as one heap.
+/// Which distribution a quantity shows: values of the draws, the share of draws that have it, or all clipped samples
+/// pooled.
 enum class Over { draws, share_of_draws, clipped_samples };
 
-/// A quantity and what the campaign of the tumbling rig (32 tumbles down a hill, ICRA 2024) and the project's own aim
-/// say of it. `low` and `high` shade the plot; equal: a line.
+/// A quantity with published values: the campaign of the tumbling rig (32 tumbles down a hill, ICRA 2024) and the
+/// project's target. The plot shades `low` to `high`; equal values give a line.
 struct Quantity {
   const char* metric;
   const char* name;
@@ -36,18 +36,19 @@ constexpr std::array kQuantities = {
              25.0},
     Quantity{"motion_clipped_share", "share of the moving samples with a clipped gyro axis", "%", 100.0, "", kNone,
              kNone},
-    Quantity{"motion_several_axes_share", "two axes or more clipped, of the clipped samples of a draw", "%", 100.0, "",
-             kNone, kNone},
-    Quantity{"motion_several_axes_share", "two axes or more clipped, of the clipped samples of all draws", "%", 100.0,
-             "aim: 10 to 40", kNone, kNone, Over::clipped_samples},
+    Quantity{"motion_several_axes_share", "share of a draw's clipped samples with at least two clipped axes", "%",
+             100.0, "", kNone, kNone},
+    Quantity{"motion_several_axes_share", "share of all draws' clipped samples with at least two clipped axes", "%",
+             100.0, "aim: 10 to 40", kNone, kNone, Over::clipped_samples},
     Quantity{"motion_path_m", "path", "m", 1.0, "5 to 10", 5.0, 10.0},
     Quantity{"motion_peak_accel_m_s2", "largest specific force", "m/s²", 1.0,
-             "up to 157.8; a part of 16 g ends at 156.9", 157.8, 157.8},
-    Quantity{"motion_clips", "draws that clip the gyro", "%", 100.0, "aim: 90", kNone, kNone, Over::share_of_draws},
+             "up to 157.8; a 16 g device saturates at 156.9", 157.8, 157.8},
+    Quantity{"motion_clips", "share of draws that clip the gyro", "%", 100.0, "aim: 90", kNone, kNone,
+             Over::share_of_draws},
 };
 
-/// Mean weighted by each draw's clipped samples, with its 95 % interval: the ratio estimator of a cluster sample
-/// (Cochran, Sampling Techniques, 1977, section 9A.2), since samples of one draw belong together.
+/// Returns the mean weighted by each draw's clipped samples, with its 95 % interval: the ratio estimator of a cluster
+/// sample (Cochran, Sampling Techniques, 1977, section 9A.2), because samples within a draw are correlated.
 Interval pooled(std::span<const DrawValues* const> draws, const std::string& metric) {
   std::vector<std::pair<double, double>> weighted;  // number of samples, share of them
   double samples = 0.0, hits = 0.0, square = 0.0;

@@ -19,29 +19,29 @@ namespace {
 
 constexpr int kLooksMax = 1000;
 
-/// "rate" of "rate/tumble"; of a name without a kind nothing.
+/// Returns "rate" for "rate/tumble"; empty for a name without a kind.
 std::string kind_of(const std::string& name) {
   const std::size_t slash = name.find('/');
   return slash == std::string::npos ? std::string() : name.substr(0, slash);
 }
 
-/// Throws BadInput on a metric that says nothing about which of two methods of this kind is better.
+/// Throws BadInput for a metric that cannot rank two methods of this kind.
 void require_contest(const std::string& metric, const std::string& kind) {
   const MetricInfo& info = metric_info(metric);
   const auto all = metrics();
   const auto own = std::find_if(all.begin(), all.end(), [&](const Metric& m) { return m.info.name == info.name; });
   if (own == all.end() || info.sense == Sense::none)
-    throw BadInput("metric '" + metric + "' of a question is not known, or has no better side");
+    throw BadInput(fmt::format("metric '{}' of a question is unknown, or has no better direction", metric));
   if (to_string(own->kind) != kind)
-    throw BadInput("metric '" + metric + "' is of kind " + to_string(own->kind) + ", the methods of a question are '" +
-                   kind + "'");
+    throw BadInput(fmt::format("metric '{}' is of kind {}; it must have the kind of the methods, '{}'", metric,
+                               to_string(own->kind), kind));
 }
 
-/// Of one draw what each of the two has: a value, or the worst in its place.
+/// Values of both methods on one draw; the worst value for a failure.
 struct AnswerPair {
   std::optional<double> own, other;
 };
-/// By scenario, then by seed.
+/// by scenario, then by seed
 using AnswerPairs = std::map<std::string, std::map<std::uint64_t, AnswerPair>, std::less<>>;
 
 std::optional<double> value_of(const OutcomeView& row, const Question& question) {
@@ -66,7 +66,7 @@ AnswerPairs pairs_of(const Results& results, const Question& question, std::uint
   return pairs;
 }
 
-/// Looks in their order until one answers.
+/// Evaluates the looks in order until one answers.
 Answer answer_of(const std::string& scenario, const std::map<std::uint64_t, AnswerPair>& pairs,
                  const Question& question, std::uint64_t last_seed) {
   SequentialSignTest test(question.risk / static_cast<double>(question.scenarios.size()));
@@ -118,31 +118,32 @@ void require_sound(const Question& question) {
   const std::string kind = kind_of(question.method);
   for (const std::string& name : {question.method, question.against}) {
     if (kind_of(name).empty())
-      throw BadInput("method '" + name + "' of a question needs its kind, as in 'rate/tumble'");
+      throw BadInput(fmt::format("method '{}' of a question needs its kind, for example 'rate/tumble'", name));
     if (kind_of(name) != kind)
-      throw BadInput("methods '" + question.method + "' and '" + name + "' are of two kinds, which no metric compares");
+      throw BadInput(
+          fmt::format("methods '{}' and '{}' have different kinds; no metric compares them", question.method, name));
   }
   if (question.method == question.against)
-    throw BadInput("method '" + question.method + "' is asked to be better than itself");
+    throw BadInput(fmt::format("method '{}' is compared with itself; name two methods", question.method));
   require_contest(question.metric, kind);
   if (!(question.margin.value >= 0.0 && std::isfinite(question.margin.value)))
-    throw BadInput("margin is " + std::to_string(question.margin.value) + ", must be finite and at least 0");
+    throw BadInput(fmt::format("margin is {}, must be finite and at least 0", std::to_string(question.margin.value)));
   if (!(question.risk > 0.0 && question.risk < 1.0))
-    throw BadInput("risk is " + std::to_string(question.risk) + ", must be within (0, 1)");
+    throw BadInput(fmt::format("risk is {}, must be within (0, 1)", std::to_string(question.risk)));
   if (question.looks < 1 || question.looks > kLooksMax)
-    throw BadInput("looks are " + std::to_string(question.looks) + ", must be within [1, " + std::to_string(kLooksMax) +
-                   "]");
-  if (question.scenarios.empty()) throw BadInput("a question needs a scenario");
-  if (question.last_seed < question.first_seed) throw BadInput("a question needs a seed");
+    throw BadInput(fmt::format("looks are {}, must be within [1, {}]", question.looks, kLooksMax));
+  if (question.scenarios.empty()) throw BadInput("a question needs at least one scenario");
+  if (question.last_seed < question.first_seed) throw BadInput("a question needs at least one seed");
 }
 
 void claim(Results& results, const Question& question, const std::filesystem::path& database) {
   const std::string known = results.note(kQuestionNote), asked = question.describe();
   if (known == asked) return;
   if (!known.empty())
-    throw BadInput(database.string() + ": was asked '" + known + "', now '" + asked + "': name another file");
+    throw BadInput(fmt::format("{}: stores the question '{}', but now the question is '{}'; name another file",
+                               database.string(), known, asked));
   if (!results.outcomes().empty())
-    throw BadInput(database.string() + ": holds draws from before the question was asked: name another file");
+    throw BadInput(database.string() + ": holds draws that were made before the question was set; name another file");
   results.set_note(kQuestionNote, asked);
 }
 

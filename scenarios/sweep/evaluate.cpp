@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "scenarios/sweep/evaluate.hpp"
 
+#include <fmt/format.h>
+
 #include <sys/resource.h>
 #include <time.h>
 
@@ -52,7 +54,8 @@ std::vector<MethodPointer> applicable(std::span<const MethodPointer> methods, co
 
 void require_applies(const Method& method, const Scenario& scenario) {
   const std::string why = method.info.why_not(subject_of(scenario));
-  if (!why.empty()) throw BadInput("method '" + method.info.name + "' on " + scenario.name + ": it " + why);
+  if (!why.empty())
+    throw BadInput(fmt::format("method '{}' on {}: the method {}", method.info.name, scenario.name, why));
 }
 
 namespace {
@@ -69,7 +72,7 @@ OutcomeStatus status_of(NoAnswer::Why why) {
   return OutcomeStatus::killed;
 }
 
-/// Of a method that gave no answer: what its files say of it, too.
+/// Returns the estimate of a method that gave no answer, with the program's output.
 Estimate no_estimate(const std::string& transcript = "") {
   Estimate none;
   none.transcript = transcript;
@@ -104,7 +107,7 @@ Estimate run_method(const Method& method, const SimulatedDraw& draw, Outcome& ou
   } catch (const std::bad_alloc&) {
     estimate = no_estimate();
     outcome.status = OutcomeStatus::killed;
-    outcome.message = "no memory was left for it";
+    outcome.message = "not enough memory for the method";
   } catch (const RefusedAnswer& error) {
     estimate = no_estimate(error.transcript());
     outcome.status = OutcomeStatus::failed;
@@ -127,14 +130,14 @@ void assess(const Method& method, const SimulatedDraw& draw, const sim::Surface*
     const ScoredEstimate scored(estimate, {&draw.recording.sensors, &draw.recording.truth, surface});
     outcome.status = verdict(method.info.kind, scored);
     if (outcome.status == OutcomeStatus::diverged)
-      outcome.message = "the estimate left the truth, the recording or the numbers";
+      outcome.message = "the estimate diverged from the truth, left the recording's time range, or is not finite";
     for (Score& score : score(method.info.kind, scored)) outcome.scores.push_back(std::move(score));
   } catch (const std::bad_alloc&) {
     outcome.status = OutcomeStatus::killed;
-    outcome.message = "no memory was left to score it";
+    outcome.message = "not enough memory to score the estimate";
   } catch (const std::exception& error) {
     outcome.status = OutcomeStatus::failed;
-    outcome.message = one_line(std::string("not scored: ") + error.what());
+    outcome.message = one_line(std::string("scoring failed: ") + error.what());
   }
 }
 

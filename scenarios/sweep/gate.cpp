@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "scenarios/sweep/gate.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -27,13 +29,13 @@ bool by_difference(const MetricInfo& info) {
   return info.compared == Compared::by_difference;
 }
 
-/// What of `difference` does not matter.
+/// Returns the part of `difference` that is tolerated.
 double margin_of(const MetricInfo& info, const GatePolicy& policy) {
   if (!by_difference(info)) return std::log1p(policy.margin);
   return info.unit == Unit::time_offset ? policy.time_margin_s : policy.share_margin;
 }
 
-/// How much more `now` is than `before`, as the metric is compared.
+/// Returns the change from `before` to `now` in the metric's comparison.
 double difference(const MetricInfo& info, double before, double now) {
   if (before == now) return 0.0;
   if (by_difference(info)) return now - before;
@@ -42,8 +44,8 @@ double difference(const MetricInfo& info, double before, double now) {
   return std::log(now / before);
 }
 
-/// How bad a draw is: what `GatePolicy::worst` is a multiple of. Of a share what it lacks, of what has a sign how far
-/// it lies from its target.
+/// Returns how bad a draw is, for `GatePolicy::worst`: one minus the value of a share, the distance from the target of
+/// a signed value.
 double badness(const MetricInfo& info, double value) {
   if (!by_difference(info)) return value;
   return info.unit == Unit::share ? 1.0 - value : std::abs(value - info.target);
@@ -51,11 +53,10 @@ double badness(const MetricInfo& info, double value) {
 
 struct GatePair {
   std::uint64_t seed = 0;
-  double before = 0.0, now = 0.0;  ///< infinite where it was not ok, as the worst
+  double before = 0.0, now = 0.0;  ///< infinite (worst) if it was not ok
 };
 
-/// GatePairs of a metric. A draw on which both runs are without a value says nothing; one that has lost it is in
-/// `lost`.
+/// Pairs of a metric. Draws without a value in both runs are omitted; draws that lost their value are in `lost`.
 struct GatePairs {
   std::vector<GatePair> pairs;
   std::vector<std::uint64_t> lost;
@@ -73,7 +74,7 @@ GatePairs pairs_of(const GateRun& all, const MethodRun& before, const MethodRun&
     GatePair pair{all.seeds[k], value_at(before, info.name, k), value_at(now, info.name, k)};
     if (was_ok && std::isnan(pair.before)) continue;
     if (was_ok && is_ok && std::isnan(pair.now)) out.lost.push_back(pair.seed);
-    // a run that is not ok ranks as the worst, whatever numbers it left
+    // runs that are not ok rank as worst, whatever their values
     if (!was_ok) pair.before = worst_value(info);
     if (!is_ok) pair.now = worst_value(info);
     if (!std::isnan(pair.before) && !std::isnan(pair.now)) out.pairs.push_back(pair);
@@ -81,13 +82,13 @@ GatePairs pairs_of(const GateRun& all, const MethodRun& before, const MethodRun&
   return out;
 }
 
-/// The chance of differences as positive as these, were their middle at `margin` or below.
+/// Returns the p-value of the differences under the hypothesis that their median is at most `margin`.
 double chance_beyond(std::vector<double> differences, double margin) {
   for (double& each : differences) each -= margin;
   return signed_rank_chance(differences);
 }
 
-/// Whether a draw is worse than any accepted one was, beyond the allowed; the fault says which.
+/// Checks that no draw is worse than the worst accepted draw times the allowed factor; the fault states which draw.
 void hold_worst_draw(const MetricInfo& info, const std::vector<GatePair>& pairs, const GatePolicy& policy,
                      GateResult& result) {
   if (pairs.empty()) return;
@@ -101,12 +102,12 @@ void hold_worst_draw(const MetricInfo& info, const std::vector<GatePair>& pairs,
   const double slack = by_difference(info) ? margin_of(info, policy) : 0.0;
   if (!(badness(info, now.now) > policy.worst * badness(info, before.before) + slack)) return;
   result.seed = now.seed;
-  result.fault = "worst draw: " + three_digits(now.now) + " at seed " + std::to_string(now.seed) + ", was " +
-                 three_digits(before.before) + " at most as bad";
+  result.fault = fmt::format("worst draw: {} at seed {}; the worst draw of the accepted run had {}",
+                             three_digits(now.now), now.seed, three_digits(before.before));
 }
 
-/// Tests of a metric count once, two-sided ones too: they take twice the smaller chance. Puts a shift of the pairs, and
-/// the fault where it is one, into a result that says of what they are.
+/// Each metric counts as one test; two-sided ones use twice the smaller p-value. Adds the shift and any fault to the
+/// result.
 void hold_middle(const std::vector<GatePair>& pairs, const MetricInfo& info, const GatePolicy& policy,
                  std::size_t tests, GateResult& result) {
   result.draws = pairs.size();
@@ -140,7 +141,7 @@ GateResult hold_metric(const GatePairs& found, const MethodRun& before, const Me
   hold_middle(found.pairs, info, policy, tests, result);
   if (!found.lost.empty()) {
     result.seed = found.lost.front();
-    result.fault = "has no value any more: seed " + std::to_string(found.lost.front());
+    result.fault = "no longer has a value at seed " + std::to_string(found.lost.front());
     if (found.lost.size() > 1) result.fault += " and " + std::to_string(found.lost.size() - 1) + " more";
   } else if (result.passes()) {
     hold_worst_draw(info, found.pairs, policy, result);
@@ -148,7 +149,7 @@ GateResult hold_metric(const GatePairs& found, const MethodRun& before, const Me
   return result;
 }
 
-/// A verdict is a failure as a status is: 0 has to stay 0.
+/// A verdict counts as a failure: 0 must stay 0.
 bool is_condemned(const MethodRun& run, const MetricInfo& verdict, std::size_t draw) {
   return value_at(run, verdict.name, draw) > 0.0;
 }
@@ -174,7 +175,7 @@ GateResult hold_outcomes(const GateRun& all, const MethodRun& before, const Meth
       fault = condemned(now);
     was += was_good ? 0 : 1;
     is += fault.empty() ? 0 : 1;
-    // a draw that has gone is a fault also where it had failed
+    // a missing draw is a fault even if it failed in the accepted run
     if (result.fault.empty() && !fault.empty() && (was_good || !now.status[k])) {
       result.fault = fault + seed;
       result.seed = all.seeds[k];
@@ -195,7 +196,7 @@ MethodRun without_outcomes(const MethodRun& like) {
   return none;
 }
 
-/// A metric of a method over all scenarios that hold it.
+/// A metric of a method over all scenarios that have it.
 struct Pooled {
   Kind kind = Kind::rate;
   std::string method;
@@ -206,7 +207,7 @@ struct Pooled {
   }
 };
 
-/// Those that more than one scenario holds, in the order of the accepted run.
+/// Returns the metrics of more than one scenario, in the order of the accepted run.
 std::vector<Pooled> pooled_metrics(const GateRun& accepted) {
   std::vector<Pooled> seen, out;
   const auto has = [](const std::vector<Pooled>& list, const MethodRun& run, const MetricInfo& info) {
@@ -232,11 +233,13 @@ const MethodRun* GateRun::find(const std::string& scenario, Kind kind, const std
 }
 
 std::vector<GateResult> hold_to_gate(const GateRun& run, const Gate& gate) {
-  if (gate.accepted.methods.empty()) throw BadInput("the gate of " + gate.suite + " has accepted nothing");
+  if (gate.accepted.methods.empty())
+    throw BadInput(fmt::format("the gate of {} has no accepted results; run 'tumble gate SUITE --accept'", gate.suite));
   if (run.seeds != gate.accepted.seeds) {
-    throw BadInput("the gate of " + gate.suite + " has accepted " + std::to_string(gate.accepted.seeds.size()) +
-                   " draws of other seeds than the " + std::to_string(run.seeds.size()) + " given; 'tumble gate " +
-                   gate.suite + " --accept' accepts anew");
+    throw BadInput(
+        fmt::format("the gate of {} accepted {} draws with other seeds than the {} of this run; run 'tumble gate {} "
+                    "--accept' to accept this run",
+                    gate.suite, gate.accepted.seeds.size(), run.seeds.size(), gate.suite));
   }
   std::vector<Pooled> all = pooled_metrics(gate.accepted);
   std::size_t tests = all.size();
@@ -269,7 +272,7 @@ std::vector<GateResult> hold_to_gate(const GateRun& run, const Gate& gate) {
 }
 
 void require_acceptable(const GateRun& run) {
-  if (run.methods.empty()) throw BadInput("cannot accept this run: it has no outcome");
+  if (run.methods.empty()) throw BadInput("cannot accept this run: it has no outcomes");
   for (const MethodRun& method : run.methods) {
     const std::string what =
         "cannot accept this run: " + method.scenario + ", " + to_string(method.kind) + "/" + method.method;
@@ -277,7 +280,7 @@ void require_acceptable(const GateRun& run) {
       if (!method.status[k]) throw BadInput(what + " has no outcome at seed " + std::to_string(run.seeds[k]));
     }
     if (std::find(method.status.begin(), method.status.end(), OutcomeStatus::ok) == method.status.end()) {
-      throw BadInput(what + " is nowhere ok");
+      throw BadInput(what + " has no outcome with status ok");
     }
   }
 }

@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -49,13 +51,13 @@ struct GateLine {
 std::vector<std::uint64_t> read_seeds(const GateLine& line) {
   const std::array<std::string, kKeyCells> head = {"scenario", "kind", "method", "metric"};
   if (line.cells.size() <= kKeyCells || !std::equal(head.begin(), head.end(), line.cells.begin())) {
-    line.fail("must begin with scenario,kind,method,metric and name a seed in each further column");
+    line.fail("the header must be scenario,kind,method,metric and then one seed per column");
   }
   std::vector<std::uint64_t> seeds;
   for (std::size_t i = kKeyCells; i < line.cells.size(); ++i) {
     std::uint64_t seed = 0;
-    if (!read_number(line.cells[i], seed)) line.fail("'" + line.cells[i] + "' is no seed");
-    if (!seeds.empty() && seed <= seeds.back()) line.fail("seeds must rise: " + line.cells[i]);
+    if (!read_number(line.cells[i], seed)) line.fail("'" + line.cells[i] + "' is not a seed");
+    if (!seeds.empty() && seed <= seeds.back()) line.fail("seeds must increase; found " + line.cells[i]);
     seeds.push_back(seed);
   }
   return seeds;
@@ -70,7 +72,7 @@ Kind read_kind(const GateLine& line) {
   line.fail("unknown kind '" + line.cells[1] + "'" + suggestion(line.cells[1], known));
 }
 
-/// A method of this build, or one that was described.
+/// Throws unless the method is built in or described by a file.
 void require_method(const GateLine& line, const MethodRun& run, std::span<const MethodPointer> described) {
   if (std::any_of(described.begin(), described.end(), [&](const MethodPointer& method) {
         return method->info.kind == run.kind && method->info.name == run.method;
@@ -79,7 +81,7 @@ void require_method(const GateLine& line, const MethodRun& run, std::span<const 
   try {
     find_methods(full_name(run.kind, run.method));
   } catch (const BadInput& error) {
-    line.fail(std::string(error.what()) + " (a method that a file describes is known by its file: --method FILE.yaml)");
+    line.fail(std::string(error.what()) + " (a method described by a file is named by that file: --method FILE.yaml)");
   }
 }
 
@@ -95,15 +97,16 @@ void read_values(const GateLine& line, MethodRun& run) {
   const std::vector<std::string> known = held_metrics(run.kind);
   const std::string& metric = line.cells[3];
   if (std::find(known.begin(), known.end(), metric) == known.end()) {
-    line.fail("'" + metric + "' is no metric that is held of kind " + to_string(run.kind) + suggestion(metric, known));
+    line.fail("'" + metric + "' is not a metric that gates compare for kind " + to_string(run.kind) +
+              suggestion(metric, known));
   }
   const auto [place, is_new] = run.values.try_emplace(metric);
-  if (!is_new) line.fail("'" + metric + "' stands twice");
+  if (!is_new) line.fail("'" + metric + "' occurs twice");
   for (std::size_t i = kKeyCells; i < line.cells.size(); ++i) {
     double value = std::numeric_limits<double>::quiet_NaN();
     const bool none = line.cells[i].empty();
     if (!none && (!read_number(line.cells[i], value) || !std::isfinite(value))) {
-      line.fail("'" + line.cells[i] + "' is no finite number");
+      line.fail("'" + line.cells[i] + "' is not a finite number");
     }
     place->second.push_back(value);
   }
@@ -116,8 +119,9 @@ void read_row(const GateLine& line, std::span<const MethodPointer> described, Ga
   const Kind kind = read_kind(line);
   const bool opens = line.cells[3] == kStatusRow;
   const MethodRun* known = run.find(line.cells[0], kind, line.cells[2]);
-  if (opens && known != nullptr) line.fail("the status of this method stands twice");
-  if (!opens && (known == nullptr || known != &run.methods.back())) line.fail("must follow its method's row of status");
+  if (opens && known != nullptr) line.fail("the status of this method occurs twice");
+  if (!opens && (known == nullptr || known != &run.methods.back()))
+    line.fail("this row must follow the status row of its method");
   if (opens) {
     run.methods.push_back({line.cells[0], kind, line.cells[2], {}, {}});
     require_method(line, run.methods.back(), described);
@@ -130,7 +134,7 @@ void read_row(const GateLine& line, std::span<const MethodPointer> described, Ga
 double within(const YamlNode& node, double low, double high) {
   const double value = node.number();
   if (!(value >= low && value <= high)) {
-    node.fail("is " + number_text(value) + ", must be within [" + number_text(low) + ", " + number_text(high) + "]");
+    node.fail(fmt::format("is {}, must be within [{}, {}]", number_text(value), number_text(low), number_text(high)));
   }
   return value;
 }
@@ -153,7 +157,7 @@ GateRun parse_gate_run(const std::string& text, const std::string& file, std::sp
     else
       read_row(line, described, run);
   }
-  if (run.methods.empty()) throw BadInput(file + ": nothing accepted");
+  if (run.methods.empty()) throw BadInput(file + ": has no accepted results");
   return run;
 }
 
@@ -161,15 +165,15 @@ Gate load_gate(const DataRoot& data, const std::string& name, std::span<const Me
   const bool is_file = name.ends_with(".yaml");
   const std::filesystem::path path = is_file ? std::filesystem::path(name) : data.gates() / (name + ".yaml");
   if (!std::filesystem::exists(path)) {
-    throw BadInput("no accepted run of '" + name + "'" + suggestion(name, gate_names(data)) + "; 'tumble gate " + name +
-                   " --accept' makes it");
+    throw BadInput(fmt::format("there is no accepted run of '{}'{}; create it with 'tumble gate {} --accept'", name,
+                               suggestion(name, gate_names(data)), name));
   }
   const YamlNode root = YamlNode::parse(read_text_file(path), path.string());
   const std::array<std::string, 6> required = {"suite", "risk", "margin", "share_margin", "time_margin_s", "worst"};
   const auto fields = root.fields(required);
   Gate gate;
   gate.suite = fields.at("suite").text();
-  if (!is_file && gate.suite != name) fields.at("suite").fail("is '" + gate.suite + "', must be '" + name + "'");
+  if (!is_file && gate.suite != name) fields.at("suite").fail(fmt::format("is '{}', must be '{}'", gate.suite, name));
   gate.policy.risk = within(fields.at("risk"), 1e-6, 0.5);
   gate.policy.margin = within(fields.at("margin"), 0.0, 10.0);
   gate.policy.share_margin = within(fields.at("share_margin"), 0.0, 1.0);

@@ -25,12 +25,13 @@ Eigen::Vector3d direction(const sim::Situation& situation, const char* name) {
 }
 
 sim::ImuRecord& primary(sim::Sensors& sensors, const sim::Truth& truth) {
-  if (sensors.imus.empty() || truth.imus.empty()) throw BadInput("the recording has no IMU to put an error into");
+  if (sensors.imus.empty() || truth.imus.empty())
+    throw BadInput("the recording has no IMU; this error cannot be applied");
   return sensors.imus.front();
 }
 
-/// The centre of mass lies elsewhere than the calibration says, and with it every sensor's lever arm; sensors among
-/// each other stay as they are given. In place of the scenario's own error of the primary IMU's lever arm.
+/// Shifts the stated centre of mass, and with it every sensor's lever arm; the sensors' relative mountings are
+/// unchanged. Replaces the scenario's own lever-arm error of the primary IMU.
 void lever_arm(sim::Sensors& sensors, const sim::Truth& truth, const sim::Situation& situation, double size) {
   const Eigen::Vector3d given_m = primary(sensors, truth).T_BI.translation();
   const Eigen::Vector3d shift_m =
@@ -40,30 +41,31 @@ void lever_arm(sim::Sensors& sensors, const sim::Truth& truth, const sim::Situat
   for (sim::SeriesRecord& series : sensors.series) series.T_BX.translation() += shift_m;
 }
 
-/// Between primary IMU and lidar, in place of the scenario's own.
+/// Rotates the stated mounting between primary IMU and lidar. Replaces the scenario's own error.
 void extrinsic_rotation(sim::Sensors& sensors, const sim::Truth& truth, const sim::Situation& situation, double size) {
   const Eigen::Matrix3d R_BI_given = primary(sensors, truth).T_BI.linear();
-  if (sensors.lidars.empty() || truth.lidars.empty()) throw BadInput("the recording has no lidar");
+  if (sensors.lidars.empty() || truth.lidars.empty())
+    throw BadInput("the recording has no lidar; this error cannot be applied");
   const Eigen::Matrix3d R_IL_true = truth.imus.front().T_BI.linear().transpose() * truth.lidars.front().T_BL.linear();
   const Eigen::AngleAxisd error(size, direction(situation, "extrinsic_rotation"));
   sensors.lidars.front().T_BL.linear() = R_BI_given * R_IL_true * error.toRotationMatrix();
 }
 
-/// Of the primary IMU's clock, in place of the scenario's own; jitter stays.
+/// Shifts the clock of the primary IMU; jitter remains. Replaces the scenario's own offset.
 void time_offset(sim::Sensors& sensors, const sim::Truth& truth, const sim::Situation& situation, double size) {
   const double own_s = situation.sensors.front().values.at("time_offset_s");
   const auto shift_ns = static_cast<std::int64_t>(std::llround((size - own_s) * 1e9));
   for (std::int64_t& time_ns : primary(sensors, truth).time_ns) time_ns += shift_ns;
 }
 
-/// The sphere is larger than the truth by this.
+/// Increases the stated radius of the sphere by this.
 void radius(sim::Sensors& sensors, const sim::Truth&, const sim::Situation&, double size) {
-  if (!(sensors.sphere_radius_m > 0.0)) throw BadInput("the recording is not one of a sphere: it has no radius");
-  if (!(sensors.sphere_radius_m + size > 0.0)) throw BadInput("radius_error_m leaves no radius");
+  if (!(sensors.sphere_radius_m > 0.0)) throw BadInput("the recording has no sphere radius; this error needs a sphere");
+  if (!(sensors.sphere_radius_m + size > 0.0)) throw BadInput("radius_error_m makes the radius zero or negative");
   sensors.sphere_radius_m += size;
 }
 
-/// A range beyond every reading, so that none is taken for clipped.
+/// States a range beyond every reading, so that none counts as clipped.
 void state_no_rail(sim::ImuRecord& imu) {
   double largest = 0.0;
   for (const Eigen::Vector3d& reading : imu.gyro_rad_s) largest = std::max(largest, reading.lpNorm<Eigen::Infinity>());
@@ -71,8 +73,8 @@ void state_no_rail(sim::ImuRecord& imu) {
   for (std::uint8_t& flags : imu.clip_flags) flags = static_cast<std::uint8_t>(flags & ~kGyroClipFlags);
 }
 
-/// Clipped readings give way to the unclipped ones with a constant error per segment of clipping: what a rate method
-/// with that error would hand to a mapper. Nothing says any more that the gyro has clipped.
+/// Replaces clipped readings by unclipped ones with a constant error per clipped segment, like the output of a rate
+/// method with that error. Removes all clip flags.
 void rate_error(sim::Sensors& sensors, const sim::Truth& truth, const sim::Situation& situation, double size) {
   const ClippingTruth clipping(sensors, truth);
   sim::ImuRecord& imu = primary(sensors, truth);
@@ -88,14 +90,15 @@ void rate_error(sim::Sensors& sensors, const sim::Truth& truth, const sim::Situa
   state_no_rail(imu);
 }
 
-/// The stated range against the rail itself, without the flags of the device, which would tell the truth.
+/// Changes the stated range relative to the true saturation limit, and removes the device's clip flags, which would
+/// reveal the truth.
 void stated_rail(sim::Sensors& sensors, const sim::Truth& truth, const sim::Situation& situation, double size) {
   sim::ImuRecord& imu = primary(sensors, truth);
   imu.stated_gyro_range_rad_s = situation.sensors.front().values.at("gyro_rail_rad_s") * (1.0 + size);
   for (std::uint8_t& flags : imu.clip_flags) flags = static_cast<std::uint8_t>(flags & ~kGyroClipFlags);
 }
 
-/// Methods that are told the rail by a parameter of their own.
+/// Sets the saturation limit of methods with such a parameter.
 void tell_rail(std::span<const sim::Parameter> known, double size, sim::Values& given) {
   for (const sim::Parameter& parameter : known) {
     if (parameter.name != "saturation_point_rad_s") continue;
@@ -108,25 +111,26 @@ void tell_rail(std::span<const sim::Parameter> known, double size, sim::Values& 
 std::span<const GivenError> given_errors() {
   static const std::array kErrors = {
       GivenError{{"lever_arm_error_m", 0.0, 0.0, 1.0, "m",
-                  "the lever arm is off by this, in a direction drawn once per draw; at 0 it is exact"},
+                  "error of the lever arm, in a direction drawn once per draw; 0: exact"},
                  false,
                  lever_arm},
       GivenError{{"extrinsic_rotation_rad", 0.0, 0.0, 3.14, "rad",
-                  "the rotation between IMU and lidar is off by this, about an axis drawn once per draw"},
+                  "rotation error between IMU and lidar, about an axis drawn once per draw"},
                  true,
                  extrinsic_rotation},
       GivenError{
-          {"time_offset_s", 0.0, -1.0, 1.0, "s", "the stamps of the primary IMU are late by this"}, false, time_offset},
-      GivenError{{"radius_error_m", 0.0, -1.0, 1.0, "m", "the radius of the sphere is given too large by this"},
+          {"time_offset_s", 0.0, -1.0, 1.0, "s", "delay of the time stamps of the primary IMU"}, false, time_offset},
+      GivenError{{"radius_error_m", 0.0, -1.0, 1.0, "m",
+                  "error of the sphere's radius; positive: the stated radius is too large"},
                  false,
                  radius},
       GivenError{{"rate_error_rad_s", 0.0, 0.0, 1000.0, "rad/s",
-                  "clipped readings give way to unclipped ones with an error of this size, constant over each segment "
-                  "of clipping; every method takes them for readings"},
+                  "clipped readings are replaced by unclipped ones with an error of this magnitude, constant over each "
+                  "clipped segment; methods see them as valid readings"},
                  false,
                  rate_error},
       GivenError{{"stated_rail_error", 0.0, -0.9, 9.0, "1",
-                  "the stated range is off the gyro's rail by this share of it, and the device's flags are kept back"},
+                  "error of the stated gyro range, as a share of the true rail; the device's clip flags are withheld"},
                  false,
                  stated_rail,
                  tell_rail},

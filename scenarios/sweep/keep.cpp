@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "scenarios/sweep/keep.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -22,7 +24,7 @@ namespace fs = std::filesystem;
 constexpr std::size_t kCountMax = 1000;
 constexpr std::string_view kWorst = "worst:";
 
-/// The first that says which of two draws is worse; empty where a kind has none.
+/// Returns the first metric of a kind that ranks draws; empty if there is none.
 std::string ranking_metric(Kind kind) {
   for (const std::string& name : headline_metrics(kind)) {
     const MetricInfo& info = metric_info(name);
@@ -48,7 +50,7 @@ std::optional<double> badness(const OutcomeView& row, const std::string& metric)
   return std::nullopt;
 }
 
-/// The worst so far of one scenario and method, at most as many as are wanted.
+/// The worst draws of one scenario and method, at most the requested number.
 class Worst {
  public:
   void add(double badness, std::uint64_t seed, std::size_t count) {
@@ -90,8 +92,9 @@ Keep parse_keep(const std::string& text) {
     if (read_number(std::string_view(text).substr(kWorst.size()), count) && count >= 1 && count <= kCountMax)
       return {Keep::Which::worst, count};
   }
-  throw BadInput("which draws to keep is '" + text + "', must be none, failed, all, or worst:N with N from 1 to " +
-                 std::to_string(kCountMax));
+  throw BadInput(
+      fmt::format("the selection of draws to keep is '{}', must be none, failed, all, or worst:N with N from 1 to {}",
+                  text, kCountMax));
 }
 
 std::string to_string(const Keep& keep) {

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "scenarios/sweep/recorded_draw.hpp"
 
+#include <fmt/format.h>
+
 #include <glob.h>
 
 #include <algorithm>
@@ -13,7 +15,7 @@ namespace tumble::scenarios {
 
 namespace {
 
-/// The folder's own name is no pattern.
+/// Escapes the folder's name, which is not a pattern.
 std::string escaped(const std::string& text) {
   std::string out;
   for (const char c : text) {
@@ -32,13 +34,13 @@ std::vector<std::filesystem::path> matches(const std::string& pattern, const std
   for (std::size_t i = 0; status == 0 && i < found.gl_pathc; ++i) paths.emplace_back(found.gl_pathv[i]);
   globfree(&found);
   if (paths.empty()) {
-    throw BadInput("no recording fits '" + pattern + "' in " + folder.string() +
-                   "; --data names the folder of the recordings");
+    throw BadInput(fmt::format("no recording matches '{}' in {}; set --data to the folder of the recordings", pattern,
+                               folder.string()));
   }
   return paths;
 }
 
-/// As stored, or made of the data of a file whose writer left it out.
+/// Returns the stored digest, or computes it if the file has none.
 std::string digest_of(const RecordingInfo& info, const sim::Sensors& sensors, const std::filesystem::path& path) {
   if (!info.digest.empty()) return info.digest;
   if (!info.has_truth) return digest(sensors, nullptr);
@@ -61,8 +63,9 @@ std::vector<RecordedDraw> find_recordings(std::span<const std::string> patterns,
   std::vector<RecordedDraw> recordings;
   for (const std::filesystem::path& path : paths) {
     if (!recordings.empty() && recordings.back().name == path.stem().string()) {
-      throw BadInput(path.string() + ": a recording of that name is " + recordings.back().path.string() +
-                     "; results tell them apart by their names alone");
+      throw BadInput(fmt::format(
+          "{}: there is another recording with this name, {}; results identify recordings by name only, so rename one",
+          path.string(), recordings.back().path.string()));
     }
     const RecordingInfo info = read_info(path);
     const sim::Sensors sensors = read_sensors(path);
@@ -94,8 +97,8 @@ SimulatedDraw read_draw(const RecordedDraw& recording) {
   if (draw.has_truth) draw.recording.truth = read_truth(recording.path);
   draw.recording_digest = digest(draw.recording.sensors, draw.has_truth ? &draw.recording.truth : nullptr);
   if (draw.recording_digest != recording.digest) {
-    throw BadInput(recording.path.string() + ": has digest " + draw.recording_digest + ", was " + recording.digest +
-                   " when the sweep began");
+    throw BadInput(fmt::format("{}: has digest {}, but it had {} when the sweep began", recording.path.string(),
+                               draw.recording_digest, recording.digest));
   }
   return draw;
 }

@@ -21,7 +21,7 @@ std::string note_or(const std::map<std::string, std::string>& notes, const std::
   return found == notes.end() || found->second.empty() ? otherwise : found->second;
 }
 
-/// The word after --method: of somebody else's the file. Whether it is of the build tells the note of its version.
+/// Returns the argument of --method: for an external method its file. A version note marks external methods.
 std::string method_word(const RunKey& run, const std::map<std::string, std::string>& notes) {
   const std::string full = run.kind + "/" + run.method;
   const bool own = !notes.contains("method " + full);
@@ -66,7 +66,9 @@ Setting setting_from(const std::string& text) {
   const char* const end = text.data() + text.size();
   const auto [stop, error] = std::from_chars(begin, end, setting.value);
   if (setting.key.empty() || begin == end || error != std::errc() || stop != end || !std::isfinite(setting.value))
-    throw BadInput("'" + text + "': must be KEY=NUMBER, as world.rock_count=10, keys that move together joined by '+'");
+    throw BadInput(
+        "'" + text +
+        "': must have the form KEY=NUMBER, for example world.rock_count=10; join keys that vary together with '+'");
   return setting;
 }
 

@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <array>
 #include <map>
@@ -31,17 +33,17 @@ void read_seeds(const YamlNode& node, Suite& suite) {
   const auto fields = node.fields(required);
   suite.first_seed = fields.at("first").unsigned_integer();
   suite.last_seed = fields.at("last").unsigned_integer();
-  if (suite.last_seed < suite.first_seed) node.fail("last is below first");
+  if (suite.last_seed < suite.first_seed) node.fail("the last seed is below the first");
 }
 
-/// "a + b" as its keys.
+/// Splits "a + b" into its keys.
 std::vector<std::string> keys_of(const std::string& text, const YamlNode& node) {
   std::vector<std::string> keys;
-  std::stringstream stream(text + "+");  // what ends in a separator has an empty key behind it
+  std::stringstream stream(text + "+");  // a trailing separator must give an empty key, which is rejected later
   for (std::string key; std::getline(stream, key, '+');) {
     std::erase(key, ' ');
     if (key.empty() || std::find(keys.begin(), keys.end(), key) != keys.end()) {
-      node.fail("a key is empty or stands twice in '" + text + "'");
+      node.fail("a key is empty or occurs twice in '" + text + "'");
     }
     keys.push_back(key);
   }
@@ -53,11 +55,11 @@ Variation read_variation(const DataRoot& data, const Suite& suite, const std::st
   for (const YamlNode& item : node.items()) {
     const double value = item.number();
     if (std::find(curve.values.begin(), curve.values.end(), value) != curve.values.end()) {
-      item.fail("a value stands twice");
+      item.fail("a value occurs twice");
     }
     curve.values.push_back(value);
   }
-  if (curve.values.empty()) node.fail("no value to vary '" + text + "' over");
+  if (curve.values.empty()) node.fail("no values are given for '" + text + "'");
   try {
     check(curve, data, suite.scenarios, suite.first_seed);
   } catch (const BadInput& error) {
@@ -70,11 +72,11 @@ void read_curves(const DataRoot& data, const YamlNode& node, Suite& suite) {
   for (const auto& [text, values] : node.entries()) {
     Variation curve = read_variation(data, suite, text, values);
     for (const Variation& other : suite.curves) {
-      if (other.key() == curve.key()) values.fail("a curve over '" + curve.key() + "' stands already");
+      if (other.key() == curve.key()) values.fail(fmt::format("a curve over '{}' exists already", curve.key()));
     }
     suite.curves.push_back(std::move(curve));
   }
-  if (suite.curves.empty()) node.fail("no curve");
+  if (suite.curves.empty()) node.fail("needs at least one curve");
 }
 
 void read_scenarios(const DataRoot& data, const YamlNode& node, Suite& suite) {
@@ -87,15 +89,14 @@ void read_scenarios(const DataRoot& data, const YamlNode& node, Suite& suite) {
       item.fail("unknown scenario '" + name + "'" + suggestion(name, known));
     }
     if (std::find(suite.scenarios.begin(), suite.scenarios.end(), name) != suite.scenarios.end()) {
-      item.fail("scenario '" + name + "' stands twice");
+      item.fail(fmt::format("scenario '{}' occurs twice", name));
     }
     suite.scenarios.push_back(name);
   }
-  if (suite.scenarios.empty()) node.fail("no scenario");
+  if (suite.scenarios.empty()) node.fail("needs at least one scenario");
 }
 
-/// `draws: {mild: {hill: [3, 8]}}`: scenarios, and seeds from the lowest to the highest, of which these are the
-/// suite's.
+/// Reads `draws: {mild: {hill: [3, 8]}}`: scenarios with their seeds.
 void read_classes(const DataRoot& data, const YamlNode& node, Suite& suite) {
   const std::vector<std::string> known = scenario_names(data);
   std::set<std::pair<std::string, std::uint64_t>> seen;
@@ -106,15 +107,15 @@ void read_classes(const DataRoot& data, const YamlNode& node, Suite& suite) {
         scenarios.fail("unknown scenario '" + scenario + "'" + suggestion(scenario, known));
       for (const YamlNode& seed : seeds.items()) {
         each.draws.emplace_back(scenario, seed.unsigned_integer());
-        if (!seen.insert(each.draws.back()).second) seed.fail("a draw stands twice");
+        if (!seen.insert(each.draws.back()).second) seed.fail("a draw occurs twice");
       }
       if (std::find(suite.scenarios.begin(), suite.scenarios.end(), scenario) == suite.scenarios.end())
         suite.scenarios.push_back(scenario);
     }
-    if (each.draws.empty()) scenarios.fail("no draw");
+    if (each.draws.empty()) scenarios.fail("needs at least one draw");
     suite.classes.push_back(std::move(each));
   }
-  if (seen.empty()) node.fail("no draw");
+  if (seen.empty()) node.fail("needs at least one draw");
   const auto by_seed = [](const auto& a, const auto& b) { return a.second < b.second; };
   suite.first_seed = std::min_element(seen.begin(), seen.end(), by_seed)->second;
   suite.last_seed = std::max_element(seen.begin(), seen.end(), by_seed)->second;
@@ -133,49 +134,49 @@ void read_metrics(const YamlNode& node, Suite& suite) {
 
 void read_recordings(const YamlNode& node, Suite& suite) {
   for (const YamlNode& item : node.items()) {
-    if (item.text().empty()) item.fail("names no file");
+    if (item.text().empty()) item.fail("must name a file");
     suite.recordings.push_back(item.text());
   }
-  if (suite.recordings.empty()) node.fail("no recording");
+  if (suite.recordings.empty()) node.fail("needs at least one recording");
 }
 
-/// What a suite is of: recordings alone, draws that are named, or scenarios with their seeds.
+/// Reads the suite's content: recordings, named draws, or scenarios with seeds.
 void read_draws(const DataRoot& data, const YamlNode& root, const std::map<std::string, YamlNode>& fields,
                 Suite& suite) {
   if (fields.contains("recordings")) {
     for (const char* key : {"scenarios", "seeds", "draws", "vary"}) {
-      if (fields.contains(key)) fields.at(key).fail("a suite of recordings has none");
+      if (fields.contains(key)) fields.at(key).fail("is not allowed in a suite of recordings");
     }
     read_recordings(fields.at("recordings"), suite);
     return;
   }
   if (fields.contains("draws")) {
     for (const char* key : {"scenarios", "seeds"}) {
-      if (fields.contains(key)) fields.at(key).fail("a suite whose draws are named has none");
+      if (fields.contains(key)) fields.at(key).fail("is not allowed in a suite that names its draws");
     }
     read_classes(data, fields.at("draws"), suite);
     return;
   }
   for (const char* key : {"scenarios", "seeds"}) {
-    if (!fields.contains(key)) root.fail(std::string("key '") + key + "' is missing");
+    if (!fields.contains(key)) root.fail(fmt::format("key '{}' is missing", key));
   }
   read_seeds(fields.at("seeds"), suite);
   read_scenarios(data, fields.at("scenarios"), suite);
 }
 
-/// A description of somebody else's method stands beside the suite, unless its path is absolute.
+/// Resolves a relative path of an external method against the suite's folder.
 std::string method_name(const std::string& text, const std::filesystem::path& folder) {
   return is_method_file(text) ? (folder / text).string() : text;
 }
 
-// names are checked here, so that a suite with a slip of the pen does not begin
+// Check names early, so that a misspelt suite does not start.
 void require_no_scenario(const YamlNode& root) {
   if (!root.is_map()) return;
   for (const auto& [key, value] : root.entries()) {
     if (key == "motion")
       value.fail(
-          "a scenario has it, and a suite names scenarios of the catalogue: put this file there "
-          "(scenarios/catalogue) and give its name, or draw from it with 'tumble run'");
+          "this key belongs to a scenario, but a suite names scenarios of the catalogue: move this file to "
+          "scenarios/catalogue and give its name, or draw from it with 'tumble run'");
   }
 }
 
@@ -201,7 +202,7 @@ Suite read_suite(const DataRoot& data, const std::filesystem::path& path) {
         item.fail(error.what());
       }
     }
-    if (suite.methods.empty()) fields.at("methods").fail("no method");
+    if (suite.methods.empty()) fields.at("methods").fail("needs at least one method");
   } else {
     suite.methods = every_method();
   }
@@ -215,7 +216,7 @@ Suite read_suite(const DataRoot& data, const std::filesystem::path& path) {
   return suite;
 }
 
-/// Every method on one scenario.
+/// Returns a suite of all methods on one scenario.
 Suite suite_of_scenario(const std::string& name) {
   Suite suite;
   suite.name = name;
@@ -243,9 +244,10 @@ std::uint64_t Suite::draw_count() const {
 }
 
 void require_seeds(const Suite& suite) {
-  if (suite.last_seed < suite.first_seed) throw BadInput("suite " + suite.name + ": last seed is below the first");
+  if (suite.last_seed < suite.first_seed)
+    throw BadInput(fmt::format("suite {}: the last seed is below the first", suite.name));
   if (suite.last_seed - suite.first_seed >= kSeedsMax)
-    throw BadInput("suite " + suite.name + ": more than " + std::to_string(kSeedsMax) + " seeds; take them in parts");
+    throw BadInput(fmt::format("suite {}: has more than {} seeds; split the range into parts", suite.name, kSeedsMax));
 }
 
 std::vector<std::string> suite_names(const DataRoot& data) {
@@ -259,7 +261,8 @@ Suite load_suite(const DataRoot& data, const std::string& name) {
     const std::filesystem::path path = data.suites() / (name + ".yaml");
     Suite suite = read_suite(data, path);
     if (suite.name != name)
-      throw BadInput(path.string() + ": name is '" + suite.name + "', must be the file's, '" + name + "'");
+      throw BadInput(
+          fmt::format("{}: name is '{}'; it must be the name of the file, '{}'", path.string(), suite.name, name));
     return suite;
   }
   const std::vector<std::string> scenarios = scenario_names(data), cases = case_names(data);

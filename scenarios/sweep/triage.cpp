@@ -30,7 +30,7 @@ bool Failure::holds(const Outcome& outcome) const {
   if (condemned) return true;
   if (metric.empty()) return false;
   const Score* score = find_score(outcome.scores, metric);
-  if (score == nullptr || std::isnan(score->value)) return true;  // a run without the number has not shown it
+  if (score == nullptr || std::isnan(score->value)) return true;  // without the metric the run counts as a failure
   return metric_info(metric).sense == Sense::higher ? score->value < limit : score->value > limit;
 }
 
@@ -48,7 +48,7 @@ std::vector<TriageRow> triage(const DataRoot& data, const Scenario& scenario, st
     rows.push_back(std::move(row));
   };
   if (options.on_run) options.on_run("none");
-  add(row_of("none", "the recording as it is", run_isolated(method, draw, draw, true_surface, options.timeout_s),
+  add(row_of("none", "unchanged recording", run_isolated(method, draw, draw, true_surface, options.timeout_s),
              options.failure));
   for (const TrueInput& input : true_inputs()) {
     SimulatedDraw cured = draw;

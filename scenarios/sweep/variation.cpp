@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "scenarios/sweep/variation.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <sstream>
@@ -38,7 +40,7 @@ const char* words(Reach reach) {
     case Reach::simulation:
       return "a number of the scenario";
     case Reach::input:
-      return "an error in what methods are given";
+      return "an error of the methods' input";
     case Reach::method:
       return "a parameter of a method";
   }
@@ -51,10 +53,10 @@ const GivenError& given_error(const std::string& key) {
   if (error != nullptr) return *error;
   std::vector<std::string> known;
   for (const GivenError& each : given_errors()) known.emplace_back(each.parameter.name);
-  throw BadInput("'" + key + "': no such error can be given" + suggestion(name, known));
+  throw BadInput("'" + key + "': unknown input error" + suggestion(name, known));
 }
 
-/// "rate/saave" and "jerk_psd_rad2_s5".
+/// Splits into "rate/saave" and "jerk_psd_rad2_s5".
 std::pair<std::string, std::string> method_and_parameter(const std::string& key) {
   const std::size_t dot = key.find('.');
   return {key.substr(0, dot), dot == std::string::npos ? "" : key.substr(dot + 1)};
@@ -73,8 +75,8 @@ void check_parameter(const std::string& key, std::span<const double> values) {
   const Method& method = *find_methods(name).front();
   const sim::Parameter* const parameter = find_parameter(method.info.parameters, number);
   if (parameter == nullptr) {
-    throw BadInput("'" + key + "': unknown parameter '" + number + "' of method " + name +
-                   suggestion(number, names_of(method.info.parameters)));
+    throw BadInput(fmt::format("'{}': unknown parameter '{}' of method {}{}", key, number, name,
+                               suggestion(number, names_of(method.info.parameters))));
   }
   const auto is_whole = [&](const SettingsTable* stage) { return stage->is_whole(parameter->name); };
   const bool whole = std::any_of(method.info.settings.begin(), method.info.settings.end(), is_whole);
@@ -88,11 +90,11 @@ void check_given(const std::string& key, std::span<const double> values, const S
   const GivenError& error = given_error(key);
   for (const double value : values) require_settable(key, error.parameter, value);
   if (scenario.sensors.empty() || scenario.sensors.front().kind != "imu") {
-    throw BadInput("'" + key + "': the first sensor of scenario " + scenario.name + " is no IMU");
+    throw BadInput(fmt::format("'{}': the first sensor of scenario {} is not an IMU", key, scenario.name));
   }
   const bool lidar = std::any_of(scenario.sensors.begin(), scenario.sensors.end(),
                                  [](const Scenario::Sensor& sensor) { return sensor.kind.ends_with("lidar"); });
-  if (error.needs_lidar && !lidar) throw BadInput("'" + key + "': scenario " + scenario.name + " has no lidar");
+  if (error.needs_lidar && !lidar) throw BadInput(fmt::format("'{}': scenario {} has no lidar", key, scenario.name));
 }
 
 }  // namespace
@@ -125,8 +127,8 @@ void check(const Variation& variation, const DataRoot& data, std::span<const std
   for (const std::string& key : variation.keys) {
     const Reach own = reach_of(key), first = reach_of(variation.keys.front());
     if (own != first) {
-      throw BadInput("'" + key + "' is " + words(own) + " and '" + variation.keys.front() + "' " + words(first) +
-                     ": they cannot move together");
+      throw BadInput(fmt::format("'{}' is {} and '{}' {}; these keys cannot vary together", key, words(own),
+                                 variation.keys.front(), words(first)));
     }
     if (own == Reach::method) check_parameter(key, variation.values);
     for (const std::string& name : scenarios) {
@@ -150,7 +152,8 @@ Scenario with_setting(Scenario scenario, const Setting& setting) {
 SimulatedDraw with_setting(const SimulatedDraw& draw, const Setting& setting) {
   SimulatedDraw changed = draw;
   if (reach(setting) == Reach::input) {
-    if (!draw.built) throw BadInput(setting.key + " is for simulated draws; " + draw.scenario + " is a recording");
+    if (!draw.built)
+      throw BadInput(fmt::format("{} applies to simulated draws only; {} is a recording", setting.key, draw.scenario));
     for (const std::string& key : keys_of(setting.key)) {
       given_error(key).put_in(changed.recording.sensors, changed.recording.truth, changed.built->situation(),
                               setting.value);

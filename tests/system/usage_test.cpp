@@ -72,7 +72,7 @@ INSTANTIATE_TEST_SUITE_P(
     Program, WrongUse,
     testing::Values(
         Wrong{"no verb", {"--json"}, "a verb is missing"},
-        Wrong{"option before the verb", {"--quiet", "list", "methods"}, "goes behind the verb"},
+        Wrong{"option before the verb", {"--quiet", "list", "methods"}, "must follow the verb"},
         Wrong{"verb", {"rnu", "hill"}, "did you mean 'run'?"},
         Wrong{"scenario", {"run", "hil", "--seed", "1"}, "did you mean 'hill'?"},
         Wrong{"method", {"run", "hill", "--seed", "1", "--method", "saavee"}, "saave"},
@@ -114,14 +114,14 @@ INSTANTIATE_TEST_SUITE_P(
               "NAME.yaml"},
         Wrong{"shrink by half a bound",
               {"shrink", "hill", "--seed", "1", "--method", "rate/raw", "--worse-than", "1", "-o", "a.yaml"},
-              "go together"},
+              "must be given together"},
         Wrong{"shrink without a seed", {"shrink", "hill", "--method", "rate/raw", "-o", "a.yaml"}, "--seed is missing"},
         Wrong{"a point of no curve", {"run", "hill", "--seed", "1", "--vary", "world.rock_count"}, "KEY=NUMBER"},
         Wrong{"a point beyond its bound", {"run", "hill", "--seed", "1", "--vary", "world.rock_count=-1"}, "within"},
         Wrong{"triage of one draw by results",
               {"triage", "hill", "--seed", "1", "--method", "rate/raw", "--db", "x.db"},
-              "one draw"},
-        Wrong{"a case's gate against another", {"gate", "regressions", "--against", "x.yaml"}, "says itself"},
+              "single draw"},
+        Wrong{"a case's gate against another", {"gate", "regressions", "--against", "x.yaml"}, "its own expectations"},
         Wrong{"triage of many methods", {"triage", "hill", "--seed", "1", "--method", "tumble"}, "rate/tumble"},
         Wrong{"metric of a triage",
               {"triage", "hill", "--seed", "1", "--method", "rate/raw", "--metric", "rate_error", "--limit", "1"},
@@ -146,7 +146,7 @@ INSTANTIATE_TEST_SUITE_P(
               {"run", "roll", "--seed", "1", "--method", "slam/icp"},
               "does not apply to the robot 'sphere'"},
         Wrong{"a map without a lidar", {"run", "twirl", "--seed", "1", "--method", "slam/icp"}, "needs a lidar"},
-        Wrong{"output that is a device", {"record", "roll", "--seed", "1", "-o", "/dev/null"}, "no regular file"},
+        Wrong{"output that is a device", {"record", "roll", "--seed", "1", "-o", "/dev/null"}, "not a regular file"},
         Wrong{"render without seed", {"render", "hill", "-o", "x.png"}, "--seed"}));
 
 TEST(Message, IsOfALengthThatCanBeRead) {

@@ -57,7 +57,7 @@ TEST(MotionSpreads, PoolsTheClippedSamplesOfAllDraws) {
   const std::vector<Spread> spreads = motion_spreads(draws());
   const auto pooled = std::find_if(spreads.begin(), spreads.end(), [](const Spread& spread) {
     return spread.scenario == "hill" &&
-           spread.quantity == "two axes or more clipped, of the clipped samples of all draws";
+           spread.quantity == "share of all draws' clipped samples with at least two clipped axes";
   });
   ASSERT_NE(pooled, spreads.end());
   // 10, 20, 30, 40 samples with shares of 0.2, 0.3, 0.4, 0.5
@@ -85,7 +85,7 @@ TEST(DistributionFigures, SayWhereTheyAreThinned) {
   EXPECT_THAT(distribution_figures(motion_spreads(many)).at(0).caption, Not(HasSubstr("more draws")));
   many.push_back({"hill", kBoxPoints + 1, {{"motion_peak_rate_rad_s", 10.0}}});
   EXPECT_THAT(distribution_figures(motion_spreads(many)).at(0).caption,
-              HasSubstr("Of a scenario with more draws 1000"));
+              HasSubstr("For scenarios with more draws, only 1000"));
 }
 
 TEST(DistributionsHtml, ShowsThePublishedFiguresAndIsEmptyWithoutDraws) {
@@ -104,7 +104,7 @@ TEST(CertificatesHtml, ShowsValueBoundAndVerdictAndEscapes) {
   EXPECT_THAT(html, HasSubstr("fail"));
   EXPECT_THAT(html, HasSubstr("&lt;= 1e-08"));
   EXPECT_THAT(html, Not(HasSubstr("build <1>")));
-  EXPECT_EQ(certificate_summary(certificate), "1 of 2 figures within their bounds");
+  EXPECT_EQ(certificate_summary(certificate), "1 of 2 values within their bounds");
   EXPECT_EQ(certificate_summary({}), "none");
   EXPECT_THAT(certificates_html({}), HasSubstr("no certificate"));
 }

@@ -28,7 +28,7 @@ Marginal marginal(const Conditional& conditional, const BorderMatrix& border_cov
   return System::marginal(conditional, border_covariance);
 }
 
-// As the gradients in rate_smoother.md (R29), for each column of (R36).
+// Same as the gradients in rate_smoother.md (R29), for each column of (R36).
 void eliminate_errors(const Block& block, ErrorMatrix& errors, ErrorMatrix* next, BorderErrors& border) {
   errors = (block.diagonal.lazyProduct(errors)).eval();
   border.noalias() -= block.border.transpose().lazyProduct(errors);

@@ -14,7 +14,8 @@ using Eigen::Vector3d;
 
 namespace {
 
-// S_i v for each matrix of RigConstants::inertia_basis, as columns; written out, because it is asked for each sample.
+// Returns S_i v for each matrix of RigConstants::inertia_basis, as columns; explicit, because it is called for each
+// sample.
 Eigen::Matrix<double, 3, 5> basis_times(const Vector3d& v) {
   constexpr double kHalf = 0.5 * std::numbers::sqrt2, kSixth = std::numbers::inv_sqrt3 * kHalf;
   Eigen::Matrix<double, 3, 5> out;
@@ -24,13 +25,12 @@ Eigen::Matrix<double, 3, 5> basis_times(const Vector3d& v) {
   return out;
 }
 
-// Angular jerk of torque-free rotation about which a knot is taken to turn.
 struct Jerk {
   Matrix3d J, J_inv;
   Vector3d Jw, Ja, value;
 };
 
-// The derivative of J alpha + w x J w = 0 by time: J j = -(alpha x J w + w x J alpha), rate_smoother.md (R15).
+// The time derivative of J alpha + w x J w = 0: J j = -(alpha x J w + w x J alpha), rate_smoother.md (R15).
 Jerk jerk_of(const RateKnot& knot, const RigConstants& rig) {
   const Vector3d &w = knot.rate_rad_s, &alpha = knot.acceleration_rad_s2;
   Jerk out;
@@ -42,7 +42,7 @@ Jerk jerk_of(const RateKnot& knot, const RigConstants& rig) {
   return out;
 }
 
-// What it changes by; apart, because who asks for the jerk alone asks several times a sample.
+// Derivatives of the jerk; separate, because most calls need only the jerk.
 struct JerkDerivatives {
   Matrix3d by_rate, by_acceleration;
   Eigen::Matrix<double, 3, 5> by_inertia;
@@ -60,7 +60,7 @@ JerkDerivatives derivatives_of(const Jerk& jerk, const RateKnot& knot) {
   return out;
 }
 
-// The knot `delay_s` before, as far as Euler's equation without torque takes it back: rate_smoother.md (R16).
+// Propagates the knot back by `delay_s` with Euler's equation without torque: rate_smoother.md (R16).
 RateKnot earlier_by(double delay_s, const RateKnot& knot, const Jerk& jerk) {
   const double half = 0.5 * delay_s * delay_s;
   return {knot.rate_rad_s - delay_s * knot.acceleration_rad_s2 + half * jerk.value,
@@ -128,7 +128,7 @@ RateFactor late_flight_factor(const RateKnot& knot, const RigConstants& rig, con
   return f;
 }
 
-// rate_smoother.md (R16), by the rig alone
+// rate_smoother.md (R16), derivatives by the calibration only
 RateFactor late_flight_by_rig(const RateKnot& knot, const RigConstants& rig, const Vector3d& reading_m_s2,
                               double delay_s) {
   RateFactor f = flight_factor(earlier_by(delay_s, knot, jerk_of(knot, rig)), rig, reading_m_s2);

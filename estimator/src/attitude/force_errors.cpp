@@ -25,7 +25,7 @@ ForceErrors::ForceErrors(const Params& p) : params_(p) {
   require_within("doubt", p.doubt, 1e-12, 1e3);
 }
 
-/// Gathers both sides of imu_merge.md (I8), (I9): the difference, and what its derivatives are made of.
+/// Accumulates both sides of imu_merge.md (I8), (I9): the difference, and the terms of its derivatives.
 void ForceErrors::learn(std::span<const Eigen::Vector3d> forces, const Eigen::Vector3d& rate,
                         const Eigen::Vector3d& acceleration, double dt_s, State& state) const {
   const auto count = static_cast<std::size_t>(params_.count);

@@ -96,7 +96,7 @@ void Registration::find_match(const VoxelMap& map, std::size_t point, Neighbours
   if (match.searched) {
     const float moved2 = (positions_[point] - match.searched_at_W_m).squaredNorm();
     if (moved2 <= rematch2) return;
-    // those that were nearest are still no farther than that, so that none of the new ones is; a hair more for rounding
+    // the former neighbours are within this radius, so the new ones are, too; a small margin covers rounding
     radius_m = std::min(radius_m, kRounding * (match.reach_m + std::sqrt(moved2)));
   }
   match.searched = true;
@@ -115,7 +115,7 @@ void Registration::find_match(const VoxelMap& map, std::size_t point, Neighbours
   match.map_variance_m2 = variance / static_cast<float>(found.count) + match.plane.thickness2_m2;
 }
 
-/// What a match counts for: its information, as far as it fits (D. Geman, D. McClure, 1987); mapping.md (R17), (R19).
+/// Computes the information of a match with its robust weight (D. Geman, D. McClure, 1987); mapping.md (R17), (R19).
 Registration::Weight Registration::weigh(const SweepPoint& point, const Match& match, double distance_m,
                                          double kernel_m) const {
   const double variance = point_variance_m2(point) + match.map_variance_m2;
@@ -124,8 +124,7 @@ Registration::Weight Registration::weigh(const SweepPoint& point, const Match& m
   return {variance, robust, robust * params_.expert.correlation_discount / variance};
 }
 
-/// Where the points lie in the world by this trajectory, the planes that they belong to, and how far they are from
-/// them: mapping.md (R3), (R14).
+/// Computes the points' positions by this trajectory, their planes, and the distances: mapping.md (R3), (R14).
 void Registration::match_points(const SweepTrajectory& trajectory, std::span<const SweepPoint> points,
                                 const VoxelMap& map) {
   levers_.resize(points.size());
@@ -152,7 +151,7 @@ double Registration::kernel_width_m() {
   if (sorted_.empty()) return params_.expert.kernel_min_m;
   const auto middle = sorted_.begin() + static_cast<std::ptrdiff_t>(sorted_.size() / 2);
   std::nth_element(sorted_.begin(), middle, sorted_.end());
-  // three standard deviations of a normal distribution with this median of the absolute value
+  // three standard deviations of a normal distribution with this median absolute value
   return std::max(params_.expert.kernel_min_m, 3.0 * 1.4826 * static_cast<double>(*middle));
 }
 
@@ -160,7 +159,7 @@ double Registration::kernel_width_m() {
 void Registration::accumulate_block(std::span<const SweepPoint> points, std::size_t block,
                                     const SweepTrajectory& trajectory, const SweepCalibration& calibration,
                                     const Unknowns& unknowns, double kernel_m, Products& products, Sums& sum) {
-  // a column per match: derivatives by the free unknowns, times the square root of the weight; and the distance, so too
+  // a column per match: derivatives by the free unknowns and the distance, both times the square root of the weight
   auto& rows = products.columns;
   Eigen::Matrix<double, static_cast<int>(kBlock), 1> weighted;
   const bool rigid = !unknowns.deficit && !unknowns.calibration;
@@ -211,8 +210,8 @@ void Registration::accumulate(std::span<const SweepPoint> points, const SweepTra
   sum.H = lower.selfadjointView<Eigen::Lower>();
 }
 
-/// mapping.md (R25), (R26), of all that is free: of the motion alone it would hold what only motion and calibration
-/// together leave open, as an attitude that a turned mounting makes up for, and (R41) would grow there without bound.
+/// mapping.md (R25), (R26), for all free unknowns. For the motion alone, it would constrain unobservable combinations
+/// of motion and calibration, for example attitude and mounting rotation. (R41) would grow there without bound.
 struct Registration::NoiseOfNormals {
   const Unknowns& unknowns;
   using Products = mapping::OuterProducts<kUnknowns, 2 * static_cast<int>(kBlock)>;
@@ -277,7 +276,7 @@ struct Registration::Pulls {
   }
 };
 
-/// One look at each match where the result has put its point.
+/// Evaluates each match once at the result.
 void Registration::describe_errors(std::span<const SweepPoint> points, const SweepTrajectory& trajectory,
                                    const SweepCalibration& calibration, const Unknowns& unknowns, double kernel_m,
                                    Result& result) {

@@ -9,7 +9,7 @@ namespace tumble {
 
 namespace {
 
-constexpr std::size_t kRecoveringUnits = 3;  // so many IMUs tell a rate beyond the range
+constexpr std::size_t kRecoveringUnits = 3;  // number of IMUs needed to recover a rate beyond the range
 constexpr double kRecoveredSigma_rad_s = 1.0;
 
 constexpr std::array<std::array<const char*, 6>, ImuMerge::kImus> kFrozenFields = {
@@ -34,7 +34,7 @@ constexpr std::array<std::array<const char*, 6>, ImuMerge::kImus> kFrozenFields 
        "seconds for which unit 4's accel y repeats one reading",
        "seconds for which unit 4's accel z repeats one reading"}}}};
 
-// Of the radius the door's own counts; the smoother's has no default.
+// Checks the radius of RollingOdometry; the smoother's has no default.
 void require_stated(RollingOdometry::Params params) {
   params.expert.rolling.filter.radius_m = params.radius_m;
   require_fields(params);
@@ -137,6 +137,7 @@ RollingOdometry::RollingOdometry(const Params& params, const ImuMerge::Params& m
       rails_state_(rails_.start()),
       filters_(filters_of(params)),
       watches_(watches_of(params)),
+      gravity_({.gravity_m_s2 = params.gravity_m_s2}),
       live_(params.lag_s <= 0.0) {}
 
 RollingOdometry::RollingOdometry(const RollingOdometry& other)
@@ -155,6 +156,8 @@ RollingOdometry::RollingOdometry(const RollingOdometry& other)
       held_(other.held_),
       watches_(other.watches_),
       frozen_(other.frozen_),
+      gravity_(other.gravity_),
+      gravity_state_(other.gravity_state_),
       done_(other.done_),
       taken_(other.taken_),
       live_(other.live_),
@@ -212,11 +215,14 @@ Status RollingOdometry::add_inliers(std::span<const ImuSample> samples) {
   UnitRails::Samples flagged;
   rails_.flag(samples, rails_state_, flagged);
   flagged.front().time_ns = time_ns;
-  *merged_state_ = *merge_state_;  // all take the sample, or none
+  *merged_state_ = *merge_state_;  // all parts accept the sample, or none
   Frozen frozen = frozen_;
   for (std::size_t k = 0; k < samples.size(); ++k) watches_[k].step(samples[k], frozen[k]);
   const std::span<ImuSample> judged = std::span(flagged).first(samples.size());
-  if (Status status = leave_out_frozen(frozen, judged); !status.ok()) return status;
+  if (Status status = leave_out_frozen(frozen, judged); !status.ok()) {
+    frozen_ = frozen;  // for doubt()
+    return status;
+  }
   if (Status status = merge_.step(judged, *merged_state_, merged); !status.ok()) return status;
   if (Status status = merge_.verdict(*merged_state_); !status.ok()) return status;
   if (merged) {
@@ -225,6 +231,7 @@ Status RollingOdometry::add_inliers(std::span<const ImuSample> samples) {
   merge_state_.swap(merged_state_);
   stamps_ = stamps;
   frozen_ = frozen;
+  for (std::size_t k = 0; k < samples.size(); ++k) gravity_.step(samples[k], gravity_state_[k]);
   rails_.observe(samples, rails_state_);
   for (std::size_t k = 0; k < samples.size(); ++k) {
     if (check_sample(samples[k]).ok()) OutlierFilter::pass(at_time(samples.front().time_ns, samples[k]), outliers_[k]);
@@ -238,7 +245,7 @@ std::size_t RollingOdometry::rejected_readings() const {
   return out;
 }
 
-/// Gives NaN for what a unit reads of which an axis has frozen, and trouble where that leaves nobody.
+/// Sets the readings of frozen units to NaN. Returns an error if no unit remains.
 Status RollingOdometry::leave_out_frozen(const Frozen& states, std::span<ImuSample> samples) const {
   bool any = false, heard = false;
   for (std::size_t k = 0; k < samples.size(); ++k) {
@@ -248,14 +255,21 @@ Status RollingOdometry::leave_out_frozen(const Frozen& states, std::span<ImuSamp
     any = any || frozen;
     heard = heard || (finite && !frozen);
   }
-  return any && !heard ? doubt(states) : Status{};
+  return any && !heard ? frozen_axis(states) : Status{};
 }
 
 std::optional<double> RollingOdometry::mended_jitter_s() const {
   return clock_.mends(stamps_) ? SampleClock::jitter_s(stamps_) : std::nullopt;
 }
 
-Status RollingOdometry::doubt(const Frozen& frozen) const {
+Status RollingOdometry::doubt() const {
+  Status status = frozen_axis(frozen_);
+  for (std::size_t unit = 0; unit < watches_.size() && status.ok(); ++unit)
+    status = gravity_.size_verdict(gravity_state_[unit]);
+  return status;
+}
+
+Status RollingOdometry::frozen_axis(const Frozen& frozen) const {
   for (std::size_t unit = 0; unit < watches_.size(); ++unit) {
     Status status = watches_[unit].verdict(frozen[unit]);
     if (status.ok()) continue;
@@ -275,7 +289,7 @@ std::optional<RollingOdometry::Pose> RollingOdometry::newest() const {
 std::optional<RollingOdometry::Pose> RollingOdometry::take() {
   if (taken_ == done_.size()) return std::nullopt;
   const Pose out = as_pose(done_[taken_++]);
-  if (taken_ == done_.size()) {  // memory is kept
+  if (taken_ == done_.size()) {
     done_.clear();
     taken_ = 0;
   }
@@ -297,6 +311,7 @@ void RollingOdometry::reset() {
   frozen_ = {};
   outliers_ = {};
   held_.reset();
+  gravity_state_ = {};
   finished_ = false;
 }
 

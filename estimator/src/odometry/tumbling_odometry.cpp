@@ -11,10 +11,10 @@ namespace tumble {
 
 namespace {
 
-// Of the horizontal part of gravity: what the levelling leaves, and a world that is not quite level.
+// Standard deviation of gravity's horizontal part, after levelling in a world that is not exactly level.
 constexpr double kGravitySigma_m_s2 = 0.03;
 
-/// Points fired at `from_ns` and later, their times counted from there.
+/// Returns the points fired at `from_ns` or later, with times relative to it.
 std::vector<LidarPoint> points_from(TimeNs from_ns, TimeNs start_ns, std::span<const LidarPoint> points) {
   std::vector<LidarPoint> out;
   out.reserve(points.size());
@@ -25,6 +25,13 @@ std::vector<LidarPoint> points_from(TimeNs from_ns, TimeNs start_ns, std::span<c
     out.push_back(point);
   }
   return out;
+}
+
+/// Drops the sweeps that ended by then and returns how many.
+std::size_t drop_until(TimeNs time_ns, std::deque<WaitingSweep>& sweeps) {
+  std::size_t dropped = 0;
+  for (; !sweeps.empty() && sweeps.front().end_ns <= time_ns; sweeps.pop_front()) ++dropped;
+  return dropped;
 }
 
 RegimeStream::Params rate_params(const TumblingOdometry::Params& params) {
@@ -65,11 +72,11 @@ LidarInertialOdometry::Params mapper_params(const TumblingOdometry::Params& para
   return out;
 }
 
-// Stamps beyond this (109 years) are refused, so that differences of stamps fit into 64 bits.
+// Largest stamp of a sample or a sweep, 109 years: differences of stamps then fit into 64 bits.
 constexpr TimeNs kStampMax_ns = 3 * (TimeNs{1} << 60);
-constexpr double kSilent_s = 1.0;       // a lidar that says nothing for so long is made up for
-constexpr double kAhead_s = 1.0;        // a sweep that ends so much after the newest sample has a stamp that is wrong
-constexpr double kSweepsMax_hz = 20.0;  // of the lidars that there are: so many a second wait for the lag
+constexpr double kSilent_s = 1.0;       // silence of the lidar after which empty sweeps are inserted
+constexpr double kAhead_s = 1.0;        // maximum time by which a sweep may end after the newest sample
+constexpr double kSweepsMax_hz = 20.0;  // highest sweep rate of lidars: determines how many sweeps wait for the lag
 
 }  // namespace
 
@@ -120,7 +127,7 @@ Status TumblingOdometry::add_inlier(const ImuSample& sample) {
 }
 
 Status TumblingOdometry::take_in(const ImuSample& sample) {
-  SampleClock::State stamps = stamps_;  // one that is refused has no part in the clock
+  SampleClock::State stamps = stamps_;  // a rejected sample must not change the clock
   ImuSample timed = sample;
   if (const Status status = clock_.push(sample.time_ns, stamps, timed.time_ns); !status.ok()) return status;
   if (const Status status = pass_.add_imu(timed); !status.ok()) return status;
@@ -129,7 +136,10 @@ Status TumblingOdometry::take_in(const ImuSample& sample) {
   again_.remember(timed);
   newest_ns_ = timed.time_ns;
   after_gap_.reset();
-  if (!registered_ns_) registered_ns_ = timed.time_ns;
+  if (!registered_ns_) {
+    registered_ns_ = timed.time_ns;
+    early_sweeps_ += drop_until(timed.time_ns, waiting_);
+  }
   register_covered();
   return {};
 }
@@ -143,7 +153,12 @@ Status TumblingOdometry::add_sweep(TimeNs start_ns, TimeNs end_ns, std::span<con
     return {Trouble::time_order, "start_ns", double(start_ns), double(from_ns)};
   const TimeNs latest_ns = newest_ns_.value_or(end_ns) + static_cast<TimeNs>(1e9 * kAhead_s);
   if (end_ns > latest_ns) return {Trouble::out_of_range, "end_ns", double(end_ns), double(latest_ns)};
+  if (registered_ns_ && end_ns <= *registered_ns_) {
+    ++early_sweeps_;
+    return {};
+  }
   const std::size_t most = params_.expert.sweeps_max + static_cast<std::size_t>(kSweepsMax_hz * params_.lag_s);
+  if (waiting_.size() >= most && !newest_ns_) early_sweeps_ += drop_until(waiting_.front().end_ns, waiting_);
   if (waiting_.size() >= most)
     return {Trouble::out_of_range, "sweeps waiting", double(waiting_.size() + 1), double(most)};
   if (const Status status = mapping::check_offsets(end_ns - start_ns, points); !status.ok()) return status;
@@ -184,6 +199,7 @@ std::optional<double> TumblingOdometry::mended_jitter_s() const {
 Status TumblingOdometry::doubt() const {
   const Status of_imu = pass_.rates().rate().doubt(pass_.rate_state().rate);
   if (!of_imu.ok()) return of_imu;
+  if (const Status of_force = pass_.force_at_rest(); !of_force.ok()) return of_force;
   const Status of_ranges = pass_.sweep_scale().verdict();
   if (!of_ranges.ok()) return of_ranges;
   const Status of_localisation = pass_.localisation().verdict();
@@ -192,7 +208,7 @@ Status TumblingOdometry::doubt() const {
 
 void TumblingOdometry::finish() {
   OutlierFilter::finish(outliers_);
-  if (!newest_rate()) return;  // nothing since the last time
+  if (!newest_rate()) return;  // no samples since the last call
   flush_all();
   again_.complete(pass_);
   begin_rates();
@@ -208,12 +224,13 @@ void TumblingOdometry::register_sweep(TimeNs start_ns, TimeNs end_ns, std::vecto
       readings_.take(pass_.needed_ns(*registered_ns_), pass_.needed_ns(end_ns));
   out.status = pass_.add_sweep(start_ns, end_ns, points, reading, out.report);
   registered_ns_ = end_ns;
+  if (out.report.trajectory.empty()) return;
   again_.remember(start_ns, end_ns, std::move(points), reading, out.report.verdict);
   again_.advance(pass_);
 }
 
-/// Whether the sweep would be more than lag_s old with the sample after the newest one, while the sample that covers it
-/// has all of the lag ahead of it but a period: one after a gap has not.
+/// Returns whether the sweep would be more than lag_s old at the sample after the newest one. In addition, the covering
+/// sample must have the whole lag ahead of it except one period, which is not the case after a gap.
 bool TumblingOdometry::is_due(TimeNs end_ns) const {
   const std::optional<TimeNs> covering_ns = pass_.covering_ns(end_ns);
   if (!covering_ns) return false;
@@ -225,7 +242,7 @@ bool TumblingOdometry::is_due(TimeNs end_ns) const {
 void TumblingOdometry::register_covered() {
   while (!waiting_.empty()) {
     const TimeNs end_ns = waiting_.front().end_ns;
-    // the sample that covers it ends up to a period later: its rate is given out so much sooner
+    // the covering sample ends up to one period later, so its rate is reported this much earlier
     if (!pass_.covers(end_ns) && is_due(end_ns)) pass_.flush_until(pass_.needed_ns(end_ns));
     if (!pass_.covers(end_ns)) break;
     WaitingSweep sweep = std::move(waiting_.front());
@@ -236,6 +253,7 @@ void TumblingOdometry::register_covered() {
   if (!waiting_.empty() || !covered_ns) return;
   if (seconds(*covered_ns - *registered_ns_) > kSilent_s) {
     register_sweep(*covered_ns, *covered_ns, {});
+    if (done_.back().report.trajectory.empty()) done_.pop_back();  // no sweep has started the map
     sweep_end_ns_ = *covered_ns;
   }
 }
@@ -253,7 +271,7 @@ void TumblingOdometry::begin_anew() {
 
 void TumblingOdometry::begin_rates() {
   RegimeStream::Params params = rate_params(params_);
-  // where what was learnt is beyond what can be: from what was given
+  // if the estimated calibration is out of bounds, restart from the stated one
   if (const RigCalibration learnt = rig(); check_calibration(learnt).ok()) params.rate.model.calibration = learnt;
   pass_.begin_rates(params);
 }

@@ -14,6 +14,8 @@ Estimates       read_tum, write_tum, read_estimate
 Figures         plot (Matplotlib); point_errors: where returns lie by poses, and how far from where they were
 The program     record, run, estimate, score, sweep, results; serve and describe_method make a function a method of it
 """
+import importlib.metadata
+
 from ._tumble import (
     Attitudes,
     CarriedReport,
@@ -66,7 +68,7 @@ from .recordings import Imu, Lidar, Recording, Series, read, write
 from .replay import Tumble, rate, rolling, sheet_of, tumbling, tumbling_options
 from .truth import Contacts, ImuTruth, LidarTruth, SeriesTruth, Truth
 
-__version__ = "0.1.0"
+__version__ = importlib.metadata.version("tumble")
 __all__ = [
     "Attitudes", "CarriedReport", "CarriedSmoother", "CarriedStream", "Contacts", "Estimate", "Imu", "ImuSheet", "ImuTruth", "Lidar",
     "LidarInertialOdometry", "LidarSheet", "LidarTruth", "MapPoints", "Parameter", "Pose", "Poses", "ProgramError", "RailPlane", "Rails", "RateReport", "RateSmoother", "RateSource",

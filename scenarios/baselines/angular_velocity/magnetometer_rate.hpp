@@ -13,63 +13,68 @@
 
 namespace tumble::baselines {
 
-/// Rates from the turning of the magnetic field: an extended Kalman filter over gyro and magnetometer.
+/// Estimates angular rates from the rotation of the magnetic field: an extended Kalman filter over gyro and
+/// magnetometer.
 ///
-/// State: rate, angular acceleration (white jerk), the field in IMU axes, which turns against the body
-/// (b' = -w x b), and the sensor's hard iron. Measured: the gyro's free axes and the magnetometer. The field's own
-/// change along the path (iron nearby) is process noise, which grows where its length is not the Earth's: the adaptive
-/// part of Tan's family. Made for bodies that spin fast about an axis across the field, in the open (shells, balls):
-/// the rate about the field itself does not show, and follows from smoothness alone; steel at arm's length looks like
-/// rotation.
+/// - State: rate, angular acceleration (white jerk), the field in IMU axes with b' = -w x b, and the sensor's hard
+///   iron.
+/// - Measurements: unclipped gyro axes and the magnetometer.
+/// - Field changes along the path (nearby iron) are process noise. The noise increases if the field strength differs
+///   from the Earth's: the adaptive part of Tan's method.
+/// - Designed for bodies in the open that spin fast about an axis across the field (shells, balls). The rate about the
+///   field is not observable and follows from smoothness only. Nearby steel resembles rotation.
+/// - Not modelled: bandwidth and delay of the magnetometer, soft iron, forces, and the loss of field strength by
+///   averaging over a window ((w dt)^2 / 24, 0.1 % at 15 rad/s and 100 Hz).
 ///
-/// What it does not model: bandwidth and delay of the magnetometer, the loss of length by averaging over a window
-/// ((w dt)^2 / 24, 0.1 % at 15 rad/s and 100 Hz), soft iron, forces. Without magnetometer the filter bridges clipped
-/// readings by smoothness alone.
+/// Without magnetometer the filter bridges clipped readings by smoothness only.
 class MagnetometerRate {
  public:
   struct Params {
     RailDetector::Params rails = {};
-    bool tilted_rails = false;             ///< judge by tilted planes too (ClippingFinder); published by axis alone
+    bool tilted_rails = false;             ///< also detects tilted saturation planes (ClippingFinder); the published
+                                           ///< method only checks single axes
     double gyro_noise_density = 5.236e-4;  ///< [rad/s/sqrt(Hz)]
-    double field_noise_t = 5e-8;           ///< of one reading, one standard deviation [T]
-    double hard_iron_t = 1e-6;             ///< offset of the sensor, one standard deviation [T]
-    double earth_field_t = 0.0;            ///< length of the undisturbed field [T]; 0: unknown
+    double field_noise_t = 5e-8;           ///< standard deviation of one reading [T]
+    double hard_iron_t = 1e-6;             ///< standard deviation of the sensor's offset [T]
+    double earth_field_t = 0.0;            ///< undisturbed field strength [T]; 0: unknown
     double disturbance_t_sqrt_s = 1e-6;    ///< change of the field along the path [T/sqrt(s)]
-    double disturbed_share = 0.02;         ///< deviation of length, as a share, that doubles it in power
+    double disturbed_share = 0.02;         ///< relative deviation of the field strength that doubles the noise power
     double jerk_psd = 1e7;                 ///< density of the white angular jerk [rad^2/s^5]
-    double rate_max_rad_s = 50.0;          ///< no answer lies beyond
+    double rate_max_rad_s = 50.0;          ///< bound of the result
     double gap_max_s = 1.0;
 
-    /// Every number of it, stated once.
+    /// Describes every parameter once.
     template <class Self, class Visitor>
     static void fields(Self& p, Visitor& visit) {
       visit.group("rails_", p.rails);
       visit(p.tilted_rails,
-            on_off("tilted_rails", "1: rails are looked for as tilted planes too; 0: axis by axis, as published",
+            on_off("tilted_rails", "1: search tilted rails too; 0: treat each axis separately, as published",
                    Rank::first));
       visit(p.gyro_noise_density, {"gyro_noise_density", "rad/s/sqrt(Hz)", 1e-9, 1.0, "noise density of the gyro"});
       visit(p.field_noise_t, {"field_noise_t", "T", 1e-12, 1e-3,
                               "noise of one reading: 0.5 mG, MTi-300 sheet of May 2023", Rank::first});
       visit(p.hard_iron_t,
-            {"hard_iron_t", "T", 0.0, 1e-3, "offset of the magnetometer, one standard deviation", Rank::first});
-      visit(p.earth_field_t, {"earth_field_t", "T", 0.0, 1e-3, "length of the undisturbed field; 0: unknown"});
+            {"hard_iron_t", "T", 0.0, 1e-3, "standard deviation of the magnetometer's offset", Rank::first});
+      visit(p.earth_field_t, {"earth_field_t", "T", 0.0, 1e-3, "magnitude of the undisturbed field; 0: unknown"});
       visit(p.disturbance_t_sqrt_s,
-            {"disturbance_t_sqrt_s", "T/sqrt(s)", 0.0, 1.0, "change of the field along the path", Rank::first});
-      visit(p.disturbed_share, {"disturbed_share", "1", 1e-4, 10.0,
-                                "deviation of the field's length that doubles that change in power", Rank::first});
-      visit(p.jerk_psd, {"jerk_psd_rad2_s5", "rad^2/s^5", 1.0, 1e12, "density of the white angular jerk", Rank::first});
-      visit(p.rate_max_rad_s, {"rate_max_rad_s", "rad/s", 1.0, 1e4, "no answer lies beyond"});
-      visit(p.gap_max_s,
-            {"gap_max_s", "s", 1e-6, 3600.0, "longest time between two samples before the run is refused"});
+            {"disturbance_t_sqrt_s", "T/sqrt(s)", 0.0, 1.0, "random walk of the field along the path", Rank::first});
+      visit(p.disturbed_share,
+            {"disturbed_share", "1", 1e-4, 10.0,
+             "relative deviation of the field's magnitude at which this random walk doubles in power", Rank::first});
+      visit(p.jerk_psd, {"jerk_psd_rad2_s5", "rad^2/s^5", 1.0, 1e12, "power spectral density of the white angular jerk",
+                         Rank::first});
+      visit(p.rate_max_rad_s, {"rate_max_rad_s", "rad/s", 1.0, 1e4, "largest estimated rate"});
+      visit(p.gap_max_s, {"gap_max_s", "s", 1e-6, 3600.0,
+                          "longest allowed time between two samples; a longer gap ends the run with an error"});
     }
   };
 
-  /// Throws InvalidParams on a parameter outside of its bound.
+  /// Throws InvalidParams for a parameter out of bounds.
   explicit MagnetometerRate(const Params& params);
 
-  /// One RateState per sample. `field_I_t`: a reading per sample, NaN where there is none; or empty: no magnetometer.
-  /// On trouble (`empty`, `too_few`: less than two samples, or fields in another number, `non_finite`, `time_order`,
-  /// `gap`) nothing is written. O(N).
+  /// Computes one RateState per sample. `field_I_t`: one reading per sample, NaN if missing; empty without
+  /// magnetometer. On error, `out` is unchanged: `empty`, `too_few` (less than two samples, or another number of
+  /// fields), `non_finite`, `time_order`, `gap`. O(N).
   Status estimate(std::span<const ImuSample> samples, std::span<const Eigen::Vector3d> field_I_t,
                   std::vector<RateState>& out) const;
 

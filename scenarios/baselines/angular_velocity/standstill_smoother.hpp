@@ -12,70 +12,77 @@
 
 namespace tumble::baselines {
 
-/// Rates between standstills: an inertial navigation filter that knows velocity and rate to be zero at rest, smoothed
-/// backwards, so that what was lost to the rail between two rests is spread over the clipped samples in between.
+/// Angular rates between standstills: an inertial navigation filter with zero-velocity and zero-rate updates at rest,
+/// smoothed backwards. The rotation lost to saturation between two rests is distributed over the clipped samples.
 ///
-/// Error state: attitude, velocity, rate and angular acceleration (12), strapdown integration of the specific force,
-/// angular jerk that is white over short times with a rate that is bounded in the long run (Matern 3/2); measured: free
-/// gyro axes, clipped ones as bounds, and at standstill velocity 0, rate 0 and the direction of gravity. Forward
-/// extended Kalman filter, backward Rauch-Tung-Striebel pass. The zero-velocity smoothers of foot-mounted and
-/// hand-moved inertial sensors (Dang and Suh); made for motions of a second or two that begin and end at rest and clip
-/// a few samples, where velocity and tilt at the end have one plausible cause. A turn that was lost by more than a
-/// linear filter can spread shows at the next standstill, by tilt or by velocity: then attitude and velocity start anew
-/// and the rates in between are left to bounds and smoothness, as in a tumble of several turns. What it does not model:
-/// specific force that clips, a lever arm, sensor bias.
+/// Error state (12): attitude, velocity, rate, angular acceleration. Strapdown integration of the specific force; white
+/// angular jerk over short times with a bounded rate (Matern 3/2). Measurements: unclipped gyro axes, clipped ones as
+/// bounds, and at standstill zero velocity, zero rate and the direction of gravity. Forward extended Kalman filter,
+/// backward Rauch-Tung-Striebel pass.
+///
+/// Based on zero-velocity smoothers for foot-mounted and hand-moved sensors (Dang and Suh). Designed for motions of one
+/// or two seconds between rests with few clipped samples. If tilt or velocity at the next standstill shows a larger
+/// error than a linear filter can distribute, attitude and velocity restart. The rates in between then follow from
+/// bounds and smoothness, as in a tumble of several turns. Not modelled: clipped specific force, a lever arm, sensor
+/// bias.
 class StandstillSmoother {
  public:
   struct Params {
     RailDetector::Params rails = {};
-    bool tilted_rails = false;  ///< judge by tilted planes too (ClippingFinder); published by axis alone
+    bool tilted_rails = false;  ///< also detects tilted saturation planes (ClippingFinder); the published method only
+                                ///< checks single axes
     double gravity_m_s2 = 9.80665;
     double gyro_noise_density = 5.236e-4;   ///< [rad/s/sqrt(Hz)]
     double accel_noise_density = 5.9e-4;    ///< [m/s^2/sqrt(Hz)]
-    double accel_error_m_s2 = 0.05;         ///< scale and bias of the force, taken as noise per sample
+    double accel_error_m_s2 = 0.05;         ///< scale and bias errors of the force, modelled as noise per sample
     double jerk_psd = 1e5;                  ///< density of the white angular jerk [rad^2/s^5]
-    double rest_rate_rad_s = 0.1;           ///< rest: rates below this ...
-    double rest_force_m_s2 = 0.3;           ///< ... and force within this of gravity ...
-    double rest_s = 0.2;                    ///< ... for so long
-    double rest_velocity_sigma_m_s = 0.01;  ///< of "standing still"
-    double rate_sigma_rad_s = 20.0;         ///< how fast the body turns as a rule, one axis
-    double tilt_max_rad = 0.5;              ///< at a standstill; beyond this a turn was lost
-    double velocity_gate = 5.0;             ///< likewise of the velocity, in standard deviations
-    double rate_max_rad_s = 50.0;           ///< no answer lies beyond
+    double rest_rate_rad_s = 0.1;           ///< rest: rates below this,
+    double rest_force_m_s2 = 0.3;           ///< and force within this of gravity,
+    double rest_s = 0.2;                    ///< for this duration
+    double rest_velocity_sigma_m_s = 0.01;  ///< standard deviation of the zero velocity
+    double rate_sigma_rad_s = 20.0;         ///< typical rate of one axis
+    double tilt_max_rad = 0.5;              ///< at a standstill; a larger tilt indicates lost rotation
+    double velocity_gate = 5.0;             ///< same for the velocity, in standard deviations
+    double rate_max_rad_s = 50.0;           ///< bound of the result
     double gap_max_s = 1.0;
 
-    /// Every number of it, stated once.
+    /// Describes every parameter once.
     template <class Self, class Visitor>
     static void fields(Self& p, Visitor& visit) {
       visit.group("rails_", p.rails);
       visit(p.tilted_rails,
-            on_off("tilted_rails", "1: rails are looked for as tilted planes too; 0: axis by axis, as published",
+            on_off("tilted_rails", "1: search tilted rails too; 0: treat each axis separately, as published",
                    Rank::first));
       visit(p.gravity_m_s2, {"gravity_m_s2", "m/s^2", 0.1, 100.0, "strength of gravity"});
       visit(p.gyro_noise_density, {"gyro_noise_density", "rad/s/sqrt(Hz)", 1e-9, 1.0, "noise density of the gyro"});
       visit(p.accel_noise_density,
             {"accel_noise_density", "m/s^2/sqrt(Hz)", 1e-9, 10.0, "noise density of the accelerometer"});
-      visit(p.accel_error_m_s2, {"accel_error_m_s2", "m/s^2", 0.0, 100.0,
-                                 "scale and bias of the specific force, taken as noise per sample", Rank::first});
-      visit(p.jerk_psd, {"jerk_psd_rad2_s5", "rad^2/s^5", 1.0, 1e12, "density of the white angular jerk", Rank::first});
-      visit(p.rest_rate_rad_s, {"rest_rate_rad_s", "rad/s", 1e-6, 10.0, "quiet: of the rate"});
-      visit(p.rest_force_m_s2, {"rest_force_m_s2", "m/s^2", 1e-6, 10.0, "quiet: of the force"});
-      visit(p.rest_s, {"rest_s", "s", 0.0, 60.0, "quiet for so long is a standstill"});
-      visit(p.rest_velocity_sigma_m_s, {"rest_velocity_sigma_m_s", "m/s", 1e-6, 10.0, "of \"standing still\""});
-      visit(p.rate_sigma_rad_s, {"rate_sigma_rad_s", "rad/s", 1e-3, 1e4, "deviation of the rate in the long run"});
-      visit(p.tilt_max_rad, {"tilt_max_rad", "rad", 0.0, 4.0, "at a standstill; beyond this a turn was lost"});
-      visit(p.velocity_gate, {"velocity_gate", "1", 0.0, 1e6, "likewise of the velocity, in standard deviations"});
-      visit(p.rate_max_rad_s, {"rate_max_rad_s", "rad/s", 1.0, 1e4, "no answer lies beyond"});
-      visit(p.gap_max_s,
-            {"gap_max_s", "s", 1e-6, 3600.0, "longest time between two samples before the run is refused"});
+      visit(p.accel_error_m_s2,
+            {"accel_error_m_s2", "m/s^2", 0.0, 100.0,
+             "scale and bias error of the specific force, treated as noise per sample", Rank::first});
+      visit(p.jerk_psd, {"jerk_psd_rad2_s5", "rad^2/s^5", 1.0, 1e12, "power spectral density of the white angular jerk",
+                         Rank::first});
+      visit(p.rest_rate_rad_s, {"rest_rate_rad_s", "rad/s", 1e-6, 10.0, "largest change of the rate at a standstill"});
+      visit(p.rest_force_m_s2, {"rest_force_m_s2", "m/s^2", 1e-6, 10.0, "largest change of the force at a standstill"});
+      visit(p.rest_s, {"rest_s", "s", 0.0, 60.0, "shortest duration of a standstill"});
+      visit(p.rest_velocity_sigma_m_s,
+            {"rest_velocity_sigma_m_s", "m/s", 1e-6, 10.0, "standard deviation of the velocity at a standstill"});
+      visit(p.rate_sigma_rad_s, {"rate_sigma_rad_s", "rad/s", 1e-3, 1e4, "stationary standard deviation of the rate"});
+      visit(p.tilt_max_rad,
+            {"tilt_max_rad", "rad", 0.0, 4.0, "largest tilt error at a standstill; above it, a rotation was lost"});
+      visit(p.velocity_gate,
+            {"velocity_gate", "1", 0.0, 1e6, "largest velocity error at a standstill, in standard deviations"});
+      visit(p.rate_max_rad_s, {"rate_max_rad_s", "rad/s", 1.0, 1e4, "largest estimated rate"});
+      visit(p.gap_max_s, {"gap_max_s", "s", 1e-6, 3600.0,
+                          "longest allowed time between two samples; a longer gap ends the run with an error"});
     }
   };
 
-  /// Throws InvalidParams on a parameter outside of its bound.
+  /// Throws InvalidParams for a parameter out of bounds.
   explicit StandstillSmoother(const Params& params);
 
-  /// One RateState per sample; free axes are returned as read. On trouble (`empty`, `too_few`: less than two samples,
-  /// `non_finite`, `time_order`, `gap`) nothing is written. O(N) in time and memory.
+  /// Computes one RateState per sample; unclipped axes are unchanged. On error, `out` is unchanged: `empty`, `too_few`
+  /// (less than two samples), `non_finite`, `time_order`, `gap`. O(N) in time and memory.
   Status estimate(std::span<const ImuSample> samples, std::vector<RateState>& out) const;
 
  private:

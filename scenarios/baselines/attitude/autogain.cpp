@@ -17,7 +17,7 @@ namespace {
 
 constexpr double kCodeFullRate_rad_s = 2.0;
 constexpr double kCodeDeadZone = 0.1;
-/// sin(pitch) from which on roll and yaw cannot be told apart, and the complementary step is left out
+/// sin(pitch) above which roll and yaw cannot be separated; the complementary step is then skipped
 constexpr double kGimbalLock = 0.999;
 
 double current_roll(const Eigen::Quaterniond& q) {
@@ -28,7 +28,7 @@ double current_yaw(const Eigen::Quaterniond& q) {
   return std::atan2(2.0 * (q.w() * q.z() + q.x() * q.y()), 1.0 - 2.0 * (q.y() * q.y() + q.z() * q.z()));
 }
 
-/// The published complementary step: towards roll and pitch of the accelerometer at the current yaw, along the arc,
+/// Published complementary step: rotates along the arc towards the accelerometer's roll and pitch at the current yaw,
 /// attitude.md (A16).
 Eigen::Quaterniond towards_roll_and_pitch(const Eigen::Quaterniond& q, const Eigen::Vector3d& f, double share,
                                           bool keep_roll) {

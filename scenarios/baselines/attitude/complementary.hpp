@@ -9,22 +9,24 @@
 
 namespace tumble::baselines {
 
-/// Attitude by the complementary filter: the gyro integrated exactly, then a share 1 - exp(-dt / tau) of the smallest
-/// rotation that levels the measured specific force. Quiet at rest; believes accelerations longer than tau. No bias.
+/// Attitude by the complementary filter: integrates the gyro exactly, then applies a share 1 - exp(-dt / tau) of the
+/// smallest rotation that levels the specific force. Steady at rest, but accelerations longer than tau cause errors.
+/// Estimates no bias.
 class Complementary {
  public:
   struct Params {
     double tau_s = 0.396;  ///< 0.02 per sample at 125 Hz, as published for the sphere
     double gap_max_s = 1.0;
 
-    /// Every number of it, stated once.
+    /// Describes every parameter once.
     template <class Self, class Visitor>
     static void fields(Self& p, Visitor& visit) {
       visit(p.tau_s,
             {"tau_s", "s", 1e-3, 1e4,
-             "time in which the accelerometer takes over: 0.02 per sample at 125 Hz (Zevering et al., MFI 2021)",
+             "time constant of the accelerometer correction: 0.02 per sample at 125 Hz (Zevering et al., MFI 2021)",
              Rank::first});
-      visit(p.gap_max_s, {"gap_max_s", "s", 1e-9, 1e4, "longest time between two samples before the run is refused"});
+      visit(p.gap_max_s, {"gap_max_s", "s", 1e-9, 1e4,
+                          "longest allowed time between two samples; a longer gap ends the run with an error"});
     }
   };
   struct State {
@@ -36,8 +38,8 @@ class Complementary {
 
   explicit Complementary(const Params& params);
 
-  /// The first sample levels the attitude (yaw 0); each later one integrates and corrects. A force below 1e-6 m/s^2
-  /// integrates the gyro alone. On trouble the state is unchanged. O(1), no allocation.
+  /// Processes a sample. The first sample levels the attitude (yaw 0); later ones integrate and correct. A force below
+  /// 1e-6 m/s^2 integrates the gyro only. On error the state is unchanged. O(1), no allocation.
   Status step(const ImuSample& sample, State& state) const;
 
  private:

@@ -9,12 +9,13 @@
 
 namespace tumble::baselines {
 
-/// Attitude by an error-state Kalman filter: attitude error (world axes) and gyro bias, six states, the specific force
-/// as a measurement of "up" (textbook form, e.g. J. Sola, arXiv 1711.02508, sections 5-7, with the error in world
-/// axes). The body's acceleration enters as white noise of zero mean on the force, and the force is used as it is:
-/// neither made a unit vector nor weighted by how far its length is from gravity, for both leave a mean that is not
-/// zero (measured on fast translations: 12 deg instead of 0.8). A real acceleration is not white; the vertical bias
-/// drifts at rest.
+/// Attitude by an error-state Kalman filter with six states: attitude error (world axes) and gyro bias. The specific
+/// force measures the up direction (textbook form, e.g. J. Sola, arXiv 1711.02508, sections 5-7, with the error in
+/// world axes).
+///
+/// Body acceleration is modelled as zero-mean white noise on the force. The force is neither normalised nor weighted by
+/// its norm, because both bias the mean (measured for fast translations: 12 deg instead of 0.8). Real accelerations are
+/// not white, and the vertical bias drifts at rest.
 class Eskf {
  public:
   using Covariance = Eigen::Matrix<double, 6, 6>;
@@ -28,22 +29,23 @@ class Eskf {
     double acceleration_noise_m_s2_sqrts = 0.5;  ///< density: sigma of the mean over 1 s
     double gap_max_s = 1.0;
 
-    /// Every number of it, stated once.
+    /// Describes every parameter once.
     template <class Self, class Visitor>
     static void fields(Self& p, Visitor& visit) {
       visit(p.gravity_m_s2, {"gravity_m_s2", "m/s^2", 1e-12, 100.0, "strength of gravity"});
       visit(p.gyro_noise_rad_sqrts,
             {"gyro_noise_rad_sqrts", "rad/sqrt(s)", 1e-12, 1.0, "angle random walk", Rank::first});
       visit(p.bias_walk_rad_s_sqrts,
-            {"bias_walk_rad_s_sqrts", "rad/s/sqrt(s)", 0.0, 1.0, "random walk of the gyro's bias", Rank::first});
+            {"bias_walk_rad_s_sqrts", "rad/s/sqrt(s)", 0.0, 1.0, "random walk of the gyro bias", Rank::first});
       visit(p.bias_sigma_start_rad_s,
-            {"bias_sigma_start_rad_s", "rad/s", 0.0, 1.0, "prior of the gyro's bias", Rank::first});
+            {"bias_sigma_start_rad_s", "rad/s", 0.0, 1.0, "prior standard deviation of the gyro bias", Rank::first});
       visit(p.tilt_sigma_start_rad, {"tilt_sigma_start_rad", "rad", 1e-12, 3.141592653589793,
-                                     "error of the levelling by the first sample", Rank::first});
+                                     "standard deviation of the tilt from the first sample", Rank::first});
       visit(p.acceleration_noise_m_s2_sqrts,
             {"acceleration_noise_m_s2_sqrts", "m/s^2 sqrt(s)", 1e-12, 100.0,
-             "the body's acceleration as white noise: sigma of its mean over 1 s", Rank::first});
-      visit(p.gap_max_s, {"gap_max_s", "s", 1e-9, 1e4, "longest time between two samples before the run is refused"});
+             "standard deviation of the mean acceleration of the body over 1 s (white noise)", Rank::first});
+      visit(p.gap_max_s, {"gap_max_s", "s", 1e-9, 1e4,
+                          "longest allowed time between two samples; a longer gap ends the run with an error"});
     }
   };
   struct State {
@@ -57,8 +59,8 @@ class Eskf {
 
   explicit Eskf(const Params& params);
 
-  /// The first sample levels the attitude (yaw 0); each later one predicts and corrects. A force below 1e-6 m/s^2
-  /// predicts alone. On trouble the state is unchanged. O(1), no allocation.
+  /// Processes a sample. The first sample levels the attitude (yaw 0); later ones predict and correct. A force below
+  /// 1e-6 m/s^2 only predicts. On error the state is unchanged. O(1), no allocation.
   Status step(const ImuSample& sample, State& state) const;
 
  private:

@@ -17,13 +17,13 @@
 
 namespace tumble::baselines {
 
-/// Lidar-inertial filter that takes each point at its own instant (the family of Point-LIO, He et al., 2023): the
-/// motion is a random walk of angular velocity and specific force, the IMU a measurement of both, a point one of its
-/// distance to a plane of the map. Readings on a clipped axis are left out; nothing else is known of them.
+/// Lidar-inertial filter that processes each point at its own time (the method of Point-LIO, He et al., 2023). Angular
+/// velocity and specific force are random walks that the IMU measures; each point measures its distance to a plane of
+/// the map. Readings of clipped axes are ignored.
 ///
 /// State errors: (position, attitude in W, velocity in W, angular velocity, specific force), the last two in IMU axes.
-/// IMU readings count at the middle of their window. Not modelled: biases (subtract what is known), gravity, mounting
-/// and clock as states, iteration of an update.
+/// IMU readings are applied at the middle of their window. Not modelled: biases (subtract known ones), gravity,
+/// mounting and clock as states, iterated updates.
 class PointwiseFilter {
  public:
   struct Params {
@@ -31,54 +31,62 @@ class PointwiseFilter {
     double gravity_m_s2 = 9.80665;
     double range_min_m = 0.3;
     double range_max_m = 100.0;
-    Eigen::AlignedBox3d own_body_L;  ///< returns inside are the robot's own; an empty box keeps all
-    double sweep_voxel_m = 0.25;     ///< one point per voxel of a sweep, as measured, updates the state
+    Eigen::AlignedBox3d own_body_L;  ///< returns inside belong to the robot; an empty box keeps all
+    double sweep_voxel_m = 0.25;     ///< one original point per voxel of a sweep updates the state
     double map_voxel_m = 0.5;
     double map_spacing_m = 0.1;
-    int neighbours = 8;  ///< of the plane fit
+    int neighbours = 8;  ///< for the plane fit
     double match_distance_m = 1.0;
     /// Densities of the random walks; the square roots of the authors' 1000 and 500.
     double rate_walk_rad_s_sqrt_s = 31.6;
     double force_walk_m_s2_sqrt_s = 22.4;
-    double gyro_sigma_rad_s = 0.02;  ///< of one reading
-    double accel_sigma_m_s2 = 0.1;   ///< of one reading
+    double gyro_sigma_rad_s = 0.02;  ///< per reading
+    double accel_sigma_m_s2 = 0.1;   ///< per reading
     double plane_sigma_m = 0.03;     ///< of a point's distance
-    std::size_t updates_min = 50;    ///< points accepted; fewer reject a sweep
+    std::size_t updates_min = 50;    ///< accepted points; a sweep with fewer is rejected
 
-    /// Every number of it, stated once.
+    /// Describes every parameter once.
     template <class Self, class Visitor>
     static void fields(Self& p, Visitor& visit) {
       visit(p.gravity_m_s2, {"gravity_m_s2", "m/s^2", 0.0, 100.0, "strength of gravity"});
-      visit(p.range_min_m, {"range_min_m", "m", 0.0, 10.0, "nearer returns are dropped"});
-      visit(p.range_max_m, {"range_max_m", "m", 0.0, 1e4, "farther returns are dropped"});
+      visit(p.range_min_m, {"range_min_m", "m", 0.0, 10.0, "returns nearer than this are dropped"});
+      visit(p.range_max_m, {"range_max_m", "m", 0.0, 1e4, "returns farther than this are dropped"});
       visit(p.own_body_L.min(), {"own_body_min_m", "m", -kUnbounded, kUnbounded,
-                                 "least corner of the box that holds the robot's own returns, lidar axes"});
-      visit(p.own_body_L.max(), {"own_body_max_m", "m", -kUnbounded, kUnbounded, "and its largest corner"});
-      visit(p.sweep_voxel_m,
-            {"sweep_voxel_m", "m", 0.01, 10.0, "one point per voxel of a sweep updates the state", Rank::first});
-      visit(p.map_voxel_m, {"map_voxel_m", "m", 0.01, 100.0, "cell of the map's hash"});
-      visit(p.map_spacing_m, {"map_spacing_m", "m", 0.0, 100.0, "edge of the cube that holds one map point; 0: all"});
-      visit(p.neighbours, {"neighbours", "1", 3, 32, "map points per plane fit"});
-      visit(p.match_distance_m, {"match_distance_m", "m", 1e-3, 4.0, "farther map points are no match"});
+                                 "smallest corner of the box around the robot's own returns, lidar axes"});
+      visit(p.own_body_L.max(), {"own_body_max_m", "m", -kUnbounded, kUnbounded,
+                                 "largest corner of the box around the robot's own returns, lidar axes"});
+      visit(p.sweep_voxel_m, {"sweep_voxel_m", "m", 0.01, 10.0,
+                              "edge of the voxel from which one point per sweep updates the state", Rank::first});
+      visit(p.map_voxel_m, {"map_voxel_m", "m", 0.01, 100.0, "edge of a voxel of the map's hash table"});
+      visit(p.map_spacing_m,
+            {"map_spacing_m", "m", 0.0, 100.0, "edge of the cube that stores at most one map point; 0: store all"});
+      visit(p.neighbours, {"neighbours", "1", 3, 32, "number of map points per plane fit"});
+      visit(p.match_distance_m,
+            {"match_distance_m", "m", 1e-3, 4.0, "largest distance between a point and its matches in the map"});
       visit(p.rate_walk_rad_s_sqrt_s,
             {"rate_walk_rad_s_sqrt_s", "rad/s/sqrt(s)", 1e-9, 1e6, "random walk of the rate", Rank::first});
       visit(p.force_walk_m_s2_sqrt_s,
             {"force_walk_m_s2_sqrt_s", "m/s^2/sqrt(s)", 1e-9, 1e6, "random walk of the specific force", Rank::first});
-      visit(p.gyro_sigma_rad_s, {"gyro_sigma_rad_s", "rad/s", 1e-9, 1e3, "of one reading", Rank::first});
-      visit(p.accel_sigma_m_s2, {"accel_sigma_m_s2", "m/s^2", 1e-9, 1e3, "of one reading", Rank::first});
-      visit(p.plane_sigma_m, {"plane_sigma_m", "m", 1e-9, 10.0, "of a point's distance to its plane", Rank::first});
-      visit(p.updates_min, {"updates_min", "1", 0, 1e9, "points accepted; fewer reject a sweep"});
+      visit(p.gyro_sigma_rad_s,
+            {"gyro_sigma_rad_s", "rad/s", 1e-9, 1e3, "standard deviation of a gyro reading", Rank::first});
+      visit(p.accel_sigma_m_s2,
+            {"accel_sigma_m_s2", "m/s^2", 1e-9, 1e3, "standard deviation of an accelerometer reading", Rank::first});
+      visit(p.plane_sigma_m,
+            {"plane_sigma_m", "m", 1e-9, 10.0, "standard deviation of a point's distance to its plane", Rank::first});
+      visit(p.updates_min,
+            {"updates_min", "1", 0, 1e9, "least number of accepted points per sweep; a sweep with fewer is rejected"});
     }
   };
   static constexpr int kErrors = 15;
 
-  /// `q_WI` at rest at the start, origin of W.
+  /// `q_WI`: attitude at the initial rest. The position is the origin of W.
   PointwiseFilter(const Params& params, const Eigen::Quaterniond& q_WI);
 
-  /// In time order; bit j of `clipped`: gyro axis j, bit 3 + j: accelerometer axis j. `time_order`, `non_finite`.
+  /// Adds a sample in time order. Bit j of `clipped`: gyro axis j, bit 3 + j: accelerometer axis j. Errors:
+  /// `time_order`, `non_finite`.
   Status add_imu(const ImuSample& sample, unsigned clipped);
 
-  /// Once IMU samples reach its end. Troubles as those of LidarInertialOdometry::add_sweep.
+  /// Processes a sweep; requires IMU samples up to its end. Errors as in LidarInertialOdometry::add_sweep.
   Status add_sweep(TimeNs start_ns, TimeNs end_ns, std::span<const LidarPoint> points,
                    LidarInertialOdometry::SweepReport& report);
 
@@ -109,7 +117,7 @@ class PointwiseFilter {
   Matrix P_ = Matrix::Zero();
   std::deque<Reading> readings_;
   TimeNs last_imu_ns_ = 0;
-  TimeNs window_end_ns_ = 0;  // of the last reading taken
+  TimeNs window_end_ns_ = 0;  // of the last processed reading
   bool has_imu_ = false;
   VoxelMap map_;
   std::vector<Eigen::Vector3f> seen_from_W_m_;

@@ -16,16 +16,16 @@
 
 namespace tumble::baselines {
 
-/// The published mapping chain behind a rate method (Deschenes et al., ICRA 2024, with the constants of the authors'
-/// launch files): Madgwick's attitude, accelerometer odometry whose velocity the registration feeds back, deskewing to
-/// the start of the sweep (of one that was cast at an instant: to that), time weighting, trimmed point-to-plane
-/// registration of voxelised points, a map that grows where it is empty. The chain's own errors are parameters, as
-/// launched.
+/// The published mapping chain after a rate method (Deschenes et al., ICRA 2024, with the constants of the authors'
+/// launch files). Steps: Madgwick's attitude; accelerometer odometry with velocity feedback from registration;
+/// deskewing to the start of the sweep (or to the common time of its points); time weighting; trimmed point-to-plane
+/// registration of voxelised points; a map that grows where it is empty. The chain's errors can be set by parameters,
+/// with the launched values as default.
 class PublishedChain {
  public:
   struct Params {
     Eigen::Isometry3d T_IL = Eigen::Isometry3d::Identity();  ///< lidar in IMU axes
-    Eigen::AlignedBox3d own_body_L;  ///< returns inside are the robot's own; an empty box keeps all
+    Eigen::AlignedBox3d own_body_L;  ///< returns inside belong to the robot; an empty box keeps all
     double skew_sigma_m_s = 0.25;
     TrimmedIcp::Params icp;
     bool late_velocity = true, voxel_averages_time = true, abort_ends_mapping = false;
@@ -40,33 +40,37 @@ class PublishedChain {
     static void fields(Self& p, Visitor& visit) {
       visit(p.skew_sigma_m_s,
             {"skew_sigma_m_s", "m/s", 0.0, 100.0,
-             "growth of a point's uncertainty over the sweep (time weighting); 0: none", Rank::first});
-      visit(p.late_velocity, on_off("late_velocity",
-                                    "1: velocity fed back is the mean since the last sweep taken for the present one, "
-                                    "half a sweep late, as launched",
-                                    Rank::first));
+             "growth of a point's uncertainty over the sweep (time weighting); 0: no time weighting", Rank::first});
+      visit(p.late_velocity,
+            on_off(
+                "late_velocity",
+                "1: use the mean velocity since the last sweep as the present velocity, half a sweep late, as launched",
+                Rank::first));
       visit(p.voxel_averages_time, on_off("voxel_averages_time",
-                                          "1: points of a voxel share their mean time, also across the seam of the "
-                                          "sweep, as launched; 0: mean variance",
+                                          "1: average the times of points in a voxel, also across the start of the "
+                                          "sweep, as launched; 0: average their variances",
                                           Rank::first));
-      visit(p.abort_ends_mapping, on_off("abort_ends_mapping",
-                                         "1: a registration that aborts ends the mapper, as launched; 0: odometry goes "
-                                         "on alone for that sweep",
-                                         Rank::first));
+      visit(
+          p.abort_ends_mapping,
+          on_off("abort_ends_mapping",
+                 "1: a failed registration ends mapping, as launched; 0: that sweep uses odometry only", Rank::first));
       visit.group("", p.icp);
       visit(p.own_body_L.min(), {"own_body_min_m", "m", -kUnbounded, kUnbounded,
-                                 "least corner of the box that holds the robot's own returns, lidar axes"});
-      visit(p.own_body_L.max(), {"own_body_max_m", "m", -kUnbounded, kUnbounded, "and its largest corner"});
-      visit(p.madgwick_gain_rad_s, {"madgwick_gain_rad_s", "rad/s", 0.0, 10.0, "of the attitude's filter"});
+                                 "smallest corner of the box around the robot's own returns, lidar axes"});
+      visit(p.own_body_L.max(), {"own_body_max_m", "m", -kUnbounded, kUnbounded,
+                                 "largest corner of the box around the robot's own returns, lidar axes"});
+      visit(p.madgwick_gain_rad_s, {"madgwick_gain_rad_s", "rad/s", 0.0, 10.0, "gain of the Madgwick attitude filter"});
       visit(p.stamp_step_ns,
-            {"stamp_step_ns", "ns", 1, 1000000, "a point's time is rounded down to this before its pose is looked up"});
-      visit(p.range_min_m, {"range_min_m", "m", 0.0, 10.0, "nearer returns are dropped"});
-      visit(p.range_max_m, {"range_max_m", "m", 0.0, 1e4, "farther returns are dropped"});
-      visit(p.sweep_voxel_m, {"sweep_voxel_m", "m", 0.01, 10.0, "one mean point per voxel of a sweep is registered"});
+            {"stamp_step_ns", "ns", 1, 1000000, "step to which point times are rounded down before the pose lookup"});
+      visit(p.range_min_m, {"range_min_m", "m", 0.0, 10.0, "returns nearer than this are dropped"});
+      visit(p.range_max_m, {"range_max_m", "m", 0.0, 1e4, "returns farther than this are dropped"});
+      visit(p.sweep_voxel_m,
+            {"sweep_voxel_m", "m", 0.01, 10.0, "edge of the voxel whose points are averaged before registration"});
       visit(p.map_spacing_m,
-            {"map_spacing_m", "m", 0.0, 10.0, "a point enters the map where the old map has none within this"});
-      visit(p.range_sigma_m, {"range_sigma_m", "m", 1e-6, 10.0, "least deviation of a range"});
-      visit(p.range_sigma_share, {"range_sigma_share", "1", 0.0, 1.0, "and the same as a share of the range"});
+            {"map_spacing_m", "m", 0.0, 10.0, "least distance between a new map point and the existing map"});
+      visit(p.range_sigma_m, {"range_sigma_m", "m", 1e-6, 10.0, "least standard deviation of a range"});
+      visit(p.range_sigma_share,
+            {"range_sigma_share", "1", 0.0, 1.0, "standard deviation of a range, as a share of the range"});
     }
   };
   using SweepReport = LidarInertialOdometry::SweepReport;
@@ -77,17 +81,17 @@ class PublishedChain {
     std::span<const LidarPoint> points;
   };
 
-  /// Those of a whole recording: `rates`, one for each of the samples, take the place of the gyro. `samples` must
-  /// outlive it.
+  /// Takes samples and rates of a whole recording: `rates`, one per sample, replace the gyro. `samples` must outlive
+  /// this object.
   PublishedChain(const Params& params, std::span<const ImuSample> samples, std::span<const RateState> rates);
 
-  /// Whether the samples reach over the end of a sweep.
+  /// Returns true if the samples extend beyond the end of the sweep.
   bool covers(const Sweep& sweep) const;
-  /// Places a sweep that is covered, later than any before. Trouble: `out_of_range` of an offset beyond its end, when
-  /// nothing was done; `empty`, `degenerate` (points all of one time), `too_few` (none in range), when the odometry
-  /// goes on alone.
+  /// Registers a covered sweep, later than all before. Errors: `out_of_range` for an offset beyond its end, without any
+  /// change; `empty`, `degenerate` (all points have one time) and `too_few` (in range), where only the odometry
+  /// continues.
   Status add(const Sweep& sweep, SweepReport& report);
-  /// With normals that look towards where each point was seen from.
+  /// Returns the map with normals that point to the sensor.
   std::vector<MapPoint> map() const;
 
  private:
@@ -102,10 +106,9 @@ class PublishedChain {
   TrimmedIcp icp_;
   VoxelMap map_{{0.5, 0.0}};
   std::vector<Eigen::Vector3f> seen_from_;
-  Eigen::Isometry3d T_map_odom_ =
-      Eigen::Isometry3d::Identity();  ///< what lies between the map's frame and the odometry's
+  Eigen::Isometry3d T_map_odom_ = Eigen::Isometry3d::Identity();  ///< transform between the frames of map and odometry
   bool dead_ = false;
-  std::optional<TimeNs> registered_ns_;  ///< when the last sweep was registered, and where
+  std::optional<TimeNs> registered_ns_;  ///< time and pose of the last registered sweep
   Eigen::Vector3d registered_m_ = Eigen::Vector3d::Zero();
 };
 

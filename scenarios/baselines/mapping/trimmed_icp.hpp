@@ -14,59 +14,58 @@
 
 namespace tumble::baselines {
 
-/// The registration of the published chain: point-to-plane with k matches per point, matches trimmed to a share that
-/// the data choose (D. Chetverikov et al., 2005; J. Phillips et al., 2007, with lambda), the rest weighted by the
-/// inverse of both points' variances, small-angle normal equations.
+/// Registration of the published chain: point-to-plane with k matches per point. Matches are trimmed to a share chosen
+/// from the data (D. Chetverikov et al., 2005; J. Phillips et al., 2007, with lambda) and weighted by the inverse
+/// variances of both points. Solves small-angle normal equations.
 ///
-/// It hands back a pose and says nothing of how well it is determined; a corridor looks like a success. Registration is
-/// the one that knows. Cost per iteration: points times k.
+/// Returns a pose without a measure of its observability; a corridor appears as success. LidarInertialOdometry
+/// estimates this. Cost per iteration: points times k.
 class TrimmedIcp {
  public:
   struct Params {
     int neighbours = 8;  ///< matches per point
     double match_distance_m = 1.0;
-    int normal_neighbours = 20;  ///< of the map's normals
-    double trim_min = 0.5;       ///< least share of matches kept
+    int normal_neighbours = 20;  ///< for the map's normals
+    double trim_min = 0.5;       ///< smallest share of matches to keep
     double trim_max = 0.7;
     double trim_lambda = 2.35;
-    /// A known error of the original: shares are taken of all slots though unmatched ones are missing from the sorted
-    /// list. There it read past its end; here the index stops at the end.
+    /// Known error of the original: shares refer to all slots, although unmatched ones are missing from the sorted
+    /// list. The original read beyond the list's end; here the index stops at the end.
     bool count_unmatched_slots = false;
     int iterations_max = 40;
-    double step_m = 0.01;  ///< both means over two increments must fall below their bound
+    double step_m = 0.01;  ///< both means over two increments must be below their bound
     double step_rad = 0.001;
     double correction_max_m = 15.0;
     double correction_max_rad = 1.1;
 
-    /// Every number of it, stated once.
+    /// Describes every parameter once.
     template <class Self, class Visitor>
     static void fields(Self& p, Visitor& visit) {
-      visit(p.neighbours, {"neighbours", "1", 1, 32, "matches per point"});
-      visit(p.match_distance_m, {"match_distance_m", "m", 1e-3, 4.0, "farther map points are no match", Rank::first});
-      visit(p.normal_neighbours, {"normal_neighbours", "1", 3, 32, "map points per normal"});
-      visit(p.trim_min, {"trim_min", "1", 1e-3, 1.0, "least share of matches kept"});
-      visit(p.trim_max, {"trim_max", "1", 1e-3, 1.0, "largest share of matches kept"});
-      visit(p.trim_lambda, {"trim_lambda", "1", 0.0, 100.0, "exponent of the share in the cost that chooses it"});
-      visit(
-          p.count_unmatched_slots,
-          on_off("trim_counts_unmatched",
-                 "1: the share kept is one of all slots, unmatched ones too (as launched, where it read past the end)",
-                 Rank::first));
-      visit(p.iterations_max, {"iterations_max", "1", 1, 1000, "most steps of Gauss-Newton"});
-      visit(p.step_m, {"step_m", "m", 0.0, 1.0, "converged when a step is below this and its turn below step_rad"});
-      visit(p.step_rad, {"step_rad", "rad", 0.0, 1.0, "converged when a step turns by less"});
-      visit(p.correction_max_m, {"correction_max_m", "m", 0.0, 1e6, "a larger correction of the prior is refused"});
-      visit(p.correction_max_rad,
-            {"correction_max_rad", "rad", 0.0, 3.15, "a larger correction of the prior is refused"});
+      visit(p.neighbours, {"neighbours", "1", 1, 32, "number of matches per point"});
+      visit(p.match_distance_m, {"match_distance_m", "m", 1e-3, 4.0,
+                                 "largest distance between a point and its matches in the map", Rank::first});
+      visit(p.normal_neighbours, {"normal_neighbours", "1", 3, 32, "number of map points per normal"});
+      visit(p.trim_min, {"trim_min", "1", 1e-3, 1.0, "least share of matches that trimming keeps"});
+      visit(p.trim_max, {"trim_max", "1", 1e-3, 1.0, "largest share of matches that trimming keeps"});
+      visit(p.trim_lambda, {"trim_lambda", "1", 0.0, 100.0, "exponent of the share in the cost that selects it"});
+      visit(p.count_unmatched_slots, on_off("trim_counts_unmatched",
+                                            "1: compute the share over all match slots, including unmatched ones (as "
+                                            "launched, with its read beyond the array)",
+                                            Rank::first));
+      visit(p.iterations_max, {"iterations_max", "1", 1, 1000, "largest number of Gauss-Newton steps"});
+      visit(p.step_m, {"step_m", "m", 0.0, 1.0, "position step below which the registration has converged"});
+      visit(p.step_rad, {"step_rad", "rad", 0.0, 1.0, "rotation step below which the registration has converged"});
+      visit(p.correction_max_m, {"correction_max_m", "m", 0.0, 1e6, "largest accepted correction of the prior"});
+      visit(p.correction_max_rad, {"correction_max_rad", "rad", 0.0, 3.15, "largest accepted correction of the prior"});
     }
   };
   struct Point {
     Eigen::Vector3f position_m;
-    float variance_m2 = 0.0f;  ///< along its ray and from what is left of the skew
+    float variance_m2 = 0.0f;  ///< along its ray, and from residual distortion
   };
   struct Result {
     RegistrationVerdict verdict = RegistrationVerdict::too_few;
-    Eigen::Isometry3d T = Eigen::Isometry3d::Identity();  ///< the prior unless converged
+    Eigen::Isometry3d T = Eigen::Isometry3d::Identity();  ///< the prior if not converged
     int iterations = 0;
     std::size_t matched_slots = 0;
     double kept_share = 0.0;  ///< of the matched slots
@@ -74,15 +73,15 @@ class TrimmedIcp {
 
   explicit TrimmedIcp(const Params& params);
 
-  /// Takes `points` to `map` from `prior`. Running out of iterations is no failure, as in the original; no matches, and
-  /// a correction beyond its bound, are.
+  /// Aligns `points` to `map`, starting from `prior`. Reaching the iteration limit is not an error, as in the original.
+  /// No matches, or a correction beyond its bound, are errors.
   Result align(std::span<const Point> points, const Eigen::Isometry3d& prior, const VoxelMap& map);
 
-  /// Share of the sorted squared distances to keep: minimises sum(d^2 up to f) / (f n f^(2 lambda)) over f in
-  /// [trim_min, trim_max], n = `slots`.
+  /// Returns the share of the sorted squared distances to keep: minimises sum(d^2 up to f) / (f n f^(2 lambda)) over f
+  /// in [trim_min, trim_max], n = `slots`.
   static std::size_t trim(std::span<const float> sorted_d2, std::size_t slots, const Params& params);
 
-  /// Call after the map has changed: normals are computed where they are asked for, and kept.
+  /// Must be called after the map changed, because normals are computed on demand and cached.
   void forget_normals() { normals_.clear(); }
 
  private:

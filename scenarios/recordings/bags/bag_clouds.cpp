@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "scenarios/recordings/bags/bag_clouds.hpp"
 
+#include <fmt/format.h>
+
 #include <xxhash.h>
 
 #include <algorithm>
@@ -31,7 +33,7 @@ struct ReadType {
   void (*take)(const ros::PointCloud2&, std::size_t, std::size_t, std::vector<double>&);
 };
 
-/// By the number of the type; of others nothing is known.
+/// Returns the type for its number; null if unknown.
 const ReadType* type_of(std::uint8_t datatype) {
   static const ReadType known[] = {{1, take_column<std::int8_t>},  {1, take_column<std::uint8_t>},
                                    {2, take_column<std::int16_t>}, {2, take_column<std::uint16_t>},
@@ -46,25 +48,25 @@ bool is_livox_type(const std::string& type) {
   return type == ros::kLivoxRos1 || type == "livox_ros_driver2/CustomMsg" || type == "livox_interfaces/CustomMsg";
 }
 
-// the layout is held against the data first
+// Checks the layout against the data first.
 Cloud cloud_of(const ros::PointCloud2& message, const std::string& where) {
-  if (message.is_bigendian != 0) throw BadInput(where + ": big-endian points are not read");
+  if (message.is_bigendian != 0)
+    throw BadInput(where + ": points are big-endian; only little-endian points are supported");
   const std::uint64_t tight = std::uint64_t{message.width} * message.point_step;
   const std::uint64_t row_bytes = std::max<std::uint64_t>(message.row_step, tight);
   Cloud out;
   if (message.width == 0 || message.height == 0) return out;
   if (message.point_step == 0 || row_bytes > message.data.size() / message.height) {
-    throw BadInput(where + ": " + std::to_string(message.height) + " x " + std::to_string(message.width) +
-                   " points of " + std::to_string(message.point_step) + " bytes do not fit its data of " +
-                   std::to_string(message.data.size()) + " bytes");
+    throw BadInput(fmt::format("{}: {} x {} points of {} bytes do not fit its data of {} bytes", where, message.height,
+                               message.width, message.point_step, message.data.size()));
   }
   out.points = std::size_t{message.width} * message.height;
   for (const ros::PointField& field : message.fields) {
     const ReadType* type = type_of(field.datatype);
-    if (type == nullptr || field.count > 1) continue;  // 0: some drivers leave it so, and mean one
+    if (type == nullptr || field.count > 1) continue;  // count 0: some drivers mean one
     if (std::uint64_t{field.offset} + type->bytes > message.point_step) {
-      throw BadInput(where + ": field '" + field.name + "' at byte " + std::to_string(field.offset) +
-                     " lies outside of its point of " + std::to_string(message.point_step) + " bytes");
+      throw BadInput(fmt::format("{}: field '{}' at byte {} lies outside its point of {} bytes", where, field.name,
+                                 field.offset, message.point_step));
     }
     out.names.push_back(field.name);
     type->take(message, row_bytes, field.offset, out.columns.emplace_back(out.points));
@@ -74,8 +76,7 @@ Cloud cloud_of(const ros::PointCloud2& message, const std::string& where) {
 
 Cloud cloud_of(const ros::LivoxCustomMsg& message, const std::string& where) {
   if (message.point_num != message.points.size()) {
-    throw BadInput(where + ": states " + std::to_string(message.point_num) + " points and holds " +
-                   std::to_string(message.points.size()));
+    throw BadInput(fmt::format("{}: states {} points but holds {}", where, message.point_num, message.points.size()));
   }
   Cloud out;
   out.points = message.points.size();

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "scenarios/recordings/bags/bag_reference.hpp"
 
+#include <fmt/format.h>
+
 #include <type_traits>
 #include <utility>
 
@@ -14,7 +16,7 @@ namespace {
 constexpr const char* kOdometry = "nav_msgs/Odometry";
 constexpr const char* kPoseStamped = "geometry_msgs/PoseStamped";
 
-/// Poses, and the frame whose they are by their messages; "" where those do not say.
+/// Poses and the frame named by their messages; "" if none is named.
 struct NamedPoses {
   std::vector<ReferencePose> poses;
   std::string frame;
@@ -42,23 +44,24 @@ NamedPoses reference_poses(const OpenedBag& bag, const std::string& topic, Stamp
   const std::string type = bag.topic(topic).type;
   if (type == kOdometry) return read_poses<ros::Odometry>(bag, topic, source);
   if (type == kPoseStamped) return read_poses<ros::PoseStamped>(bag, topic, source);
-  throw BadInput(bag.place + ": topic '" + topic + "' is of type " + type + ", must be " + kOdometry + " or " +
-                 kPoseStamped);
+  throw BadInput(
+      fmt::format("{}: topic '{}' is of type {}, must be {} or {}", bag.place, topic, type, kOdometry, kPoseStamped));
 }
 
-/// Whose poses they are: by the one who imports them, else by the messages, where the bag places the frame that they
-/// name.
+/// Returns the mounting of the reference frame: the user's choice, else the frame named by the messages, if the bag
+/// contains its transform.
 Eigen::Isometry3d pose_of_reference(const std::string& topic, const std::string& frame, const SensorPlaces& places,
                                     const BagReading& reading, Imported& out) {
   const Eigen::Isometry3d body = Eigen::Isometry3d::Identity();
   if (reading.reference_of == ReferenceOf::lidar) return lidar_of_poses(out.sensors, topic);
   if (reading.reference_of == ReferenceOf::body || frame.empty() || frame == places.body()) return body;
   const auto T_BA = places.of(frame);
-  const std::string whose = topic + ": poses of '" + frame + "' by their messages";
+  const std::string whose = topic + ": by the messages, poses of '" + frame + "'";
   if (T_BA) {
-    out.notes.push_back(whose + ": moved from there to the body ('--reference-frame body' takes them as its own)");
+    out.notes.push_back(whose +
+                        "; converted to poses of the body (set '--reference-frame body' to use them unchanged)");
   } else if (frame != "body" && frame != "base_link") {
-    out.notes.push_back(whose + ", which nothing places on the body: taken to be the body's");
+    out.notes.push_back(whose + ", which has no known pose on the body; assumed to be the body");
   }
   return T_BA.value_or(body);
 }

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "scenarios/recordings/bags/bag_stamps.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <array>
 #include <cstdio>
@@ -14,9 +16,9 @@ namespace tumble::scenarios {
 namespace {
 
 constexpr std::int64_t kSaid_ns = 1'000'000;
-/// A header that is later than its record by more was written by another clock.
+/// A header that is later than its record by more belongs to another clock.
 constexpr std::int64_t kAhead_ns = 10'000'000;
-/// What messages usually wait for each other; beyond it the clocks drift or stamps are no times of measuring.
+/// Largest normal delay between messages; beyond it the clocks drift, or stamps are not measurement times.
 constexpr std::int64_t kSteady_ns = 500'000'000;
 
 std::string seconds_text(std::int64_t time_ns) {
@@ -25,21 +27,21 @@ std::string seconds_text(std::int64_t time_ns) {
   return text.data();
 }
 
-/// The last that a header can state.
+/// The last time that a header can hold.
 constexpr std::int64_t kLast_ns = 4294967295 * kSecond_ns;
 
-/// From one stamp to another; those of hostile messages lie anywhere.
+/// Returns the difference of two stamps without overflow.
 std::int64_t between(std::int64_t from_ns, std::int64_t to_ns) {
   std::int64_t step_ns = 0;
   if (!__builtin_sub_overflow(to_ns, from_ns, &step_ns)) return step_ns;
   return to_ns > from_ns ? std::numeric_limits<std::int64_t>::max() : std::numeric_limits<std::int64_t>::min();
 }
 
-/// What a stamp does after the one before.
+/// Describes the change from the previous stamp.
 std::string course(std::int64_t before_ns, std::int64_t now_ns) {
-  if (now_ns > before_ns) return "rises by " + seconds_text(between(before_ns, now_ns));
-  if (now_ns < before_ns) return "goes back by " + seconds_text(between(now_ns, before_ns));
-  return now_ns == 0 ? "is 0, as the one before" : "stands still";
+  if (now_ns > before_ns) return "increases by " + seconds_text(between(before_ns, now_ns));
+  if (now_ns < before_ns) return "decreases by " + seconds_text(between(now_ns, before_ns));
+  return now_ns == 0 ? "is 0, like the previous one" : "does not change";
 }
 
 }  // namespace
@@ -51,17 +53,17 @@ std::int64_t stamp_of(const ros::Header& header) {
 std::int64_t BagStamps::take(std::int64_t header_ns, std::int64_t record_ns, const std::string& where) {
   const bool by_header = source_ == StampSource::header;
   if (!by_header && (record_ns < 0 || record_ns > kLast_ns)) {
-    throw BadInput(where + ": the record's stamp is " + std::to_string(record_ns) + " ns, must be from 0 to " +
-                   std::to_string(kLast_ns));
+    throw BadInput(fmt::format("{}: the record's stamp is {} ns, must be from 0 to {}", where, record_ns, kLast_ns));
   }
   if (header_ns_ && (by_header ? header_ns <= *header_ns_ : record_ns <= *record_ns_)) {
     const std::string header = "the header's " + course(*header_ns_, header_ns),
                       record = "the record's " + course(*record_ns_, record_ns);
     const bool other_rises = by_header ? record_ns > *record_ns_ : header_ns > *header_ns_;
-    throw BadInput(where + ": stamp does not rise: " + (by_header ? header + ", " + record : record + ", " + header) +
-                   (!other_rises ? ""
-                    : by_header  ? " ('--stamps record' takes those)"
-                                 : " ('--stamps header' takes those)"));
+    throw BadInput(
+        where + ": the time stamp does not increase: " + (by_header ? header + ", " + record : record + ", " + header) +
+        (!other_rises ? ""
+         : by_header  ? "; set '--stamps record' to use the record stamps"
+                      : "; set '--stamps header' to use the header stamps"));
   }
   const std::int64_t lag_ns = between(header_ns, record_ns);
   least_lag_ns_ = header_ns_ ? std::min(least_lag_ns_, lag_ns) : lag_ns;
@@ -78,12 +80,13 @@ std::string BagStamps::remark() const {
   if (!header_ns_ || (least_lag_ns_ > -kSaid_ns && most_lag_ns_ < kSaid_ns)) return "";
   const bool changes = between(least_lag_ns_, most_lag_ns_) > kSteady_ns;
   const std::string taken = source_ == StampSource::header ? "headers" : "records";
-  return std::string(other_clock() || changes ? "caution: " : "") + "the bag recorded its messages " +
-         seconds_text(least_lag_ns_) + " to " + seconds_text(most_lag_ns_) + " after the stamps of their headers" +
-         (other_clock() ? ": another clock?"
-          : changes     ? ": do the clocks drift?"
-                        : "") +
-         "; taken are the " + taken + "'";
+  return fmt::format(
+      "{}the bag recorded its messages {} to {} after their header stamps{}; this import uses the stamps of the {}",
+      other_clock() || changes ? "caution: " : "", seconds_text(least_lag_ns_), seconds_text(most_lag_ns_),
+      other_clock() ? "; the clocks may differ"
+      : changes     ? "; one of the clocks may drift"
+                    : "",
+      taken);
 }
 
 }  // namespace tumble::scenarios

@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <sstream>
@@ -25,10 +27,10 @@ constexpr const char* kImu = "sensor_msgs/Imu";
 constexpr const char* kCloud = "sensor_msgs/PointCloud2";
 constexpr const char *kTransforms = "tf2_msgs/TFMessage", *kOldTransforms = "tf/tfMessage";
 constexpr const char* kStaticTopic = "/tf_static";
-constexpr const char* kNoMessage = ": is declared and has no message: left out";
-/// What the stamps of a message may differ by before it is said.
+constexpr const char* kNoMessage = ": the topic is declared but has no messages; it is left out";
+/// Differences between header and record stamps above this are noted.
 constexpr double kClocksApart_s = 1e-3;
-/// Points that come so much later than their record are said: less is what clocks of hosts differ by.
+/// Points later than their record by more are noted; smaller differences are normal between hosts' clocks.
 constexpr double kAhead_s = 0.01;
 
 bool is_imu_type(const std::string& type) {
@@ -38,7 +40,7 @@ bool is_cloud_type(const std::string& type) {
   return type == kCloud || is_livox_type(type);
 }
 
-/// A topic as the name of a sensor: "/imu/data" is imu_data, "/lidar/points" lidar.
+/// Converts a topic to a sensor name: "/imu/data" to imu_data, "/lidar/points" to lidar.
 std::string sensor_name(std::string topic) {
   while (topic.starts_with('/')) topic.erase(0, 1);
   if (topic.ends_with("/points")) topic.resize(topic.size() - 7);
@@ -58,19 +60,21 @@ StaticFrames read_frames(const OpenedBag& bag) {
   return frames;
 }
 
-/// The unit of the specific force, which is put in m/s^2 where nobody stated one and the readings are in g.
+/// Returns the unit of the specific force. If none was stated and the readings are in g, converts them to m/s^2.
 AccelUnit take_in_g(const std::string& topic, const BagReading& reading, sim::ImuRecord& imu,
                     std::vector<std::string>& notes) {
   if (reading.accel_unit || !is_in_g(imu)) return reading.accel_unit.value_or(AccelUnit::m_s2);
   for (Eigen::Vector3d& force : imu.accel_m_s2) force *= scale_of(AccelUnit::g);
-  notes.push_back(topic + ": caution: by its definition it is in m/s^2, by its size at rest, 1, in g: taken in g" +
-                  " ('--accel-unit m/s^2' holds it to its definition)");
+  notes.push_back(
+      fmt::format("{}: caution: the message definition requires m/s^2, but the magnitude at rest is 1, so it is read "
+                  "in g (set '--accel-unit m/s^2' to use the definition)",
+                  topic));
   return AccelUnit::g;
 }
 
 std::string repeats_text(std::size_t repeated) {
   if (repeated == 0) return "";
-  return "messages that are there twice, stamp and content, and were taken once: " + std::to_string(repeated);
+  return "number of duplicate messages (same stamp and content) that were read once: " + std::to_string(repeated);
 }
 
 sim::ImuRecord read_imu(const OpenedBag& bag, SensorPlaces& places, const std::string& topic, const BagReading& reading,
@@ -95,10 +99,10 @@ sim::ImuRecord read_imu(const OpenedBag& bag, SensorPlaces& places, const std::s
     before = message;
   });
   const std::string where = bag.place + ": topic " + topic;
-  if (imu.time_ns.empty() && reading.imu_topics.empty()) return imu;  // declared, and never recorded
+  if (imu.time_ns.empty() && reading.imu_topics.empty()) return imu;  // the topic has no messages
   const AccelUnit accel_unit = take_in_g(topic, reading, imu, notes);
   finish_readings(where, accel_unit, imu);
-  // messages are in rad/s by their definition, and not every driver keeps to it
+  // Messages should be in rad/s by definition, but not every driver complies.
   const std::string evened = even_out_stamps(imu);
   const std::string units = rates_text(where, imu, reading.gyro_unit);
   for (const std::string& remark : {evened, gaps_text(imu), units, stamps.remark(), repeats_text(repeated)}) {
@@ -108,21 +112,21 @@ sim::ImuRecord read_imu(const OpenedBag& bag, SensorPlaces& places, const std::s
   return imu;
 }
 
-/// What is known of a topic's clouds before their points are read.
+/// Information about a topic's clouds from a first pass without reading points.
 struct CloudHeaders {
-  std::vector<std::int64_t> stamps;  ///< of the starts of the sweeps
-  std::int64_t period_ns = 0;        ///< given, or the median step of the stamps
-  std::vector<bool> repeats;         ///< of each message: it is the one before once more
+  std::vector<std::int64_t> stamps;  ///< sweep starts
+  std::int64_t period_ns = 0;        ///< stated, or the median step of the stamps
+  std::vector<bool> repeats;         ///< per message: true for a duplicate of the previous one
   std::string remark;
-  bool follow_records = true;  ///< the records lie after the stamps, of one clock by all that is seen
+  bool follow_records = true;  ///< the records appear to use the same clock and lie after the stamps
   std::string frame;
-  /// Nobody named the topic, and its points lie in no sensor's frame: a map, or points that somebody has moved there.
+  /// Returns true if the topic was not chosen and its frame is not a sensor's: a map, or points already transformed.
   bool left_out(const BagReading& reading) const {
     return reading.lidar_topics.empty() && (frame == "world" || frame == "map" || frame == "odom");
   }
 };
 
-/// Calls `take(message, origin)` for each cloud of the topic, of whichever type they are.
+/// Calls `take(message, origin)` for each cloud of the topic, of either type.
 template <class Take>
 void read_clouds(const OpenedBag& bag, const std::string& topic, Take&& take) {
   if (is_livox_type(bag.topic(topic).type)) return bag.read<ros::LivoxCustomMsg>(topic, take);
@@ -135,7 +139,7 @@ CloudHeaders read_headers(const OpenedBag& bag, const std::string& topic, const 
   std::uint64_t before = 0;
   read_clouds(bag, topic, [&](const auto& message, const MessageOrigin& origin) {
     out.frame = without_slash(message.header.frame_id);
-    if (out.left_out(reading)) return;  // a map may well stand still
+    if (out.left_out(reading)) return;  // a map may have constant stamps
     const std::uint64_t now = content_of(message);
     out.repeats.push_back(stamps.repeats(stamp_of(message.header)) && now == before);
     before = now;
@@ -150,14 +154,15 @@ CloudHeaders read_headers(const OpenedBag& bag, const std::string& topic, const 
   out.follow_records = !stamps.other_clock();
   if (reading.stamps == StampSource::record) {
     for (std::int64_t& stamp : out.stamps) stamp -= out.period_ns;
-    out.remark += (out.remark.empty() ? "" : "; ") + std::string("a sweep is taken to start ") +
-                  std::to_string(1e-9 * static_cast<double>(out.period_ns)) + " s before it was recorded";
+    out.remark +=
+        fmt::format("{}assumption: each sweep starts {} s before its record stamp", out.remark.empty() ? "" : "; ",
+                    std::to_string(1e-9 * static_cast<double>(out.period_ns)));
   }
   return out;
 }
 
-/// Nobody records what was not measured yet: points that lie after their own record were counted from another instant
-/// than the stamp.
+/// Points later than their own record cannot have been measured yet: their times were counted from another start than
+/// the stamp.
 void note_points_to_come(const std::string& topic, const BuiltSweeps& built, const std::vector<std::int64_t>& records,
                          std::vector<std::string>& notes) {
   std::vector<double> ahead_s;
@@ -166,9 +171,11 @@ void note_points_to_come(const std::string& topic, const BuiltSweeps& built, con
   if (ahead_s.empty()) return;
   const double middle_s = upper_median(std::move(ahead_s));
   if (middle_s < kAhead_s) return;
-  notes.push_back(topic + ": caution: the last points of a sweep, by their times from its stamp, lie " +
-                  std::to_string(middle_s) + " s after the bag took them: does the stamp tell the sweep's end? It is " +
-                  "read as the start ('--stamps record' lets a sweep start a period before it was recorded)");
+  notes.push_back(
+      fmt::format("{}: caution: the last points of a sweep, by their times after the stamp, are {} s later than the "
+                  "record stamp; the stamp may be the end of the sweep. It is read as the start (set '--stamps record' "
+                  "to start each sweep one period before its record stamp)",
+                  topic, std::to_string(middle_s)));
 }
 
 BuiltSweeps read_lidar(const OpenedBag& bag, SensorPlaces& places, const std::string& topic,
@@ -180,7 +187,7 @@ BuiltSweeps read_lidar(const OpenedBag& bag, SensorPlaces& places, const std::st
   std::size_t number = 0, read = 0;
   std::vector<std::int64_t> records;
   read_clouds(bag, topic, [&]<class Message>(const Message& message, const MessageOrigin& origin) {
-    if (read == headers.repeats.size()) throw BadInput(origin.where + ": lies in another frame than the last one");
+    if (read == headers.repeats.size()) throw BadInput(origin.where + ": uses another frame than the previous message");
     if (headers.repeats[read++]) return;
     if constexpr (std::is_same_v<Message, ros::LivoxCustomMsg>) {
       const double apart_ns = static_cast<double>(message.timebase) - static_cast<double>(stamp_of(message.header));
@@ -194,24 +201,27 @@ BuiltSweeps read_lidar(const OpenedBag& bag, SensorPlaces& places, const std::st
   if (reading.stamps == StampSource::header && headers.follow_records)
     note_points_to_come(topic, built, records, notes);
   if (clocks_apart_s > kClocksApart_s) {
-    notes.push_back(topic + ": caution: the messages' timebase and the stamps of their headers are up to " +
-                    std::to_string(clocks_apart_s) + " s apart; the times of points count from the headers'");
+    notes.push_back(
+        fmt::format("{}: caution: the messages' timebase and their header stamps differ by up to {} s; point times are "
+                    "counted from the header stamps",
+                    topic, std::to_string(clocks_apart_s)));
   }
   places.place(topic, headers.frame, "--T-body-lidar", built.lidar.T_BL, notes);
   return built;
 }
 
-/// What a lidar sent, before its driver made points of it.
+/// Notes topics with raw lidar packets.
 void note_packets(const OpenedBag& bag, std::vector<std::string>& notes) {
   for (const BagTopic& topic : bag.topics) {
     const auto has = [&](const char* word) { return topic.type.find(word) != std::string::npos; };
     if (!has("Packet") && !has("packet") && !has("VelodyneScan") && !has("PandarScan")) continue;
-    notes.push_back(topic.name + ": caution: raw packets (" + topic.type + "), not read: points are made of them by " +
-                    "the lidar's driver");
+    notes.push_back(
+        fmt::format("{}: caution: raw packets ({}) are not read; convert them to points with the lidar's driver",
+                    topic.name, topic.type));
   }
 }
 
-/// Sensors that never saw the same moment have no common clock, or nothing in common.
+/// Throws if the sensors do not overlap in time, and thus have no common clock.
 void require_one_clock(const sim::Sensors& sensors, bool by_headers, const std::filesystem::path& path) {
   struct Span {
     std::string name;
@@ -229,16 +239,17 @@ void require_one_clock(const sim::Sensors& sensors, bool by_headers, const std::
     for (const Span& late : spans) {
       if (late.first_ns <= early.last_ns) continue;
       throw BadInput(
-          path.string() + ": the clocks of '" + early.name + "' and '" + late.name + "' do not meet: one ends " +
-          std::to_string((static_cast<double>(late.first_ns) - static_cast<double>(early.last_ns)) * 1e-9) +
-          " s before the other begins" + (by_headers ? " ('--stamps record' takes when the bag took them)" : ""));
+          fmt::format("{}: the time ranges of '{}' and '{}' do not overlap: one ends {} s before the other begins{}",
+                      path.string(), early.name, late.name,
+                      std::to_string((static_cast<double>(late.first_ns) - static_cast<double>(early.last_ns)) * 1e-9),
+                      by_headers ? "; set '--stamps record' to use the record stamps" : ""));
     }
   }
 }
 
-/// What is wrong with a topic that nobody named, and how to do without it where there are others.
+/// Rethrows an error of an automatically chosen topic, with advice how to skip it if there are others.
 [[noreturn]] void fail_of_several(const BadInput& error, const char* option) {
-  throw BadInput(std::string(error.what()) + " (" + option + " takes those alone that it names)");
+  throw BadInput(std::string(error.what()) + " (" + option + " selects which topics are read)");
 }
 
 void add_imus(const OpenedBag& bag, SensorPlaces& places, const BagReading& reading, Imported& out) {
@@ -258,14 +269,16 @@ void add_imus(const OpenedBag& bag, SensorPlaces& places, const BagReading& read
   }
   if (out.sensors.imus.size() > 1 && reading.imu_topics.empty())
     out.notes.push_back("'" + out.sensors.imus.front().name +
-                        "' is the primary IMU, as its topic stands first (--imu-topic says another)");
+                        "' is the primary IMU because its topic comes first (set --imu-topic to choose another)");
 }
 
 void add_lidars(const OpenedBag& bag, SensorPlaces& places, const BagReading& reading, Imported& out) {
   for (const std::string& topic : bag.chosen(reading.lidar_topics, is_cloud_type, kCloud)) {
     const CloudHeaders headers = read_headers(bag, topic, reading);
     if (headers.left_out(reading)) {
-      out.notes.push_back(topic + ": its points lie in '" + headers.frame + "', in no sensor's frame: left out");
+      out.notes.push_back(
+          fmt::format("{}: its points are in frame '{}', which is not the frame of a sensor; they are left out", topic,
+                      headers.frame));
     } else if (headers.stamps.empty() && reading.lidar_topics.empty()) {
       out.notes.push_back(topic + kNoMessage);
     } else {
@@ -284,8 +297,8 @@ Imported import_bag(BagReader& reader, const std::filesystem::path& path, const 
   add_lidars(bag, places, reading, out);
   note_packets(bag, out.notes);
   if (out.sensors.imus.empty() && out.sensors.lidars.empty()) {
-    throw BadInput(path.string() + ": holds no topic of type " + kImu + ", " + kCloud +
-                   " or CustomMsg with messages among " + std::to_string(bag.topics.size()));
+    throw BadInput(fmt::format("{}: has no topic of type {}, {} or CustomMsg with messages; number of topics: {}",
+                               path.string(), kImu, kCloud, bag.topics.size()));
   }
   out.info.attribution = "imported from " + path.filename().string();
   require_one_clock(out.sensors, reading.stamps == StampSource::header, path);

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "scenarios/recordings/bags/mcap_file.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cstring>
 #include <utility>
@@ -13,9 +15,9 @@ namespace tumble::scenarios::mcap {
 
 namespace {
 
-/// Of a chunk, packed and not, of a record outside of chunks, and of the summary.
+/// Largest chunk, compressed or not, record outside chunks, and summary.
 constexpr std::uint64_t kBytesMax = 1u << 28;
-/// Records outside of chunks are read by so many bytes.
+/// Block size for reading records outside chunks.
 constexpr std::uint64_t kLooseBytes = 1u << 22;
 constexpr std::uint64_t kFooterBytes = kHeadBytes + 20, kDataEndBytes = kHeadBytes + 4;
 
@@ -23,7 +25,7 @@ std::string in_bytes(std::uint64_t bytes) {
   return std::to_string(bytes) + " bytes";
 }
 
-/// What a chunk's record and its index both state.
+/// Compares the data in a chunk's record and in its index.
 bool agree(const ChunkIndex& a, const ChunkIndex& b) {
   return a.message_start_time == b.message_start_time && a.message_end_time == b.message_end_time &&
          a.chunk_start_offset == b.chunk_start_offset && a.chunk_length == b.chunk_length &&
@@ -41,8 +43,7 @@ File::File(const std::filesystem::path& path) : path_(path), stream_(open_regula
   if (segments_.empty()) scan();
   for (const auto& [id, channel] : channels_) {
     if (channel.schema_id != 0 && !schemas_.contains(channel.schema_id))
-      fail(0,
-           "channel " + std::to_string(id) + " is of schema " + std::to_string(channel.schema_id) + ": there is none");
+      fail(0, fmt::format("channel {} refers to schema {}, which does not exist", id, channel.schema_id));
   }
   std::stable_sort(segments_.begin(), segments_.end(),
                    [](const Segment& a, const Segment& b) { return a.first_ns < b.first_ns; });
@@ -53,7 +54,8 @@ void File::fail(std::uint64_t at, const std::string& what) const {
 }
 
 std::string File::text(std::uint64_t at, std::uint64_t size) {
-  if (at > bytes_ || size > bytes_ - at) fail(at, in_bytes(size) + " lie beyond the end: damaged or truncated");
+  if (at > bytes_ || size > bytes_ - at)
+    fail(at, in_bytes(size) + " extend beyond the end of the file; the file is damaged or truncated");
   std::string out(size, '\0');
   stream_.clear();
   stream_.seekg(static_cast<std::streamoff>(at));
@@ -65,34 +67,38 @@ Record File::record_in(std::string_view records, std::uint64_t place, std::uint6
   Take take(records.substr(place));
   Record out;
   out.at = place;
-  if (take.left.size() < kHeadBytes) fail(at + place, "ends in the head of a record: damaged or truncated");
+  if (take.left.size() < kHeadBytes)
+    fail(at + place, "ends within the head of a record: the file is damaged or truncated");
   std::uint64_t size = 0;
   take(out.op), take(size);
   if (size > take.left.size()) {
-    fail(at + place, "a record of " + in_bytes(size) + ", must be at most " + std::to_string(take.left.size()) +
-                         ": damaged or truncated");
+    fail(at + place, fmt::format("a record of {}, must be at most {}: the file is damaged or truncated", in_bytes(size),
+                                 take.left.size()));
   }
-  if (out.op == 0) fail(at + place, "a record of kind 0: damaged");
+  if (out.op == 0) fail(at + place, "a record of kind 0: the file is damaged");
   out.content = take.cut(size);
   return out;
 }
 
-/// Magic, header, footer and the end of the data.
+/// Reads magic, header, footer and the end of the data.
 void File::open_ends() {
   if (bytes_ < kMagic.size() || text(0, kMagic.size()) != kMagic)
-    fail(0, "does not begin with the magic of MCAP 0: no MCAP file");
+    fail(0, "does not begin with the magic bytes of MCAP 0: not an MCAP file");
   if (bytes_ < 2 * kMagic.size() + kFooterBytes + kDataEndBytes ||
       text(bytes_ - kMagic.size(), kMagic.size()) != kMagic)
-    fail(bytes_, "does not end with the magic of MCAP: truncated or never closed ('mcap recover' makes it whole)");
+    fail(bytes_,
+         "does not end with the magic bytes of MCAP: the file is truncated or was never closed (repair it with 'mcap "
+         "recover')");
   footer_at_ = bytes_ - kMagic.size() - kFooterBytes;
   const std::string footer = text(footer_at_, kFooterBytes);
   const Record record = record_in(footer, 0, footer_at_);
   if (record.op != kFooter || record.content.size() != kFooterBytes - kHeadBytes)
-    fail(footer_at_, "holds no footer: damaged");
+    fail(footer_at_, "has no footer: the file is damaged");
   footer_ = as<Footer>(record, footer_at_);
   const std::uint64_t data_end = footer_.summary_start == 0 ? footer_at_ : footer_.summary_start;
   if (data_end > footer_at_ || data_end < kMagic.size() + kDataEndBytes)
-    fail(footer_at_, "the summary would begin at byte " + std::to_string(data_end) + ": damaged");
+    fail(footer_at_,
+         fmt::format("the stated start of the summary is byte {}, which is impossible: the file is damaged", data_end));
   data_end_ = data_end - kDataEndBytes;
 }
 
@@ -100,7 +106,7 @@ void File::check_data() {
   const std::string bytes = text(data_end_, kDataEndBytes);
   const Record end = record_in(bytes, 0, data_end_);
   if (end.op != kDataEnd || end.content.size() != kDataEndBytes - kHeadBytes)
-    fail(data_end_, "the data do not end before the summary: damaged");
+    fail(data_end_, "the data section does not end before the summary: the file is damaged");
   const std::uint32_t stated = as<DataEnd>(end, data_end_).data_section_crc;
   if (stated == 0) return;
   std::uint32_t crc = 0;
@@ -111,25 +117,28 @@ void File::check_data() {
   }
   if (crc != stated) {
     fail(data_end_,
-         "the checksum of the data is " + std::to_string(crc) + ", stated " + std::to_string(stated) + ": damaged");
+         fmt::format("the checksum of the data is {}, but the file states {}: the file is damaged", crc, stated));
   }
 }
 
 void File::read_summary() {
   if (footer_.summary_start == 0) return;
   const std::uint64_t size = footer_at_ - footer_.summary_start;
-  if (size > kBytesMax) fail(footer_.summary_start, "a summary of " + in_bytes(size) + ", at most 256 MiB are read");
+  if (size > kBytesMax)
+    fail(footer_.summary_start, fmt::format("a summary of {}; at most 256 MiB can be read", in_bytes(size)));
   const std::string all = text(footer_.summary_start, size + kFooterBytes);
   const std::uint32_t crc = crc32_of(std::string_view(all).substr(0, all.size() - sizeof(footer_.summary_crc)));
   if (footer_.summary_crc != 0 && crc != footer_.summary_crc) {
-    fail(footer_.summary_start, "the checksum of the summary is " + std::to_string(crc) + ", stated " +
-                                    std::to_string(footer_.summary_crc) + ": damaged");
+    fail(footer_.summary_start,
+         fmt::format("the checksum of the summary is {}, but the file states {}: the file is damaged", crc,
+                     footer_.summary_crc));
   }
   std::string_view summary = std::string_view(all).substr(0, size);
   if (footer_.summary_offset_start != 0) {
     if (footer_.summary_offset_start < footer_.summary_start || footer_.summary_offset_start > footer_at_)
-      fail(footer_at_, "the offsets of the summary would begin at byte " +
-                           std::to_string(footer_.summary_offset_start) + ": damaged");
+      fail(footer_at_,
+           fmt::format("the stated start of the summary offsets is byte {}, which is impossible: the file is damaged",
+                       footer_.summary_offset_start));
     const std::uint64_t records = footer_.summary_offset_start - footer_.summary_start;
     check_groups(summary.substr(0, records), summary.substr(records));
     summary = summary.substr(0, records);
@@ -145,53 +154,50 @@ void File::read_summary() {
   take_indexed(std::move(chunks));
 }
 
-/// The offsets must name groups of one kind each.
+/// Each offset must point to a group of one kind.
 void File::check_groups(std::string_view summary, std::string_view groups) const {
   const std::uint64_t groups_at = footer_.summary_offset_start;
   walk(groups, groups_at, [&](const Record& record) {
     const std::uint64_t at = groups_at + record.at;
-    if (record.op != kSummaryOffset) fail(at, "a record of kind " + std::to_string(record.op) + " has no place here");
+    if (record.op != kSummaryOffset) fail(at, fmt::format("a record of kind {} is not allowed here", record.op));
     const auto group = as<SummaryOffset>(record, at);
     const std::uint64_t start = group.group_start - footer_.summary_start;
     if (group.group_start < footer_.summary_start || start > summary.size() ||
         group.group_length > summary.size() - start)
-      fail(at, "names a group at byte " + std::to_string(group.group_start) + ", outside of the summary");
+      fail(at, fmt::format("names a group at byte {}, which is outside the summary", group.group_start));
     walk(summary.substr(start, group.group_length), group.group_start, [&](const Record& each) {
       if (each.op != group.group_opcode)
-        fail(at, "names a group of kind " + std::to_string(group.group_opcode) + " that holds one of " +
-                     std::to_string(each.op));
+        fail(at, fmt::format("names a group of kind {}, but the group contains kind {}", group.group_opcode, each.op));
     });
   });
 }
 
-/// Chunks by their index: whole where it lists all of them. A file that lists none is scanned.
+/// Uses the chunk index if it is complete. A file without index is scanned.
 void File::take_indexed(std::vector<ChunkIndex> chunks) {
   if (chunks.empty()) return;
   std::sort(chunks.begin(), chunks.end(),
             [](const ChunkIndex& a, const ChunkIndex& b) { return a.chunk_start_offset < b.chunk_start_offset; });
   if (statistics_ && statistics_->chunk_count != chunks.size()) {
-    fail(footer_.summary_start, "states " + std::to_string(statistics_->chunk_count) + " chunks and indexes " +
-                                    std::to_string(chunks.size()) + ": damaged");
+    fail(footer_.summary_start,
+         fmt::format("states {} chunks but indexes {}: the file is damaged", statistics_->chunk_count, chunks.size()));
   }
   std::uint64_t free = kMagic.size();
   for (const ChunkIndex& each : chunks) {
     const std::uint64_t at = each.chunk_start_offset;
     if (at < free || at > data_end_ || each.chunk_length > data_end_ - at ||
         each.message_index_length > data_end_ - at - each.chunk_length) {
-      fail(footer_.summary_start, "indexes a chunk of " + in_bytes(each.chunk_length) + " at byte " +
-                                      std::to_string(at) + ", must lie between " + std::to_string(free) + " and " +
-                                      std::to_string(data_end_));
+      fail(footer_.summary_start, fmt::format("indexes a chunk of {} at byte {}; it must be between {} and {}",
+                                              in_bytes(each.chunk_length), at, free, data_end_));
     }
     free = at + each.chunk_length + each.message_index_length;
     for (const auto& [channel, place] : each.message_index_offsets) {
-      if (!channels_.contains(channel)) return segments_.clear();  // the summary does not repeat them: scan
+      if (!channels_.contains(channel)) return segments_.clear();  // the summary does not repeat the channels: scan
       if (place < at + each.chunk_length || place >= free)
-        fail(place,
-             "is named as an index of the chunk at byte " + std::to_string(at) + ", behind which it does not lie");
+        fail(place, fmt::format("is named as an index of the chunk at byte {}, but does not follow that chunk", at));
     }
     segments_.push_back({at, each.chunk_length, each.message_start_time, each.message_end_time, each});
   }
-  // messages outside of chunks are in no index: none may be missing
+  // Messages outside chunks are not indexed; scan if any are missing.
   if (!statistics_ || channels_.empty()) segments_.clear();
 }
 
@@ -206,7 +212,7 @@ std::string File::records(const Segment& segment) {
   if (!segment.chunk) return text(segment.at, segment.bytes);
   std::uint32_t crc = 0;
   const ChunkIndex own = head_of_chunk(segment.at, segment.bytes, &crc);
-  if (!agree(own, *segment.chunk)) fail(segment.at, "the chunk is not what its index says: damaged");
+  if (!agree(own, *segment.chunk)) fail(segment.at, "the chunk differs from its index: the file is damaged");
   std::string packed = text(segment.at + segment.bytes - own.compressed_size, own.compressed_size), out;
   try {
     if (own.compression == "lz4")
@@ -219,8 +225,8 @@ std::string File::records(const Segment& segment) {
     fail(segment.at, error.what());
   }
   if (crc != 0 && crc32_of(out) != crc) {
-    fail(segment.at, "the checksum of the chunk is " + std::to_string(crc32_of(out)) + ", stated " +
-                         std::to_string(crc) + ": damaged");
+    fail(segment.at, fmt::format("the checksum of the chunk is {}, but the file states {}: the file is damaged",
+                                 crc32_of(out), crc));
   }
   return out;
 }
@@ -229,27 +235,28 @@ std::optional<MessageIndex> File::index_of(const Segment& segment, std::uint16_t
   if (!segment.chunk || !segment.chunk->message_index_offsets.contains(channel)) return std::nullopt;
   const std::uint64_t at = segment.chunk->message_index_offsets.at(channel);
   const std::uint64_t end = segment.at + segment.bytes + segment.chunk->message_index_length;
-  if (end - at < kHeadBytes) fail(at, "ends in the head of an index: damaged");
+  if (end - at < kHeadBytes) fail(at, "ends within the head of an index: the file is damaged");
   const std::string bytes = text(at, std::min(end - at, kBytesMax));
   const Record record = record_in(bytes, 0, at);
-  if (record.op != kMessageIndex) fail(at, "is no index of messages: damaged");
+  if (record.op != kMessageIndex) fail(at, "is not a message index: the file is damaged");
   auto index = as<MessageIndex>(record, at);
   if (index.channel_id != channel) {
-    fail(at, "is the index of channel " + std::to_string(index.channel_id) + ", should be of " +
-                 std::to_string(channel) + ": damaged");
+    fail(at, fmt::format("is the index of channel {}, but should be that of channel {}: the file is damaged",
+                         index.channel_id, channel));
   }
   return index;
 }
 
-/// What the chunk's own record states, as an index would.
+/// Returns the data of the chunk's own record, in the form of an index.
 ChunkIndex File::head_of_chunk(std::uint64_t at, std::uint64_t bytes, std::uint32_t* crc) {
-  constexpr std::uint64_t kMost = kHeadBytes + 8 + 8 + 8 + 4 + 4 + 64 + 8;  // with the name of a packing
+  constexpr std::uint64_t kMost = kHeadBytes + 8 + 8 + 8 + 4 + 4 + 64 + 8;  // including the name of the compression
   std::string head = text(at, std::min(bytes, kMost));
-  if (head.size() < kHeadBytes || static_cast<std::uint8_t>(head[0]) != kChunk) fail(at, "is no chunk: damaged");
+  if (head.size() < kHeadBytes || static_cast<std::uint8_t>(head[0]) != kChunk)
+    fail(at, "is not a chunk: the file is damaged");
   std::uint64_t content = 0;
   std::memcpy(&content, head.data() + 1, sizeof(content));
   if (content != bytes - kHeadBytes)
-    fail(at, "a chunk of " + in_bytes(content) + ", its index says " + in_bytes(bytes - kHeadBytes));
+    fail(at, fmt::format("a chunk of {}, but its index states {}", in_bytes(content), in_bytes(bytes - kHeadBytes)));
   Take take(std::string_view(head).substr(kHeadBytes));
   Chunk chunk;
   try {
@@ -259,17 +266,18 @@ ChunkIndex File::head_of_chunk(std::uint64_t at, std::uint64_t bytes, std::uint3
   }
   const std::uint64_t taken = head.size() - take.left.size();
   if (chunk.records_size != bytes - taken)
-    fail(at, "a chunk that promises " + in_bytes(chunk.records_size) + " and holds " + in_bytes(bytes - taken));
+    fail(at, fmt::format("a chunk that states {} but holds {}", in_bytes(chunk.records_size), in_bytes(bytes - taken)));
   if (chunk.records_size > kBytesMax || chunk.uncompressed_size > kBytesMax) {
-    fail(at, "a chunk of " + in_bytes(std::max(chunk.records_size, chunk.uncompressed_size)) +
-                 ", at most 256 MiB are read");
+    fail(at, fmt::format("a chunk of {}; at most 256 MiB can be read",
+                         in_bytes(std::max(chunk.records_size, chunk.uncompressed_size))));
   }
   if (!chunk.compression.empty() && chunk.compression != "lz4" && chunk.compression != "zstd") {
-    fail(at, "a chunk of compression '" + chunk.compression.substr(0, 40) + "': none, lz4 or zstd are read");
+    fail(at, fmt::format("a chunk of compression '{}' is not supported; supported: none, lz4 and zstd",
+                         chunk.compression.substr(0, 40)));
   }
   if (chunk.compression.empty() && chunk.uncompressed_size != chunk.records_size) {
-    fail(at, "a plain chunk of " + in_bytes(chunk.records_size) + " says that it has " +
-                 std::to_string(chunk.uncompressed_size));
+    fail(at,
+         fmt::format("a plain chunk of {} states a size of {}", in_bytes(chunk.records_size), chunk.uncompressed_size));
   }
   if (crc != nullptr) *crc = chunk.uncompressed_crc;
   return {chunk.message_start_time, chunk.message_end_time, at, bytes, {}, 0, chunk.compression,
@@ -277,16 +285,16 @@ ChunkIndex File::head_of_chunk(std::uint64_t at, std::uint64_t bytes, std::uint3
 }
 
 void File::add(Schema schema, std::uint64_t at) {
-  if (schema.id == 0) fail(at, "a schema with the number 0, which means none");
+  if (schema.id == 0) fail(at, "a schema has the number 0, which is reserved for 'no schema'");
   const auto [place, fresh] = schemas_.try_emplace(schema.id, schema);
   if (!fresh && place->second != schema)
-    fail(at, "schema " + std::to_string(schema.id) + " is stated twice, differently");
+    fail(at, fmt::format("schema {} is defined twice with different content", schema.id));
 }
 
 void File::add(Channel channel, std::uint64_t at) {
   const auto [place, fresh] = channels_.try_emplace(channel.id, channel);
   if (!fresh && place->second != channel)
-    fail(at, "channel " + std::to_string(channel.id) + " is stated twice, differently");
+    fail(at, fmt::format("channel {} is defined twice with different content", channel.id));
 }
 
 }  // namespace tumble::scenarios::mcap

@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <map>
 #include <set>
@@ -14,10 +16,10 @@ namespace mcap {
 
 namespace {
 
-/// Messages that wait because later chunks may hold earlier ones.
+/// Limit for messages that wait because later chunks may contain earlier ones.
 constexpr std::uint64_t kWaitingMax = 1u << 30;
 
-/// How messages and their types are written.
+/// Returns true for CDR messages, false for ROS 1 encoding.
 bool is_cdr(const Channel& channel, const Schema& schema) {
   return channel.message_encoding == "cdr" && (schema.encoding == "ros2msg" || schema.encoding == "ros2idl");
 }
@@ -25,7 +27,7 @@ bool is_ros1(const Channel& channel, const Schema& schema) {
   return channel.message_encoding == "ros1" && schema.encoding == "ros1msg";
 }
 
-/// Messages of one topic of one file in order of time, a chunk in memory and what overlaps it.
+/// Iterates over one topic of one file by time; memory holds one chunk and those that overlap it.
 class TopicWalk {
  public:
   TopicWalk(File& file, std::set<std::uint16_t> channels, const BagReader::Take& take)
@@ -42,8 +44,8 @@ class TopicWalk {
     for (const std::uint16_t channel : channels_) {
       const std::optional<std::uint64_t> stated = file_.stated_messages(channel);
       if (stated && *stated != counts_[channel]) {
-        file_.fail(0, "channel " + std::to_string(channel) + " holds " + std::to_string(counts_[channel]) +
-                          " messages, the summary states " + std::to_string(*stated) + ": damaged");
+        file_.fail(0, fmt::format("channel {} holds {} messages, but the summary states {}: the file is damaged",
+                                  channel, counts_[channel], *stated));
       }
     }
   }
@@ -69,12 +71,11 @@ class TopicWalk {
 
   void require_time(const Segment& segment, std::uint64_t time_ns) const {
     if (time_ns >= segment.first_ns && time_ns <= segment.last_ns) return;
-    file_.fail(segment.at, "a message at " + std::to_string(time_ns) + " ns in a chunk from " +
-                               std::to_string(segment.first_ns) + " to " + std::to_string(segment.last_ns) +
-                               " ns: damaged");
+    file_.fail(segment.at, fmt::format("a message at {} ns in a chunk from {} to {} ns: the file is damaged", time_ns,
+                                       segment.first_ns, segment.last_ns));
   }
 
-  /// The index behind the chunk names the messages that are there, and no others.
+  /// Checks that the index after the chunk lists exactly its messages.
   void require_indexed(const Segment& segment, std::uint16_t channel,
                        std::vector<std::pair<std::uint64_t, std::uint64_t>>& found) {
     std::optional<MessageIndex> index = file_.index_of(segment, channel);
@@ -84,15 +85,15 @@ class TopicWalk {
     std::sort(index->entries.begin(), index->entries.end());
     std::sort(found.begin(), found.end());
     if (index->entries == found) return;
-    file_.fail(segment.at, "the index of the chunk names " + std::to_string(index->entries.size()) +
-                               " messages of channel " + std::to_string(channel) + ", not the " +
-                               std::to_string(found.size()) + " that are there: damaged");
+    file_.fail(segment.at,
+               fmt::format("the chunk index names {} messages of channel {}, but the chunk has {}: the file is damaged",
+                           index->entries.size(), channel, found.size()));
   }
 
   void hold(const Segment& segment, std::uint64_t time_ns, std::string_view bytes) {
     waiting_bytes_ += bytes.size();
     if (waiting_bytes_ > kWaitingMax) {
-      file_.fail(segment.at, "chunks overlap in time so that more than 1 GiB of messages would have to wait");
+      file_.fail(segment.at, "the chunks overlap in time; more than 1 GiB of messages would have to be buffered");
     }
     const auto* first = reinterpret_cast<const std::uint8_t*>(bytes.data());
     waiting_.emplace(time_ns, ros::Bytes(first, first + bytes.size()));
@@ -102,7 +103,7 @@ class TopicWalk {
     while (!waiting_.empty() && waiting_.begin()->first < time_ns) give_first();
   }
   void give_first() {
-    // a time beyond int64 is none of ROS': it is as late as can be
+    // Times beyond int64 are invalid in ROS; clamp them.
     const std::uint64_t time_ns = std::min<std::uint64_t>(waiting_.begin()->first, INT64_MAX);
     ros::Bytes bytes = std::move(waiting_.begin()->second);
     waiting_bytes_ -= bytes.size();
@@ -113,7 +114,7 @@ class TopicWalk {
   File& file_;
   std::set<std::uint16_t> channels_;
   const BagReader::Take& take_;
-  std::multimap<std::uint64_t, ros::Bytes> waiting_;  ///< of equal times in the order of the file
+  std::multimap<std::uint64_t, ros::Bytes> waiting_;  ///< equal times keep the order of the file
   std::uint64_t waiting_bytes_ = 0;
   std::map<std::uint16_t, std::uint64_t> counts_;
 };
@@ -134,7 +135,7 @@ class McapReader : public BagReader {
         if (found == topics.end()) {
           topics.push_back(topic);
         } else if (found->type != topic.type) {
-          file->fail(0, "topic " + topic.name + " is of type " + found->type + " and of type " + topic.type);
+          file->fail(0, fmt::format("topic {} has the types {} and {}", topic.name, found->type, topic.type));
         }
       }
     }
@@ -166,7 +167,7 @@ class McapReader : public BagReader {
     return channel.schema_id == 0 ? none : file.schemas().at(channel.schema_id);
   }
 
-  /// By ROS 1's name; of what is no message of ROS with its encoding, which no type that is read has.
+  /// Returns ROS 1's type name, or the type with its encoding if it is not a ROS message, which no reader matches.
   static std::string type_of(const File& file, const Channel& channel) {
     const Schema& schema = schema_of(file, channel);
     if (is_cdr(channel, schema)) return ros1_type(schema.name);

@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Files without a summary, or with one that does not list everything: the data are gone through once.
+// Scans the data of files whose summary is missing or incomplete.
+#include <fmt/format.h>
+
 #include <algorithm>
 
 #include "scenarios/recordings/bags/mcap_file.hpp"
@@ -9,10 +11,10 @@ namespace tumble::scenarios::mcap {
 namespace {
 
 constexpr std::uint64_t kRecordMax = 1u << 28;
-/// Records outside of chunks are kept together up to so many bytes.
+/// Largest segment of records outside chunks.
 constexpr std::uint64_t kSegmentBytes = 1u << 22;
 
-/// Widens the times of a segment.
+/// Extends the time range of a segment.
 void cover(Segment& segment, bool& empty, std::uint64_t time_ns) {
   segment.first_ns = empty ? time_ns : std::min(segment.first_ns, time_ns);
   segment.last_ns = empty ? time_ns : std::max(segment.last_ns, time_ns);
@@ -34,24 +36,23 @@ void File::scan() {
     const std::string head = text(at, std::min(kHeadBytes, data_end_ - at));
     std::uint8_t op = 0;
     std::uint64_t size = 0;
-    if (head.size() < kHeadBytes) fail(at, "ends in the head of a record: damaged or truncated");
+    if (head.size() < kHeadBytes) fail(at, "ends within the head of a record: the file is damaged or truncated");
     Take take(head);
     take(op), take(size);
     const std::uint64_t left = data_end_ - at - kHeadBytes;
     if (size > left) {
-      fail(at, "a record of " + std::to_string(size) + " bytes, must be at most " + std::to_string(left) +
-                   ": damaged or truncated");
+      fail(at, fmt::format("a record of {} bytes, must be at most {}: the file is damaged or truncated", size, left));
     }
-    if (first && op != kHeader) fail(at, "the first record is no header: damaged");
+    if (first && op != kHeader) fail(at, "the first record is not a header: the file is damaged");
     if (op == 0 || op == kFooter || op == kDataEnd || (op == kHeader && !first))
-      fail(at, "a record of kind " + std::to_string(op) + " has no place here: damaged");
+      fail(at, fmt::format("a record of kind {} is not allowed here: the file is damaged", op));
     first = false;
     const std::uint64_t bytes = kHeadBytes + size;
     if (op == kChunk) {
       close();
       scan_chunk(head_of_chunk(at, bytes, nullptr));
     } else if (op == kSchema || op == kChannel || op == kMessage) {
-      if (bytes > kRecordMax) fail(at, "a record of " + std::to_string(bytes) + " bytes, at most 256 MiB are read");
+      if (bytes > kRecordMax) fail(at, fmt::format("a record of {} bytes; at most 256 MiB can be read", bytes));
       const std::string whole = text(at, bytes);
       const Record record = record_in(whole, 0, at);
       if (op == kSchema) add(as<Schema>(record, at), at);
@@ -61,14 +62,14 @@ void File::scan() {
       loose->bytes = at + bytes - loose->at;
       if (op == kMessage) cover(*loose, empty, as<Message>(record, at).log_time);
     } else {
-      close();  // an index, an attachment, metadata, or what a later version knows
+      close();  // an index, attachment, metadata, or a record of a later version
     }
     at += bytes;
   }
   close();
 }
 
-/// The channels that a chunk brings, and when its messages were logged.
+/// Registers the channels in a chunk and the times of its messages.
 void File::scan_chunk(const ChunkIndex& index) {
   Segment segment{index.chunk_start_offset, index.chunk_length, 0, 0, index};
   bool empty = true;

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "scenarios/recordings/bags/packed.hpp"
 
+#include <fmt/format.h>
+
 #include <lz4frame.h>
 #include <zlib.h>
 #include <zstd.h>
@@ -15,11 +17,11 @@ namespace tumble::scenarios {
 
 namespace {
 
-/// No LZ4 block gives more bytes for one.
+/// Largest compression ratio of an LZ4 block.
 constexpr std::uint64_t kRatioMax = 255;
 constexpr std::uint64_t kFirstRoom = 1u << 20;
 
-/// The output in the making: its room doubles up to what is promised.
+/// Growing output buffer; doubles up to the stated size.
 class Room {
  public:
   explicit Room(std::uint64_t promised) : promised_(promised), out_(std::min(promised, kFirstRoom), '\0') {}
@@ -31,15 +33,13 @@ class Room {
   void take(std::size_t bytes) { given_ += bytes; }
   std::string whole(const char* what) {
     if (given_ != promised_) {
-      throw BadInput(std::string("its ") + what + " frame holds " + std::to_string(given_) +
-                     " bytes, the chunk states " + std::to_string(promised_));
+      throw BadInput(fmt::format("its {} frame holds {} bytes, but the chunk states {}", what, given_, promised_));
     }
     return std::move(out_);
   }
   [[noreturn]] void stuck(const char* what, bool no_more_input) const {
-    throw BadInput(std::string("its ") + what + " frame " +
-                   (no_more_input ? "is truncated before" : "holds more than") + " the " + std::to_string(promised_) +
-                   " bytes that the chunk states");
+    throw BadInput(fmt::format("its {} frame {} the {} bytes that the chunk states", what,
+                               no_more_input ? "ends before" : "is longer than", promised_));
   }
 
  private:
@@ -56,15 +56,15 @@ std::string packed_lz4(std::string_view plain) {
   how.frameInfo.blockSizeID = LZ4F_max4MB;
   std::string out(LZ4F_compressFrameBound(plain.size(), &how), '\0');
   const std::size_t bytes = LZ4F_compressFrame(out.data(), out.size(), plain.data(), plain.size(), &how);
-  if (LZ4F_isError(bytes) != 0) throw std::bad_alloc();  // its room is enough: nothing else can go wrong
+  if (LZ4F_isError(bytes) != 0) throw std::bad_alloc();  // the buffer is large enough, so no other error is possible
   out.resize(bytes);
   return out;
 }
 
 std::string unpacked_lz4(std::string_view packed, std::uint64_t bytes) {
   if (bytes / kRatioMax > packed.size()) {
-    throw BadInput("its LZ4 frame of " + std::to_string(packed.size()) + " bytes cannot hold the " +
-                   std::to_string(bytes) + " bytes that the chunk states");
+    throw BadInput(
+        fmt::format("its LZ4 frame of {} bytes cannot hold the {} bytes that the chunk states", packed.size(), bytes));
   }
   LZ4F_dctx* context = nullptr;
   if (LZ4F_isError(LZ4F_createDecompressionContext(&context, LZ4F_VERSION)) != 0) throw std::bad_alloc();

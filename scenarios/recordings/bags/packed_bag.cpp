@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "scenarios/recordings/bags/packed_bag.hpp"
 
+#include <fmt/format.h>
+
 #include <zstd.h>
 
 #include <algorithm>
@@ -21,13 +23,13 @@ namespace {
 
 using std::filesystem::path;
 
-/// What comes out of so many bytes that were packed at most; of messages of sensors it is some tens of times.
+/// Upper bound of the decompressed size; sensor messages compress a few dozen times.
 constexpr std::uint64_t most_of(std::uint64_t packed_bytes) {
   constexpr std::uint64_t kAlways = 64u << 20, kBagRatioMax = 200;
   return kAlways + kBagRatioMax * packed_bytes;
 }
 
-/// What may come out of a file that is to be unpacked into a folder.
+/// Returns the size limit of a file decompressed to a folder.
 std::uint64_t most_bytes(const path& file, const path& folder) {
   constexpr std::uint64_t kLeftFree = 64u << 20;
   const std::uint64_t free = std::filesystem::space(folder).available;
@@ -53,8 +55,10 @@ void unpack(const path& file, const path& to) {
       if (ZSTD_isError(left) != 0) fail(std::string("its Zstandard frame is damaged: ") + ZSTD_getErrorName(left));
       bytes += out.pos;
       if (bytes > most)
-        fail("more than " + std::to_string(most) + " bytes come out of it, which " + to.parent_path().string() +
-             " has no room for or no bag is packed so far; TMPDIR names another folder");
+        fail(
+            fmt::format("the unpacked bag has more than {} bytes; {} lacks the space, or the file is not a packed bag; "
+                        "set TMPDIR to another folder",
+                        most, to.parent_path().string()));
       unpacked.write(given.data(), static_cast<std::streamsize>(out.pos));
       full = out.pos == out.size;
     }
@@ -63,7 +67,7 @@ void unpack(const path& file, const path& to) {
   if (!unpacked.flush()) fail("cannot be unpacked into " + to.parent_path().string());
 }
 
-/// A reader of files that are gone with it.
+/// A reader that removes its files when destroyed.
 class UnpackedFiles : public BagReader {
  public:
   UnpackedFiles(const std::vector<path>& files,
@@ -81,7 +85,7 @@ class UnpackedFiles : public BagReader {
 
  private:
   ScratchFolder folder_{"bag"};
-  std::unique_ptr<BagReader> bag_;  ///< gone before its files are
+  std::unique_ptr<BagReader> bag_;  ///< destroyed before its files
 };
 
 class UnpackedMessages : public BagReader {
@@ -100,10 +104,11 @@ class UnpackedMessages : public BagReader {
 
  private:
   ros::Bytes unpacked(const ros::Bytes& bytes, const std::string& topic, std::size_t number) const {
-    const std::string where = place_ + ": message " + std::to_string(number) + " of " + topic + ": ";
+    const std::string where = fmt::format("{}: message {} of {}: ", place_, number, topic);
     const unsigned long long size = ZSTD_getFrameContentSize(bytes.data(), bytes.size());
     if (size == ZSTD_CONTENTSIZE_ERROR || size == ZSTD_CONTENTSIZE_UNKNOWN || size > most_of(bytes.size()))
-      throw BadInput(where + "is no Zstandard frame that states a size of 64 MiB and 200 times its own at most");
+      throw BadInput(where +
+                     "is not a Zstandard frame with a stated size of at most 64 MiB and 200 times its packed size");
     try {
       const std::string plain = unpacked_zstd({reinterpret_cast<const char*>(bytes.data()), bytes.size()}, size);
       return {plain.begin(), plain.end()};

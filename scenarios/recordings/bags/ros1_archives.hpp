@@ -9,22 +9,22 @@
 #include <string>
 #include <vector>
 
-/// ROS 1's plain little-endian layout of messages. Readers trust no length: what a message promises is held against
-/// what is left of it before anything is allocated. Private to scenarios/recordings/bags.
+/// ROS 1's little-endian message layout. Readers check every length against the remaining bytes before any allocation.
+/// Private to scenarios/recordings/bags.
 namespace tumble::scenarios::ros {
 
 using Bytes = std::vector<std::uint8_t>;
-static_assert(std::endian::native == std::endian::little, "ROS 1's layout is written as the numbers lie in memory");
+static_assert(std::endian::native == std::endian::little, "ROS 1 messages are written in the byte order of memory");
 
-/// A message that ends before its fields do, or promises more than it holds.
+/// A message that ends before its fields do, or states more data than it has.
 struct BadMessage : std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
 inline void require_left(std::size_t left, std::size_t count, std::size_t each) {
   if (count <= left / each) return;
-  throw BadMessage("promises " + std::to_string(count) + " entries of " + std::to_string(each) + " bytes, has " +
-                   std::to_string(left) + " bytes left");
+  throw BadMessage("states " + std::to_string(count) + " entries of " + std::to_string(each) + " bytes, but only " +
+                   std::to_string(left) + " bytes are left");
 }
 
 class Ros1Writer {
@@ -66,7 +66,7 @@ class Ros1Reader {
     return entries;
   }
   void raw(std::uint8_t* out, std::size_t size) {
-    if (size > left_) throw BadMessage("ends in the middle of a field");
+    if (size > left_) throw BadMessage("ends within a field");
     if (size > 0) std::memcpy(out, at_, size);
     at_ += size;
     left_ -= size;

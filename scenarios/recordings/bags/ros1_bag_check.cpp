@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cstring>
 #include <fstream>
@@ -19,7 +21,7 @@ namespace {
 constexpr std::string_view kMagic = "#ROSBAG V2.0\n";
 constexpr std::uint32_t kRecordHeaderMax = 1u << 20, kChunkMax = 1u << 30;
 
-/// One record: its header's fields, and where its data lie.
+/// One record: header fields, and the position of its data.
 struct CheckedRecord {
   std::uint64_t at = 0, data_at = 0;
   std::uint32_t data_bytes = 0;
@@ -27,7 +29,7 @@ struct CheckedRecord {
   std::uint64_t end() const { return data_at + data_bytes; }
 };
 
-/// A file that is asked for segments of itself; nothing beyond its end is read.
+/// Reads ranges of a file with bounds checks.
 class Walk {
  public:
   explicit Walk(const std::filesystem::path& path) : path_(path), stream_(open_regular_file(path)) {
@@ -36,14 +38,14 @@ class Walk {
 
   void all() {
     if (bytes_ < kMagic.size() || text(0, kMagic.size()) != kMagic)
-      fail(0, "does not begin with '#ROSBAG V2.0': no ROS 1 bag of version 2.0");
+      fail(0, "does not begin with '#ROSBAG V2.0': not a ROS 1 bag of version 2.0");
     std::uint64_t at = kMagic.size();
     const CheckedRecord file = record(at, bytes_);
-    if (op(file) != ros1::kFile) fail(at, "the first record is no bag header");
+    if (op(file) != ros1::kFile) fail(at, "the first record is not a bag header");
     if (number<std::uint64_t>(file, "index_pos") == 0)
-      fail(at, "the bag was not closed: it has no index ('rosbag reindex' makes one)");
+      fail(at, "the bag was not closed: it has no index (create one with 'rosbag reindex')");
     const std::uint64_t index_at = number<std::uint64_t>(file, "index_pos");
-    if (index_at >= bytes_) fail(at, "the index lies beyond the end: truncated?");
+    if (index_at >= bytes_) fail(at, "the index is beyond the end of the file; the bag may be truncated");
     bool indexed = false;
     for (at = file.end(); at < bytes_;) {
       const CheckedRecord next = record(at, bytes_);
@@ -51,10 +53,10 @@ class Walk {
       step(next);
       at = next.end();
     }
-    if (!indexed) fail(index_at, "here the index should begin, and no record does");
+    if (!indexed) fail(index_at, "there is no record at the stated start of the index");
     for (const auto& [info_at, chunk_at] : infos_) {
       if (!chunks_.contains(chunk_at))
-        fail(info_at, "names a chunk at " + std::to_string(chunk_at) + ": there is none");
+        fail(info_at, fmt::format("refers to a chunk at byte {}, which does not exist", chunk_at));
     }
   }
 
@@ -71,27 +73,28 @@ class Walk {
     return out;
   }
 
-  /// The length that stands at `at`, of something that must end before `end`.
+  /// Returns the length stored at `at`, of an item that must end before `end`.
   std::uint32_t length(std::uint64_t at, std::uint64_t end, const char* what, std::uint32_t most) {
-    if (end - at < sizeof(std::uint32_t)) fail(at, std::string("ends in the length of ") + what + ": truncated?");
+    if (end - at < sizeof(std::uint32_t))
+      fail(at, fmt::format("the file ends within the length of {}; the bag may be truncated", what));
     std::uint32_t value = 0;
     std::memcpy(&value, text(at, sizeof(value)).data(), sizeof(value));
     const std::uint64_t left = end - at - sizeof(value);
     if (value > left || value > most) {
-      fail(at, std::string(what) + " of " + std::to_string(value) + " bytes, must be at most " +
-                   std::to_string(std::min<std::uint64_t>(left, most)) + ": damaged or truncated");
+      fail(at, fmt::format("{} has {} bytes, must be at most {}: the file is damaged or truncated", what, value,
+                           std::min<std::uint64_t>(left, most)));
     }
     return value;
   }
 
-  /// Those of the header of the record at `at`.
+  /// Parses the header of the record at `at`.
   std::map<std::string, std::string> fields(std::uint64_t at, const std::string& bytes) const {
     std::map<std::string, std::string> out;
     for (std::size_t place = 0; place < bytes.size();) {
       std::uint32_t size = 0;
-      if (bytes.size() - place < 4) fail(at, "a field of the record's header is cut");
+      if (bytes.size() - place < 4) fail(at, "a field of the record's header is truncated");
       std::memcpy(&size, bytes.data() + place, 4);
-      if (size > bytes.size() - place - 4) fail(at, "a field of the record's header is cut");
+      if (size > bytes.size() - place - 4) fail(at, "a field of the record's header is truncated");
       const std::string field = bytes.substr(place + 4, size);
       const std::size_t equals = field.find('=');
       if (equals == std::string::npos) fail(at, "a field of the record's header has no '='");
@@ -115,8 +118,7 @@ class Walk {
   Number number(const CheckedRecord& record, const char* name) const {
     const auto found = record.fields.find(name);
     if (found == record.fields.end() || found->second.size() != sizeof(Number)) {
-      fail(record.at,
-           std::string("the record has no field '") + name + "' of " + std::to_string(sizeof(Number)) + " bytes");
+      fail(record.at, fmt::format("the record has no field '{}' of {} bytes", name, sizeof(Number)));
     }
     Number value;
     std::memcpy(&value, found->second.data(), sizeof(value));
@@ -125,7 +127,7 @@ class Walk {
 
   std::uint8_t op(const CheckedRecord& record) const { return number<std::uint8_t>(record, "op"); }
 
-  /// Takes note of a record of the file and checks what it says of others.
+  /// Registers a record and checks its references to others.
   void step(const CheckedRecord& record) {
     switch (op(record)) {
       case ros1::kChunk:
@@ -142,15 +144,15 @@ class Walk {
         entries(record, 8);
         break;
       default:
-        fail(record.at, "a record of kind " + std::to_string(op(record)) + " has no place here");
+        fail(record.at, fmt::format("a record of kind {} is not allowed here", op(record)));
     }
   }
 
   void connection(const CheckedRecord& record) {
     connections_.insert(number<std::uint32_t>(record, "conn"));
-    if (!record.fields.contains("topic")) fail(record.at, "a connection without topic");
-    if (record.data_bytes > kRecordHeaderMax) fail(record.at, "a connection of more than a MiB");
-    fields(record.at, text(record.data_at, record.data_bytes));  // what it says of its type is a header too
+    if (!record.fields.contains("topic")) fail(record.at, "a connection has no topic");
+    if (record.data_bytes > kRecordHeaderMax) fail(record.at, "a connection record is larger than 1 MiB");
+    fields(record.at, text(record.data_at, record.data_bytes));  // type information is also a header
   }
 
   void chunk(const CheckedRecord& record) {
@@ -160,13 +162,13 @@ class Walk {
     chunks_.insert(record.at);
     messages_.reset();
     chunk_bytes_ = size;
-    if (size > kChunkMax) fail(record.at, "a chunk of " + std::to_string(size) + " bytes, at most 1 GiB is read");
+    if (size > kChunkMax) fail(record.at, fmt::format("a chunk of {} bytes; at most 1 GiB can be read", size));
     if (compression == "bz2" || compression == "lz4") return;
     if (compression != "none")
-      fail(record.at, "a chunk of compression '" + compression + "': none, bz2 or lz4 are read");
-    if (size != record.data_bytes) {
       fail(record.at,
-           "a plain chunk of " + std::to_string(record.data_bytes) + " bytes says that it has " + std::to_string(size));
+           fmt::format("a chunk of compression '{}' is not supported; supported: none, bz2 and lz4", compression));
+    if (size != record.data_bytes) {
+      fail(record.at, fmt::format("a plain chunk of {} bytes states a size of {}", record.data_bytes, size));
     }
     messages_.emplace();
     for (std::uint64_t at = record.data_at; at < record.end();) {
@@ -176,13 +178,14 @@ class Walk {
       else if (op(inner) == ros1::kMessage)
         message(inner, at - record.data_at);
       else
-        fail(at, "a record of kind " + std::to_string(op(inner)) + " has no place in a chunk");
+        fail(at, fmt::format("a record of kind {} is not allowed in a chunk", op(inner)));
       at = inner.end();
     }
   }
 
   void message(const CheckedRecord& record, std::uint64_t offset) {
-    if (!connections_.contains(number<std::uint32_t>(record, "conn"))) fail(record.at, "a message of no connection");
+    if (!connections_.contains(number<std::uint32_t>(record, "conn")))
+      fail(record.at, "a message belongs to no connection");
     number<std::uint64_t>(record, "time");
     messages_->insert(offset);
   }
@@ -190,24 +193,24 @@ class Walk {
   std::uint32_t entries(const CheckedRecord& record, std::uint32_t each) const {
     const std::uint32_t count = number<std::uint32_t>(record, "count");
     if (std::uint64_t{count} * each != record.data_bytes) {
-      fail(record.at, "promises " + std::to_string(count) + " entries of " + std::to_string(each) + " bytes in " +
-                          std::to_string(record.data_bytes));
+      fail(record.at,
+           fmt::format("states {} entries of {} bytes, but its size in bytes is {}", count, each, record.data_bytes));
     }
     return count;
   }
 
-  /// Offsets of messages in the chunk before.
+  /// Checks the message offsets in the preceding chunk.
   void index(const CheckedRecord& record) {
     constexpr std::uint32_t kEntry = 12, kPlace = 8;
-    if (chunks_.empty()) fail(record.at, "an index before any chunk");
+    if (chunks_.empty()) fail(record.at, "an index comes before any chunk");
     const std::uint32_t count = entries(record, kEntry);
     const std::string bytes = text(record.data_at, record.data_bytes);
     for (std::uint32_t i = 0; i < count; ++i) {
       std::uint32_t offset = 0;
       std::memcpy(&offset, bytes.data() + i * kEntry + kPlace, sizeof(offset));
       if (messages_ ? messages_->contains(offset) : offset < chunk_bytes_) continue;
-      fail(record.at, "entry " + std::to_string(i) + " of the index points to " + std::to_string(offset) +
-                          " in its chunk, where no message begins");
+      fail(record.at,
+           fmt::format("entry {} of the index points to {} in its chunk, where no message starts", i, offset));
     }
   }
 
@@ -215,9 +218,9 @@ class Walk {
   std::ifstream stream_;
   std::uint64_t bytes_ = 0;
   std::set<std::uint64_t> chunks_;
-  std::map<std::uint64_t, std::uint64_t> infos_;  ///< place of the record, chunk that it names
+  std::map<std::uint64_t, std::uint64_t> infos_;  ///< position of the record, chunk that it refers to
   std::set<std::uint32_t> connections_;
-  std::optional<std::set<std::uint64_t>> messages_;  ///< offsets in the chunk before; nothing of a compressed one
+  std::optional<std::set<std::uint64_t>> messages_;  ///< message offsets in the preceding chunk; empty if compressed
   std::uint32_t chunk_bytes_ = 0;
 };
 

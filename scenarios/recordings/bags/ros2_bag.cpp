@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include <fmt/format.h>
+
 #include <SQLiteCpp/SQLiteCpp.h>
 #include <unistd.h>
 #include <yaml-cpp/yaml.h>
@@ -92,7 +94,7 @@ class Ros2BagWriter : public BagWriter {
     }
   }
 
-  /// The number of a topic, which is entered when it is new.
+  /// Returns the id of a topic; registers it if new.
   std::int64_t number_of(const BagTopic& topic) {
     const std::size_t known = summary_.topics.size();
     const std::size_t place = summary_.place_of(topic);
@@ -108,7 +110,7 @@ class Ros2BagWriter : public BagWriter {
     return static_cast<std::int64_t>(place) + 1;
   }
 
-  /// Readers without ROS know from it what a message holds. Its hash may be empty, which is not held against it.
+  /// Stores the message definition for readers without ROS. The type hash may be empty; readers accept this.
   void define(const std::string& type) {
     SQLite::Statement statement(
         *database_,
@@ -140,18 +142,17 @@ class Ros2BagWriter : public BagWriter {
   std::unique_ptr<SQLite::Database> database_;
   std::unique_ptr<SQLite::Statement> insert_;
   Ros2Summary summary_;
-  std::set<std::string> defined_;  ///< types
+  std::set<std::string> defined_;  ///< types already defined
 };
 
-/// The files of a bag, in order, and how they are stored: "sqlite3" or "mcap", and what of it is packed: "", "file" or
-/// "message".
+/// The files of a bag in order, their storage ("sqlite3" or "mcap"), and compression: "", "file" or "message".
 struct StoredBag {
   std::string kind = "sqlite3";
   std::vector<path> files;
   std::string packed = {};
 };
 
-/// What of a bag is packed, by its metadata.
+/// Returns the bag's compression from its metadata.
 std::string packed_by(const YAML::Node& root, const path& metadata) {
   const auto text = [&](const char* key) {
     std::string out = root[key] ? root[key].as<std::string>("") : "";
@@ -161,8 +162,9 @@ std::string packed_by(const YAML::Node& root, const path& metadata) {
   const std::string format = text("compression_format"), mode = text("compression_mode");
   if (format.empty() || mode == "none") return "";
   if (format != "zstd" || (mode != "file" && mode != "message"))
-    fail_at(metadata, "the bag is compressed by '" + format + "' in mode '" + mode +
-                          "', must be zstd in mode file or message ('ros2 bag convert' makes a plain one)");
+    fail_at(metadata, fmt::format("the bag has the compression format '{}' and mode '{}'; supported: zstd with mode "
+                                  "file or message (convert it with 'ros2 bag convert')",
+                                  format, mode));
   return mode;
 }
 
@@ -173,24 +175,24 @@ StoredBag storage_of(const path& bag) {
     return {name.extension() == ".mcap" ? "mcap" : "sqlite3", {bag}, packed ? "file" : ""};
   }
   const path metadata = bag / "metadata.yaml";
-  if (!std::filesystem::is_regular_file(metadata)) fail_at(bag, "holds no metadata.yaml: no ROS 2 bag");
+  if (!std::filesystem::is_regular_file(metadata)) fail_at(bag, "has no metadata.yaml: not a ROS 2 bag");
   StoredBag out;
   try {
     const YAML::Node root = YAML::LoadFile(metadata.string())["rosbag2_bagfile_information"];
     out.kind = root["storage_identifier"].as<std::string>();
     if (out.kind != "sqlite3" && out.kind != "mcap")
-      fail_at(metadata, "the storage is '" + out.kind + "', must be sqlite3 or mcap");
+      fail_at(metadata, fmt::format("the storage is '{}', must be sqlite3 or mcap", out.kind));
     out.packed = packed_by(root, metadata);
     for (const YAML::Node& each : root["relative_file_paths"]) {
-      const path name = path(each.as<std::string>()).filename();  // nothing leads out of the folder
+      const path name = path(each.as<std::string>()).filename();  // only files within the folder
       out.files.push_back(bag / name);
     }
   } catch (const YAML::Exception& error) {
     std::string what = error.what();
     std::replace(what.begin(), what.end(), '\n', ' ');
-    fail_at(metadata, "no metadata of a ROS 2 bag: " + what);
+    fail_at(metadata, "not the metadata of a ROS 2 bag: " + what);
   }
-  if (out.files.empty()) fail_at(metadata, "relative_file_paths names no file");
+  if (out.files.empty()) fail_at(metadata, "relative_file_paths lists no file");
   return out;
 }
 
@@ -207,7 +209,8 @@ class Ros2BagReader : public BagReader {
       while (query.executeStep()) {
         const std::string format = query.getColumn(2).getString();
         const BagTopic topic = {query.getColumn(0).getString(), ros1_type(query.getColumn(1).getString())};
-        if (format != "cdr") fail_at(file, "topic " + topic.name + " is serialized as '" + format + "', must be cdr");
+        if (format != "cdr")
+          fail_at(file, fmt::format("topic {} has the serialization format '{}', must be cdr", topic.name, format));
         const auto same = [&](const BagTopic& each) { return each.name == topic.name; };
         if (std::none_of(topics.begin(), topics.end(), same)) topics.push_back(topic);
       }

@@ -11,7 +11,7 @@ namespace tumble::scenarios {
 
 namespace {
 
-/// Fields of ROS 2's common interfaces, type and name a line (github.com/ros2/common_interfaces, rcl_interfaces).
+/// Fields of ROS 2's common interfaces, one type and name per line (github.com/ros2/common_interfaces, rcl_interfaces).
 const std::map<std::string, std::string>& definitions() {
   static const std::map<std::string, std::string> all = {
       {"builtin_interfaces/Time", "int32 sec\nuint32 nanosec\n"},
@@ -50,7 +50,7 @@ const std::map<std::string, std::string>& definitions() {
   return all;
 }
 
-/// Appends the definitions of the messages that `text` is made of, each once, the outer before the inner.
+/// Appends the definitions of all messages nested in `text`, each once, outer before inner.
 void append_inner(const std::string& text, std::set<std::string>& there, std::string& out) {
   std::istringstream words(text);
   for (std::string word; words >> word;) {
@@ -77,7 +77,7 @@ std::string ros1_type(std::string type) {
 
 std::string ros2_definition(const std::string& type) {
   const auto found = definitions().find(type);
-  if (found == definitions().end()) throw std::logic_error("no definition of " + type);
+  if (found == definitions().end()) throw std::logic_error("there is no message definition for type " + type);
   std::set<std::string> there = {type};
   std::string out = found->second;
   append_inner(found->second, there, out);

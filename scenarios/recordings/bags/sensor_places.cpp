@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "scenarios/recordings/bags/sensor_places.hpp"
 
+#include <fmt/format.h>
+
 #include <sstream>
 
 namespace tumble::scenarios {
@@ -31,11 +33,14 @@ void SensorPlaces::place(const std::string& topic, const std::string& frame, con
   } else if (!is_given(T_BA)) {
     if (const Placed* beside = neighbour(frame); beside != nullptr) {
       T_BA = beside->T_BA * *frames_.pose(beside->frame, frame, where_);
-      notes.push_back(topic + ": placed beside " + beside->topic + " by /tf_static, which has no frame 'body' or " +
-                      "'base_link', at " + pose_text(T_BA));
+      notes.push_back(
+          fmt::format("{}: placed next to {} by /tf_static, which has no frame 'body' or 'base_link', at {}", topic,
+                      beside->topic, pose_text(T_BA)));
     } else {
-      notes.push_back(topic + ": neither /tf_static nor " + option +
-                      " says where it is on the body: taken to lie in its centre of mass, along its axes");
+      notes.push_back(
+          fmt::format("{}: neither /tf_static nor {} gives its pose on the body; assumed at the centre of mass, along "
+                      "the body's axes",
+                      topic, option));
     }
   }
   placed_.push_back({topic, frame, T_BA});
@@ -43,20 +48,21 @@ void SensorPlaces::place(const std::string& topic, const std::string& frame, con
 
 void SensorPlaces::place_in_body(const std::string& topic, const Eigen::Isometry3d& stated, Eigen::Isometry3d& T_BA,
                                  std::vector<std::string>& notes) const {
-  constexpr double kSame = 1e-3;  // m and, nearly, rad
+  constexpr double kSame = 1e-3;  // m, and approximately rad
   const std::string body = frames_.body();
   if (!is_given(T_BA)) {
     T_BA = stated;
-    notes.push_back(topic + ": placed in '" + body + "' by /tf_static, " + pose_text(stated));
+    notes.push_back(fmt::format("{}: placed in '{}' by /tf_static, {}", topic, body, pose_text(stated)));
   } else if (!(T_BA.matrix() - stated.matrix()).isZero(kSame)) {
-    notes.push_back(topic + ": caution: /tf_static places it in '" + body + "' at " + pose_text(stated) +
-                    ", but given was " + pose_text(T_BA) + ", which holds");
+    notes.push_back(
+        fmt::format("{}: caution: /tf_static places it in '{}' at {}, but the given pose is {}; the given pose is used",
+                    topic, body, pose_text(stated), pose_text(T_BA)));
   }
 }
 
 const SensorPlaces::Placed* SensorPlaces::neighbour(const std::string& frame) const {
   for (const Placed& each : placed_) {
-    // drivers give all sensors of a device one frame, which ties nothing
+    // drivers give all sensors of a device one frame, which relates no two frames
     if (each.frame != frame && frames_.pose(each.frame, frame, where_)) return &each;
   }
   return nullptr;

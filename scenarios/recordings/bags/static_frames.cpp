@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "scenarios/recordings/bags/static_frames.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 
@@ -20,25 +22,27 @@ std::string without_slash(const std::string& frame) {
 
 void StaticFrames::add(const ros::TransformStamped& transform, const std::string& where) {
   const std::string parent = without_slash(transform.header.frame_id), child = without_slash(transform.child_frame_id);
-  const std::string what = where + ": the transform of '" + child + "' in '" + parent + "'";
+  const std::string what = fmt::format("{}: the transform of '{}' in '{}'", where, child, parent);
   const auto p = Eigen::Vector3d::Map(transform.translation.data());
   Eigen::Quaterniond q;
   q.coeffs() = Eigen::Vector4d::Map(transform.rotation_xyzw.data());
   Hung hung{parent, Eigen::Isometry3d::Identity(), ""};
   if (!(p.cwiseAbs().maxCoeff() <= kFrameFar_m) || !p.allFinite()) {
-    hung.problem = what + ": its place must be within 1 km";
+    hung.problem = what + ": its translation must be at most 1 km";
   } else if (!(std::abs(q.norm() - 1.0) <= kFrameNormTolerance)) {
-    hung.problem = what + ": its quaternion has norm " + std::to_string(q.norm()) + ", must be 1";
+    hung.problem = fmt::format("{}: its quaternion has norm {}, must be 1", what, std::to_string(q.norm()));
   } else if (parent == child) {
-    hung.problem = what + ": the frame hangs on itself";
+    hung.problem = what + ": the frame is its own parent";
   } else {
     hung.T_parent.linear() = q.normalized().toRotationMatrix();
     hung.T_parent.translation() = p;
   }
-  if (!hung.problem.empty()) remarks_.push_back("caution: " + hung.problem + ": not used");
+  if (!hung.problem.empty()) remarks_.push_back(fmt::format("caution: {}; it is ignored", hung.problem));
   if (const auto before = frames_.find(child); before != frames_.end() && before->second.parent != parent) {
-    remarks_.push_back("caution: '" + child + "' hangs on '" + before->second.parent + "' and, later, on '" + parent +
-                       "', must hang on one: the later holds (" + where + ")");
+    remarks_.push_back(
+        fmt::format("caution: '{}' has the parent '{}' and later the parent '{}'; a frame may have only one parent, so "
+                    "the later one is used ({})",
+                    child, before->second.parent, parent, where));
   }
   frames_.insert_or_assign(child, std::move(hung));
 }
@@ -64,7 +68,7 @@ std::vector<StaticFrames::Hung> StaticFrames::way_up(const std::string& frame, c
     const Hung& below = out.back();
     out.push_back({parent, T_parent * below.T_parent, below.problem.empty() ? problem : below.problem});
   }
-  throw BadInput(where + ": '" + frame + "' and the frames that it hangs on hang on each other in a ring");
+  throw BadInput(where + ": '" + frame + "' and its parent frames form a loop");
 }
 
 std::optional<Eigen::Isometry3d> StaticFrames::pose(const std::string& frame_A, const std::string& frame_B,

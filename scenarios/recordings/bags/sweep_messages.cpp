@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "scenarios/recordings/bags/sweep_messages.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <cstring>
@@ -15,7 +17,7 @@ namespace tumble::scenarios {
 
 namespace {
 
-/// The sweep's points, in the order in which they are written.
+/// Returns the indices of the sweep's points in output order.
 std::vector<std::size_t> order_of(const sim::LidarRecord& lidar, std::size_t sweep, bool in_time_order) {
   std::vector<std::size_t> points(lidar.sweep_first[sweep + 1] - lidar.sweep_first[sweep]);
   std::iota(points.begin(), points.end(), lidar.sweep_first[sweep]);
@@ -36,7 +38,7 @@ Number as(double value) {
   }
 }
 
-/// The number of one point. An absolute time in a double is good to a quarter of a microsecond.
+/// Returns one field of a point. An absolute time in a double is accurate to 0.25 us.
 double value_of(const sim::LidarRecord& lidar, std::size_t point, const PointColumn& column, std::int64_t start_ns) {
   switch (column.quantity) {
     case PointQuantity::x_m:
@@ -76,7 +78,7 @@ WrittenType field_type(NumberType type) {
   return {ros::PointField::float64, 8};
 }
 
-/// Calls `put(Number)` with a zero of the type that the column's numbers have.
+/// Calls `put(Number)` with a zero of the column's number type.
 template <class Put>
 void with_number(NumberType type, Put&& put) {
   switch (type) {
@@ -125,9 +127,8 @@ ros::LivoxCustomMsg livox_of(const sim::LidarRecord& lidar, const std::vector<st
                              std::int64_t start_ns, const ros::Header& header) {
   constexpr double kFull = 255.0;
   if (!has_timed_points(lidar)) {
-    throw BadInput("the points of '" + lidar.name +
-                   "' have no times of their own: a CustomMsg has one for each, and a made-up one would pass for "
-                   "measured");
+    throw BadInput(
+        fmt::format("the points of '{}' have no time stamps; a CustomMsg needs measured time stamps", lidar.name));
   }
   ros::LivoxCustomMsg out;
   out.header = header;
@@ -136,15 +137,15 @@ ros::LivoxCustomMsg livox_of(const sim::LidarRecord& lidar, const std::vector<st
   out.points.reserve(points.size());
   for (const std::size_t k : points) {
     if (lidar.ring[k] > std::numeric_limits<std::uint8_t>::max()) {
-      throw BadInput("a point of '" + lidar.name + "' is of ring " + std::to_string(lidar.ring[k]) +
-                     ": a CustomMsg has lines 0 to 255");
+      throw BadInput(fmt::format("a point of '{}' has ring {}; a CustomMsg stores lines 0 to 255 only", lidar.name,
+                                 lidar.ring[k]));
     }
     const Eigen::Vector3f& p = lidar.position_L_m[k];
     if (!p.allFinite() || !std::isfinite(lidar.intensity[k])) {
-      throw BadInput("point " + std::to_string(k) + " of '" + lidar.name +
-                     "' is not finite: a CustomMsg has no word for a return that is none");
+      throw BadInput(
+          fmt::format("point {} of '{}' is not finite; a CustomMsg cannot store a missing return", k, lidar.name));
     }
-    // tag 0: a single return, in which the device has full confidence
+    // tag 0: single return with full confidence
     out.points.push_back({lidar.offset_ns[k], p.x(), p.y(), p.z(), as<std::uint8_t>(lidar.intensity[k] * kFull), 0,
                           static_cast<std::uint8_t>(lidar.ring[k])});
   }

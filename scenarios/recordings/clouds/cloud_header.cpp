@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -16,33 +18,33 @@ namespace tumble::scenarios {
 
 namespace {
 
-/// LZF makes at most 264 bytes of 3.
+/// LZF expands 3 bytes to at most 264.
 constexpr std::uint64_t kLzfMost = 88;
-/// A header longer than this is none.
+/// A longer header is invalid.
 constexpr std::size_t kCloudHeaderMax = 65536;
 
-/// The lines of a header, with their place.
+/// The lines of a header with their locations.
 class HeaderLines {
  public:
   explicit HeaderLines(const std::filesystem::path& path) : path_(path), stream_(open_regular_file(path)) {
     bytes_in_file_ = std::filesystem::file_size(path);
   }
 
-  /// The words of the next line. The header must end in a line, not in the file.
+  /// Returns the words of the next line, which must have a line end.
   std::vector<std::string> next() {
-    if (!std::getline(stream_, line_) || stream_.eof()) fail("the header does not end: truncated?");
+    if (!std::getline(stream_, line_) || stream_.eof()) fail("the header does not end; the file may be truncated");
     ++number_;
     bytes_ += line_.size() + 1;
-    if (bytes_ > kCloudHeaderMax) fail("the header is longer than " + std::to_string(kCloudHeaderMax) + " bytes");
-    // the library that reads the points parts words by blanks and tabs alone
-    if (line_.find_first_of("\v\f") != std::string::npos) fail("holds a form feed or a vertical tab");
+    if (bytes_ > kCloudHeaderMax) fail(fmt::format("the header is longer than {} bytes", kCloudHeaderMax));
+    // The point reader separates words by blanks and tabs only.
+    if (line_.find_first_of("\v\f") != std::string::npos) fail("the header contains a form feed or a vertical tab");
     std::istringstream words(line_);
     std::vector<std::string> out;
     for (std::string word; words >> word;) out.push_back(word);
     return out;
   }
 
-  /// Whether the last line has no character at all.
+  /// Returns true if the last line is completely empty.
   bool line_is_empty() const { return line_.empty(); }
 
   [[noreturn]] void fail(const std::string& what) const {
@@ -51,45 +53,44 @@ class HeaderLines {
 
   std::uint64_t whole(const std::string& what, const std::string& text) const {
     std::uint64_t value = 0;
-    if (!read_number(text, value)) fail(what + " is '" + text + "', no whole number");
+    if (!read_number(text, value)) fail(fmt::format("{} is '{}'; it must be a whole number", what, text));
     return value;
   }
 
   std::uint64_t bytes() const { return bytes_; }
 
-  /// Holds a promise of points against what follows the header, of which a byte makes so many at most.
+  /// Checks the stated number of points against the remaining file size; one byte expands to at most `made_of_a_byte`.
   void require_room(const CloudHeader& header, std::uint64_t made_of_a_byte = 1) const {
     if (header.points > kCloudPointsMax) {
-      fail("promises " + std::to_string(header.points) + " points, at most " + std::to_string(kCloudPointsMax) +
-           " are read from a file");
+      fail(fmt::format("states {} points; at most {} can be read from a file", header.points, kCloudPointsMax));
     }
-    // a number written as text has a digit and a blank or line end at least; the last one may lack it
+    // a text number needs at least a digit and a separator; the last one may lack the separator
     const std::uint64_t point_bytes = header.point_bytes > 0 ? header.point_bytes : 2 * header.fields;
     const std::uint64_t slack = header.point_bytes > 0 ? 0 : 1;
     const std::uint64_t rest = bytes_in_file_ - std::min(bytes_, bytes_in_file_) + slack;
     if (header.points * point_bytes > rest * made_of_a_byte) {
-      fail("promises " + std::to_string(header.points) + " points of " + std::to_string(point_bytes) +
-           " bytes at least, but " + std::to_string(rest) + " bytes follow: truncated?");
+      fail(fmt::format("states {} points of at least {} bytes, but only {} bytes follow; the file may be truncated",
+                       header.points, point_bytes, rest));
     }
   }
 
-  /// The two sizes that stand before compressed points, which the library trusts: of what follows, and of the points.
+  /// Checks the two sizes before compressed points, which the library does not check: compressed and uncompressed.
   void require_sizes(const CloudHeader& header) {
     std::array<std::uint32_t, 2> sizes{};
-    if (!stream_.read(reinterpret_cast<char*>(sizes.data()), sizeof(sizes))) fail("no compressed points: truncated?");
+    if (!stream_.read(reinterpret_cast<char*>(sizes.data()), sizeof(sizes)))
+      fail("there are no compressed points; the file may be truncated");
     const std::uint64_t rest = bytes_in_file_ - std::min(bytes_ + sizeof(sizes), bytes_in_file_);
     if (sizes[0] == 0 || sizes[0] > rest) {
-      fail("states " + std::to_string(sizes[0]) + " bytes of compressed points, but " + std::to_string(rest) +
-           " follow");
+      fail(fmt::format("states {} bytes of compressed points, but {} follow", sizes[0], rest));
     }
     if (sizes[1] != header.points * header.point_bytes) {
-      fail("states " + std::to_string(sizes[1]) + " bytes of points behind the compression, must be " +
-           std::to_string(header.points * header.point_bytes));
+      fail(fmt::format("states {} bytes of uncompressed points; this must be {}", sizes[1],
+                       header.points * header.point_bytes));
     }
   }
 
-  /// The library goes on with the header while lines begin with one of its words, and passes over empty ones and
-  /// comments: points whose bytes look so would change what it has read.
+  /// The library continues reading the header while lines start with a header word, are empty or comments. Point data
+  /// that look like this would change the header.
   void require_end_of_header(std::span<const char* const> words) {
     stream_.clear();
     stream_.seekg(static_cast<std::streamoff>(bytes_));
@@ -98,7 +99,7 @@ class HeaderLines {
       std::istringstream(line) >> first;
       if (line.empty() || first.starts_with("#")) continue;
       const auto begins = [&](const char* word) { return first.starts_with(word); };
-      if (std::any_of(words.begin(), words.end(), begins)) fail("the points after it begin as a line of a header does");
+      if (std::any_of(words.begin(), words.end(), begins)) fail("the first points look like a line of the header");
       return;
     }
   }
@@ -111,7 +112,7 @@ class HeaderLines {
   std::uint64_t bytes_ = 0, bytes_in_file_ = 0;
 };
 
-/// Bytes of a PLY type; 0 when it is none.
+/// Returns the bytes of a PLY type; 0 if unknown.
 std::uint64_t ply_bytes(const std::string& type) {
   static const std::map<std::string, std::uint64_t> known = {
       {"char", 1},   {"int8", 1},    {"uchar", 1},  {"uint8", 1},  {"short", 2}, {"int16", 2},
@@ -121,10 +122,11 @@ std::uint64_t ply_bytes(const std::string& type) {
   return found == known.end() ? 0 : found->second;
 }
 
-/// One line of a PLY's header that describes the points.
+/// Reads a PLY header line that describes the points.
 void take_property(const HeaderLines& lines, const std::vector<std::string>& words, CloudHeader& header) {
-  if (words.size() == 5 && words[1] == "list") lines.fail("the points hold a list: such files are not read");
-  if (words.size() != 3) lines.fail("must be 'property TYPE NAME'");
+  if (words.size() == 5 && words[1] == "list")
+    lines.fail("the points have a list property; such files are not supported");
+  if (words.size() != 3) lines.fail("a property line must be 'property TYPE NAME'");
   const std::uint64_t bytes = ply_bytes(words[1]);
   if (bytes == 0) lines.fail("unknown type '" + words[1] + "'");
   header.point_bytes += bytes;
@@ -133,53 +135,54 @@ void take_property(const HeaderLines& lines, const std::vector<std::string>& wor
 
 using Words = std::vector<std::string>;
 
-/// In the order of the format, then what the library takes for FIELDS too.
+/// In the order of the format, then an alternative name of FIELDS.
 constexpr std::array<const char*, 11> kPcdWords = {"VERSION", "FIELDS",    "SIZE",   "TYPE", "COUNT",  "WIDTH",
                                                    "HEIGHT",  "VIEWPOINT", "POINTS", "DATA", "COLUMNS"};
 
-/// The lines of a PCD's header by their first words. They stand once each and in this order, as the format has it: the
-/// library that reads the points takes a line that is unknown, doubled, in its wrong place or of blanks alone for the
-/// header's end or for another one, and trusts what it then has.
+/// Reads a PCD header by first words. Each must occur once and in order: the library misreads unknown, repeated,
+/// misplaced or blank lines and does not check the result.
 std::map<std::string, Words> pcd_lines(HeaderLines& lines) {
   const std::span order = std::span(kPcdWords).first<10>();
   std::map<std::string, Words> found;
   std::size_t next = 0;
   while (!found.contains("DATA")) {
     const Words words = lines.next();
-    if (words.empty() && !lines.line_is_empty()) lines.fail("a line of blanks, must be empty or have a word");
+    if (words.empty() && !lines.line_is_empty())
+      lines.fail("the line has only blanks; it must be empty or contain a word");
     if (words.empty() || words.front().starts_with("#")) continue;
     const auto at = std::find(order.begin(), order.end(), words.front());
-    if (at == order.end()) lines.fail("begins with no word of a PCD's header");
+    if (at == order.end()) lines.fail("does not begin with a keyword of a PCD header");
     const auto place = static_cast<std::size_t>(at - order.begin());
-    if (place < next) lines.fail(words.front() + " stands twice or in its wrong place");
+    if (place < next) lines.fail(words.front() + " occurs twice or in the wrong order");
     next = place + 1;
     found[words.front()] = Words(words.begin() + 1, words.end());
   }
   for (const char* needed : {"FIELDS", "SIZE", "TYPE", "WIDTH", "HEIGHT"}) {
-    if (!found.contains(needed)) lines.fail(std::string("no line ") + needed + " before DATA: not a PCD file?");
+    if (!found.contains(needed))
+      lines.fail(fmt::format("there is no line {} before DATA; the file may not be a PCD file", needed));
   }
   return found;
 }
 
 std::uint64_t single(const HeaderLines& lines, const std::string& name, const Words& words) {
-  if (words.size() != 1) lines.fail(name + " has " + std::to_string(words.size()) + " numbers, must have 1");
+  if (words.size() != 1) lines.fail(fmt::format("{} has {} numbers, must have 1", name, words.size()));
   const std::uint64_t value = lines.whole(name, words.front());
   if (value > kCloudPointsMax) {
-    lines.fail(name + " is " + std::to_string(value) + ", must be at most " + std::to_string(kCloudPointsMax));
+    lines.fail(fmt::format("{} is {}, must be at most {}", name, value, kCloudPointsMax));
   }
   return value;
 }
 
-/// Of a VIEWPOINT, x y z qw qx qy qz: as written, or "" where it says nothing.
+/// Returns VIEWPOINT x y z qw qx qy qz as written; "" if it is the identity.
 std::string viewpoint_of(const HeaderLines& lines, const Words& words) {
-  if (words.size() != 7) lines.fail("VIEWPOINT has " + std::to_string(words.size()) + " numbers, must have 7");
+  if (words.size() != 7) lines.fail(fmt::format("VIEWPOINT has {} numbers, must have 7", words.size()));
   constexpr std::array<double, 7> kOwn = {0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0};
   std::string written;
   bool own = true;
   for (std::size_t i = 0; i < kOwn.size(); ++i) {
     double value = 0.0;
     if (!read_number(words[i], value) || !std::isfinite(value))
-      lines.fail("VIEWPOINT's number " + std::to_string(i + 1) + " is '" + words[i] + "', must be finite");
+      lines.fail(fmt::format("VIEWPOINT's number {} is '{}', must be finite", i + 1, words[i]));
     own = own && value == kOwn[i];
     written += (i > 0 ? " " : "") + words[i];
   }
@@ -191,26 +194,26 @@ std::string viewpoint_of(const HeaderLines& lines, const Words& words) {
 CloudHeader read_ply_header(const std::filesystem::path& path) {
   HeaderLines lines(path);
   CloudHeader header;
-  if (lines.next() != Words{"ply"}) lines.fail("does not begin with 'ply': not a PLY file?");
+  if (lines.next() != Words{"ply"}) lines.fail("does not begin with 'ply'; the file may not be a PLY file");
   bool text = false, in_points = false, before_points = true;
   for (Words words = lines.next(); words != Words{"end_header"}; words = lines.next()) {
     if (words.empty() || words[0] == "comment" || words[0] == "obj_info") continue;
     if (words[0] == "format") {
       text = words.size() > 1 && words[1] == "ascii";
     } else if (words[0] == "element") {
-      if (words.size() != 3) lines.fail("must be 'element NAME COUNT'");
+      if (words.size() != 3) lines.fail("an element line must be 'element NAME COUNT'");
       in_points = words[1] == "vertex";
       const std::uint64_t count = lines.whole("count of " + words[1], words[2]);
       if (in_points) header.points = count, before_points = false;
-      if (!in_points && before_points && count > 0) lines.fail("the points must be the file's first element");
-      if (!in_points && count > kCloudPointsMax) lines.fail("promises " + words[2] + " of " + words[1]);
+      if (!in_points && before_points && count > 0) lines.fail("the points must be the first element of the file");
+      if (!in_points && count > kCloudPointsMax) lines.fail("states " + words[2] + " of " + words[1]);
     } else if (words[0] == "property") {
       if (in_points) take_property(lines, words, header);
     } else {
-      lines.fail("unknown line '" + words[0] + "'");
+      lines.fail("unknown header line '" + words[0] + "'");
     }
   }
-  if (header.fields == 0) lines.fail("no 'element vertex' with properties: there are no points");
+  if (header.fields == 0) lines.fail("there is no 'element vertex' with properties, so the file has no points");
   if (text) header.point_bytes = 0;
   header.ascii = text;
   header.numbers = header.fields;
@@ -224,25 +227,24 @@ CloudHeader read_pcd_header(const std::filesystem::path& path) {
   std::map<std::string, Words> found = pcd_lines(lines);
   CloudHeader header;
   header.fields = found["FIELDS"].size();
-  if (header.fields == 0) lines.fail("FIELDS names nothing");
+  if (header.fields == 0) lines.fail("FIELDS has no names");
   if (!found.contains("COUNT")) found["COUNT"] = Words(header.fields, "1");
   for (const char* name : {"SIZE", "TYPE", "COUNT"}) {
     if (found[name].size() != header.fields) {
-      lines.fail(std::string(name) + " has " + std::to_string(found[name].size()) + " words, FIELDS " +
-                 std::to_string(header.fields));
+      lines.fail(fmt::format("{} has {} words, but FIELDS has {}", name, found[name].size(), header.fields));
     }
   }
   for (std::size_t i = 0; i < header.fields; ++i) {
     const std::uint64_t size = lines.whole("SIZE", found["SIZE"][i]), count = lines.whole("COUNT", found["COUNT"][i]);
     if (size == 0 || size > 8 || count == 0 || count > 4096) {
-      lines.fail("field " + found["FIELDS"][i] + " has " + std::to_string(count) + " numbers of " +
-                 std::to_string(size) + " bytes: 1 to 4096 of 1 to 8 are read");
+      lines.fail(fmt::format("field {} has {} numbers of {} bytes; supported are 1 to 4096 numbers of 1 to 8 bytes",
+                             found["FIELDS"][i], count, size));
     }
     const std::string& type = found["TYPE"][i];
     const bool whole = type == "I" || type == "U", real = type == "F";
     if (!(whole && (size == 1 || size == 2 || size == 4 || size == 8)) && !(real && (size == 4 || size == 8))) {
-      lines.fail("field " + std::to_string(i + 1) +
-                 " is of no type that is read: I or U of 1, 2, 4 or 8 bytes, F of 4 or 8");
+      lines.fail(fmt::format(
+          "field {} has an unsupported type; supported: I and U with 1, 2, 4 or 8 bytes, F with 4 or 8 bytes", i + 1));
     }
     header.point_bytes += size * count;
     header.numbers += count;
@@ -250,7 +252,7 @@ CloudHeader read_pcd_header(const std::filesystem::path& path) {
   const std::uint64_t width = single(lines, "WIDTH", found["WIDTH"]), height = single(lines, "HEIGHT", found["HEIGHT"]);
   header.points = width * height;
   if (found.contains("POINTS") && single(lines, "POINTS", found["POINTS"]) != header.points) {
-    lines.fail("POINTS is " + found["POINTS"].front() + ", WIDTH times HEIGHT " + std::to_string(header.points));
+    lines.fail(fmt::format("POINTS is {}, but WIDTH times HEIGHT is {}", found["POINTS"].front(), header.points));
   }
   if (found.contains("VIEWPOINT")) header.viewpoint = viewpoint_of(lines, found["VIEWPOINT"]);
   const std::string encoding = found["DATA"].empty() ? "" : found["DATA"].front();
@@ -259,7 +261,7 @@ CloudHeader read_pcd_header(const std::filesystem::path& path) {
     header.point_bytes = 0;
     header.ascii = true;
   } else if (encoding != "binary" && encoding != "binary_compressed") {
-    lines.fail("DATA is '" + encoding + "', must be ascii, binary or binary_compressed");
+    lines.fail(fmt::format("DATA is '{}', must be ascii, binary or binary_compressed", encoding));
   }
   lines.require_room(header, encoding == "binary_compressed" ? kLzfMost : 1);
   if (encoding == "binary_compressed" && header.points > 0) lines.require_sizes(header);

@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include <fmt/format.h>
+
 #include <algorithm>
 
 #include "scenarios/errors.hpp"
@@ -15,10 +17,10 @@ using std::filesystem::path;
 std::string ending_of(const std::string& format) {
   if (format == "ply" || format == "pcd" || format == "vtk") return "." + format;
   if (format == "kitti") return ".bin";
-  throw BadInput("sweeps of format '" + format + "' are not read: ply, pcd, vtk or kitti");
+  throw BadInput(fmt::format("the sweep format '{}' is not supported; supported: ply, pcd, vtk and kitti", format));
 }
 
-/// The file of stamps that is asked for, or lies beside the sweeps; empty when there is none.
+/// Returns the requested stamp file, or one next to the sweeps; empty if there is none.
 path times_file(const SweepSource& source, const std::vector<path>& files) {
   if (!source.times.empty()) return source.times;
   for (const std::string& name : {stem_of(files.front()) + "_times.txt", std::string("times.txt")}) {
@@ -27,14 +29,14 @@ path times_file(const SweepSource& source, const std::vector<path>& files) {
   return {};
 }
 
-/// A stamp per file; empty when nothing tells them.
+/// Returns one stamp per file; empty if unknown.
 std::vector<std::int64_t> stamps_of(const SweepSource& source, const std::vector<path>& files) {
   const path file = times_file(source, files);
   if (file.empty()) return stamps_in_names(files);
   std::vector<std::int64_t> stamps = read_stamps(file);
   if (stamps.size() != files.size()) {
-    throw BadInput(file.string() + ": holds " + std::to_string(stamps.size()) + " stamps, there are " +
-                   std::to_string(files.size()) + " sweeps in " + source.folder.string() + "; must be equal");
+    throw BadInput(fmt::format("{}: holds {} time stamps, but there are {} sweeps in {}; must be equal", file.string(),
+                               stamps.size(), files.size(), source.folder.string()));
   }
   return stamps;
 }
@@ -55,17 +57,17 @@ Imported import_sweeps(const SweepSource& source) {
   if (stamps.empty() && source.steady_ns > 0) {
     stamps = steady_stamps(files.size(), source.steady_ns);
     reading.assumed = true;
-    out.notes.push_back("nothing tells the times of the sweeps but the period given");
+    out.notes.push_back("the sweeps have no time stamps; their times follow from the given period only");
   }
   const std::int64_t given_ns = reading.device.sweep_period_ns;
   SweepBuilder builder(std::move(reading), given_ns > 0 ? given_ns : median_step_ns(stamps));
   for (std::size_t k = 0; k < files.size(); ++k) {
     const std::optional<std::int64_t> stamp = stamps.empty() ? std::nullopt : std::optional(stamps[k]);
-    builder.add(stamp, read_cloud(files[k]), files[k].string());
+    builder.add(stamp, read_cloud(files[k], source.bin_columns), files[k].string());
   }
   add_lidar(out, builder.finish(source.folder.string(), out.notes));
-  out.info.attribution = "imported from " + source.folder.filename().string() + ", " + std::to_string(files.size()) +
-                         " sweeps of format " + source.format;
+  out.info.attribution = fmt::format("imported from {}, {} sweeps in format {}", source.folder.filename().string(),
+                                     files.size(), source.format);
   start_clock(out);
   return out;
 }

@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <array>
 #include <cctype>
@@ -22,12 +24,13 @@ struct TimeUnit {
 constexpr std::array<TimeUnit, 4> kUnits = {{{"s", 1e9}, {"ms", 1e6}, {"us", 1e3}, {"ns", 1.0}}};
 constexpr std::array<const char*, 8> kNames = {"t",          "time",        "timestamp",   "timestamps",
                                                "time_stamp", "offset_time", "time_offset", "offset"};
-/// Share of the sweep period that the times of a sweep span: a sector of 7 degrees at least, and some overlap at most.
-/// Units that follow each other differ by a thousand: one fits at most.
+/// The times of a sweep must span this fraction of the period: at least a sector of 7 degrees, at most some overlap.
+/// Units differ by factors of 1000, so at most one fits.
 constexpr double kSpanMin = 0.02, kSpanMax = 1.5;
-/// Stamps since 1973 in seconds are above this, whatever their unit then by its factor.
+/// Stamps after 1973, in seconds, exceed this.
 constexpr double kEpochMin_s = 1e8;
-/// So many points in a sweep span it: fewer may lie in any short part of it, and say nothing against a stated unit.
+/// With this many points a sweep's times span its period. Fewer points may cover any short part and do not contradict a
+/// stated unit.
 constexpr double kPointsThatSpan = 100.0;
 
 std::string lower(std::string text) {
@@ -35,7 +38,7 @@ std::string lower(std::string text) {
   return text;
 }
 
-/// The unit that a name ends in; null when in none.
+/// Returns the unit suffix of a name, or null.
 const TimeUnit* unit_of_name(const std::string& name) {
   const auto ends = [&](const TimeUnit& unit) { return name.ends_with(std::string("_") + unit.name); };
   const auto* found = std::find_if(kUnits.begin(), kUnits.end(), ends);
@@ -54,21 +57,22 @@ std::string choose_field(const Cloud& cloud, const SweepReading& reading, const 
     std::string all;
     for (const std::string& name : cloud.names) all += " " + name;
     const std::string near = sim::nearest_name(reading.time_field, cloud.names);
-    throw BadInput(where + ": no field '" + reading.time_field + "'" +
-                   (near.empty() ? "" : "; did you mean '" + near + "'?") + " (there are:" + all + ")");
+    throw BadInput(fmt::format("{}: there is no field '{}'{} (existing fields:{})", where, reading.time_field,
+                               near.empty() ? "" : "; did you mean '" + near + "'?", all));
   }
   std::string found;
   for (const std::string& name : cloud.names) {
     if (!is_time(name)) continue;
     const bool states = unit_of_name(lower(name)) != nullptr, stated = unit_of_name(lower(found)) != nullptr;
     if (!found.empty() && states == stated)
-      throw BadInput(where + ": the fields '" + found + "' and '" + name + "' may both be times; say which");
-    if (found.empty() || states) found = name;  // of two the one whose name tells its unit
+      throw BadInput(
+          fmt::format("{}: the fields '{}' and '{}' may both be point times; select one", where, found, name));
+    if (found.empty() || states) found = name;  // prefer the field whose name states the unit
   }
   return found;
 }
 
-/// First and last time of the points that are there.
+/// Returns the first and last time of the valid points.
 std::pair<double, double> reach(const Cloud& cloud, const std::string& field) {
   std::pair<double, double> out(INFINITY, -INFINITY);
   const std::vector<double>* times = cloud.find(field);
@@ -86,43 +90,45 @@ bool fits(double span, const TimeUnit& unit, double period_ns) {
 }
 
 std::string share_of(double span, const TimeUnit& unit, double period_ns) {
-  std::string text = std::string("in ") + unit.name + " that is ";
+  std::string text = fmt::format("in {} this is ", unit.name);
   append_number(text, static_cast<float>(100.0 * span * unit.ns / period_ns));
   return text + " % of the sweep period";
 }
 
-/// Refuses a unit that is stated, by a flag or by the field's name, where the numbers say another one.
+/// Rejects a unit, stated by option or field name, that the numbers contradict.
 void require_no_other_unit(const TimeUnit& stated, double span, double period_ns, const std::string& field,
                            const std::string& where) {
   if (!(period_ns > 0.0) || fits(span, stated, period_ns)) return;
   const auto* read =
       std::find_if(kUnits.begin(), kUnits.end(), [&](const TimeUnit& each) { return fits(span, each, period_ns); });
   if (read == kUnits.end()) return;
-  std::string line = where + ": the field '" + field + "' is stated to be in " + stated.name + " and spans ";
+  std::string line =
+      fmt::format("{}: the field '{}' has the stated unit {} and a range of ", where, field, stated.name);
   append_number(line, span);
-  throw BadInput(line + " in a sweep: " + share_of(span, stated, period_ns) + ", " + share_of(span, *read, period_ns) +
-                 "; which is it?");
+  throw BadInput(fmt::format("{} in a sweep: {}, {}; check which unit is right", line,
+                             share_of(span, stated, period_ns), share_of(span, *read, period_ns)));
 }
 
-/// The unit by the size of the numbers.
+/// Determines the unit from the size of the numbers.
 double unit_by_size(double span, double largest, double period_ns, const std::string& field, const std::string& where) {
   for (const TimeUnit& unit : kUnits) {
     if (period_ns > 0.0 && fits(span, unit, period_ns)) return unit.ns;
-    // of stamps since the epoch the largest unit that makes them old enough
+    // For stamps since 1970: the largest plausible unit.
     if (!(period_ns > 0.0) && largest >= kEpochMin_s * 1e9 / unit.ns && largest < kEpochMin_s * 1e12 / unit.ns)
       return unit.ns;
   }
-  std::string line = where + ": the field '" + field + "' spans ";
+  std::string line = fmt::format("{}: the field '{}' has a range of ", where, field);
   append_number(line, span);
   line += " in a sweep";
   if (!(period_ns > 0.0)) {
-    throw BadInput(line +
-                   ", which no stamps since the epoch do: give the times of the sweeps, or the length of a single " +
-                   "one (--sweep-period)");
+    throw BadInput(
+        fmt::format("{}, which does not match time stamps since 1970: give the times of the sweeps, or the duration of "
+                    "one sweep (--sweep-period)",
+                    line));
   }
-  line += ": in none of s, ms, us, ns is that 2 to 150 % of the sweep period of ";
+  line += ": in none of s, ms, us and ns is this 2 to 150 % of the sweep period of ";
   append_number(line, period_ns * 1e-6);
-  throw BadInput(line + " ms; say its unit");
+  throw BadInput(line + " ms; give the unit");
 }
 
 }  // namespace
@@ -148,7 +154,7 @@ PointTimeRule find_point_times(const std::vector<Cloud>& first, std::int64_t per
       std::find_if(kUnits.begin(), kUnits.end(), [&](const TimeUnit& each) { return unit == each.name; });
   const double span = upper_median(spans), period = static_cast<double>(period_ns);
   if (!unit.empty() && named == kUnits.end())
-    throw BadInput("the unit of times is '" + unit + "', must be s, ms, us or ns");
+    throw BadInput(fmt::format("the unit of point times is '{}', must be s, ms, us or ns", unit));
   if (unit.empty()) named = unit_of_name(lower(rule.field));
   if (named != nullptr && named != kUnits.end() && upper_median(points) >= kPointsThatSpan)
     require_no_other_unit(*named, span, period, rule.field, where);

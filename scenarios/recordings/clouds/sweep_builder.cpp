@@ -17,14 +17,14 @@ namespace tumble::scenarios {
 
 namespace {
 
-/// So many clouds tell the unit of the times: one may be cut.
+/// Number of clouds that determine the time unit; a single one may be incomplete.
 constexpr std::ptrdiff_t kProbe = 10;
 constexpr double kByteIntensity = 255.0;
 constexpr double kPointFar_m = 1e6;
-constexpr double kBeyond = 2.0;        // ranges of the data sheet
-constexpr double kFarthest_m = 500.0;  // where no sheet is stated: that of no lidar which a robot bears is more
-constexpr double kOverlapMost = 1.05;  // of the time from one sweep to the next, that one lasts
-/// The longest offset that a sweep may hold where its period is not known yet.
+constexpr double kBeyond = 2.0;        // multiple of the data sheet's range
+constexpr double kFarthest_m = 500.0;  // default limit without a data sheet: beyond the range of robot lidars
+constexpr double kOverlapMost = 1.05;  // longest sweep relative to the time between sweeps
+/// Longest point offset while the period is unknown.
 constexpr std::int64_t kOffsetMax_ns = 1000000000;
 
 constexpr std::array<const char*, 3> kRingNames = {"ring", "line", "channel"};
@@ -35,7 +35,7 @@ const std::vector<double>& coordinate(const Cloud& cloud, const char* name, cons
   if (found != nullptr) return *found;
   std::string all;
   for (const std::string& each : cloud.names) all += " " + each;
-  throw BadInput(where + ": no field '" + name + "' (there are:" + all + ")");
+  throw BadInput(fmt::format("{}: there is no field '{}' (existing fields:{})", where, name, all));
 }
 
 template <std::size_t kCount>
@@ -46,7 +46,7 @@ const std::vector<double>* first_of(const Cloud& cloud, const std::array<const c
   return nullptr;
 }
 
-/// Points that the lidar saw.
+/// Returns the indices of valid points.
 std::vector<std::size_t> hits(const Cloud& cloud, const std::string& where) {
   const std::vector<double>&x = coordinate(cloud, "x", where), &y = coordinate(cloud, "y", where),
         &z = coordinate(cloud, "z", where);
@@ -62,14 +62,14 @@ std::string in_ns(std::int64_t time_ns) {
   return std::to_string(time_ns) + " ns";
 }
 
-/// How the times of points were read.
+/// Describes how point times were read.
 std::string said(const PointTimeRule& rule) {
   const char* unit = rule.unit_ns == 1e9 ? "s" : rule.unit_ns == 1e6 ? "ms" : rule.unit_ns == 1e3 ? "us" : "ns";
-  return "times of points: field '" + rule.field + "', in " + unit +
-         (rule.absolute ? " of the clock itself" : " from the stamp of the sweep");
+  return fmt::format("point times: field '{}', in {}{}", rule.field, unit,
+                     rule.absolute ? " of the clock" : " after the sweep's time stamp");
 }
 
-/// The field's numbers as whole nanoseconds.
+/// Converts the field's numbers to whole nanoseconds.
 std::vector<std::int64_t> whole_times(const std::vector<double>& numbers, const std::vector<std::size_t>& kept,
                                       double unit_ns, const std::string& where) {
   constexpr double kBound = 9.2e18;
@@ -77,8 +77,8 @@ std::vector<std::int64_t> whole_times(const std::vector<double>& numbers, const 
   for (const std::size_t i : kept) {
     const double time = numbers[i] * unit_ns;
     if (!(std::abs(time) < kBound)) {
-      throw BadInput(where + ": point " + std::to_string(i) + ": time is " + std::to_string(numbers[i]) +
-                     ", must be finite and within 292 years");
+      throw BadInput(fmt::format("{}: point {}: the time is {}, must be finite and within 292 years", where, i,
+                                 std::to_string(numbers[i])));
     }
     times.push_back(std::llround(time));
   }
@@ -123,8 +123,8 @@ void SweepBuilder::take(Waiting& sweep) {
   const std::int64_t start_ns = take_times(sweep, kept);
   std::vector<std::int64_t>& starts = record_.sweep_start_ns;
   if (!starts.empty() && start_ns <= starts.back()) {
-    throw BadInput(sweep.where + ": the sweep starts at " + in_ns(start_ns) + ", must be after the one before, at " +
-                   in_ns(starts.back()));
+    throw BadInput(fmt::format("{}: the sweep starts at {}; it must start after the previous sweep, which starts at {}",
+                               sweep.where, in_ns(start_ns), in_ns(starts.back())));
   }
   starts.push_back(start_ns);
   const auto offsets = std::span(record_.offset_ns).last(kept.size());
@@ -135,35 +135,38 @@ void SweepBuilder::take(Waiting& sweep) {
   if (store_) store_->take(record_);
 }
 
-/// The start of the sweep; the points' offsets from it are stored.
+/// Returns the start of the sweep; stores the points' offsets from it.
 std::int64_t SweepBuilder::take_times(const Waiting& sweep, const std::vector<std::size_t>& kept) {
   const auto no_offsets = [&] { record_.offset_ns.resize(record_.offset_ns.size() + kept.size(), 0); };
   if (rule_->field.empty() || kept.empty()) {
-    if (!sweep.stamp_ns) throw BadInput(sweep.where + ": neither the sweep nor its points have a time");
+    if (!sweep.stamp_ns) throw BadInput(sweep.where + ": neither the sweep nor its points have a time stamp");
     no_offsets();
     return *sweep.stamp_ns;
   }
   const std::vector<double>* numbers = sweep.cloud.find(rule_->field);
-  if (numbers == nullptr) throw BadInput(sweep.where + ": no field '" + rule_->field + "', which other sweeps have");
+  if (numbers == nullptr)
+    throw BadInput(fmt::format("{}: there is no field '{}', which other sweeps have", sweep.where, rule_->field));
   std::vector<std::int64_t> times = whole_times(*numbers, kept, rule_->unit_ns, sweep.where);
   if (!rule_->absolute) {
     if (!sweep.stamp_ns)
-      throw BadInput(sweep.where + ": the times of its points are relative, and the sweep itself has none");
+      throw BadInput(sweep.where + ": its point times are relative, but the sweep has no time stamp");
     for (std::int64_t& time : times) time += *sweep.stamp_ns;
   }
   const std::int64_t first = *std::min_element(times.begin(), times.end());
   const std::int64_t bound = period_ns_ > 0 ? 2 * period_ns_ : kOffsetMax_ns;
   std::int64_t start = sweep.stamp_ns.value_or(first);
   if (start - first > bound || first - start > bound) {
-    throw BadInput(sweep.where + ": its first point is at " + in_ns(first) + ", its stamp " + in_ns(start) +
-                   "; must be within " + in_ns(bound) + ": another clock or another unit?");
+    throw BadInput(
+        fmt::format("{}: its first point is at {}, but its time stamp is {}; the difference must be at most {}. Check "
+                    "the clock and the unit",
+                    sweep.where, in_ns(first), in_ns(start), in_ns(bound)));
   }
   if (start > first || first - start >= bound / 2) start = first;
   for (std::size_t k = 0; k < times.size(); ++k) {
     const std::int64_t offset = times[k] - start;
     if (offset > bound || offset > std::numeric_limits<std::uint32_t>::max()) {
-      throw BadInput(sweep.where + ": point " + std::to_string(kept[k]) + " is " + in_ns(offset) +
-                     " after the sweep's start, must be at most " + in_ns(bound));
+      throw BadInput(fmt::format("{}: point {} is {} after the start of the sweep; this must be at most {}",
+                                 sweep.where, kept[k], in_ns(offset), in_ns(bound)));
     }
     record_.offset_ns.push_back(static_cast<std::uint32_t>(offset));
     longest_ns_ = std::max(longest_ns_, offset);
@@ -201,8 +204,8 @@ void SweepBuilder::take_rings(const Waiting& sweep, const std::vector<std::size_
   for (const std::size_t i : kept) {
     const double ring = rings != nullptr ? (*rings)[i] : 0.0;
     if (!(ring >= 0.0 && ring <= 65535.0 && ring == std::floor(ring))) {
-      throw BadInput(sweep.where + ": point " + std::to_string(i) + ": ring is " + std::to_string(ring) +
-                     ", must be a whole number from 0 to 65535");
+      throw BadInput(
+          fmt::format("{}: point {}: ring is {}, must be a whole number from 0 to 65535", sweep.where, i, ring));
     }
     record_.ring.push_back(static_cast<std::uint16_t>(ring));
   }
@@ -214,40 +217,43 @@ void SweepBuilder::scale_intensity(std::vector<std::string>& notes) {
   const auto scale = [&](float& each) { each = static_cast<float>(each / full); };
   if (store_) store_->intensity.change(scale);
   std::for_each(record_.intensity.begin(), record_.intensity.end(), scale);
-  notes.push_back("intensities go beyond 1: divided by " + std::to_string(full));
+  notes.push_back("intensities exceed 1; they are divided by " + std::to_string(full));
 }
 
 double SweepBuilder::range_max_m() const {
   return reading_.range_max_m > 0.0 ? reading_.range_max_m : kFarthest_m;
 }
 
-/// Points in mm look so; a real one beyond the range that its sheet states is a lucky one.
+/// Detects ranges in mm. Rare points beyond the data sheet's range are possible.
 void SweepBuilder::require_range(const std::string& where) const {
   if (2 * beyond_ <= points()) return;
   throw BadInput(fmt::format(
-      "{}: {} of {} points lie farther than {:g} m, twice {}, must be half of them at most: are x y z in metres?",
+      "{}: {} of {} points are farther than {:g} m, twice {}; at most half may be. Check that x, y and z are in metres",
       where, beyond_, points(), kBeyond * range_max_m(),
-      reading_.range_max_m > 0.0 ? "the range of the data sheet" : "what any lidar of a robot sees"));
+      reading_.range_max_m > 0.0 ? "the range of the data sheet" : "the range of any robot lidar"));
 }
 
 void SweepBuilder::note_what_was_left(std::vector<std::string>& notes) const {
   if (misses_ > 0)
-    notes.push_back(std::to_string(misses_) + " points are misses (not finite, beyond 1000 km, or at the origin)");
-  if (skipped_ > 0) notes.push_back(std::to_string(skipped_) + " sweeps without a point and a time are left out");
-  if (dark_ > 0) notes.push_back(std::to_string(dark_) + " points have no intensity: stored as 0");
+    notes.push_back(std::to_string(misses_) +
+                    " points are missing returns (not finite, beyond 1000 km, or at the origin)");
+  if (skipped_ > 0) notes.push_back(std::to_string(skipped_) + " sweeps without points and time stamp are left out");
+  if (dark_ > 0) notes.push_back(std::to_string(dark_) + " points have no intensity; 0 is stored");
   if (viewpoints_ > 0)
-    notes.push_back(std::to_string(viewpoints_) + " sweeps state a VIEWPOINT, which is not applied: points are taken " +
-                    "in the lidar's axes as they stand (first: " + first_viewpoint_ + ")");
+    notes.push_back(
+        fmt::format("{} sweeps have a VIEWPOINT, which is not applied; points are read as coordinates in the lidar's "
+                    "axes (first VIEWPOINT: {})",
+                    viewpoints_, first_viewpoint_));
   if (record_.point_times == sim::PointTimes::unknown)
-    notes.push_back("the points have no times: sweeps cannot be deskewed");
+    notes.push_back("the points have no time stamps, so sweeps cannot be deskewed");
   std::string names;
   for (const auto& [name, sweeps] : ignored_) names += " " + name;
-  if (!names.empty()) notes.push_back("fields that are not read:" + names);
+  if (!names.empty()) notes.push_back("ignored fields:" + names);
 }
 
 BuiltSweeps SweepBuilder::finish(const std::string& where, std::vector<std::string>& notes) {
   if (!rule_ && !waiting_.empty()) find_rule();
-  if (points() == 0) throw BadInput(where + ": no sweep holds a point");
+  if (points() == 0) throw BadInput(where + ": no sweep has a point");
   require_range(where);
   record_.sweep_first.push_back(points());
   record_.name = reading_.device.name;
@@ -255,17 +261,17 @@ BuiltSweeps SweepBuilder::finish(const std::string& where, std::vector<std::stri
   record_.T_BL = reading_.device.T_BL;
   const std::int64_t stated_ns = reading_.device.sweep_period_ns, step_ns = median_step_ns(record_.sweep_start_ns);
   record_.sweep_period_ns = stated_ns > 0 ? stated_ns : step_ns;
-  if (record_.sweep_period_ns <= 0) throw BadInput(where + ": of a single sweep the period must be given");
+  if (record_.sweep_period_ns <= 0) throw BadInput(where + ": a single sweep needs its period (--sweep-period)");
   if (rule_ && !rule_->field.empty()) notes.push_back(said(*rule_));
   const bool overlaps = step_ns > 0 && static_cast<double>(stated_ns) > kOverlapMost * static_cast<double>(step_ns);
   if (stated_ns > 0 && (overlaps || stated_ns < longest_ns_)) {
-    notes.push_back("a sweep is stated to last " + in_ns(stated_ns) +
-                    ", which is taken, but sweeps follow each other by " + in_ns(step_ns) +
-                    " and their points span up to " + in_ns(longest_ns_));
+    notes.push_back(fmt::format(
+        "the stated period of a sweep is {} and is used, but sweeps are {} apart and their points span up to {}",
+        in_ns(stated_ns), in_ns(step_ns), in_ns(longest_ns_)));
   }
   if (stated_ns <= 0 && longest_ns_ > record_.sweep_period_ns) {
-    notes.push_back("sweeps follow each other by " + in_ns(record_.sweep_period_ns) + " and last up to " +
-                    in_ns(longest_ns_) + ", which is taken for their period");
+    notes.push_back(fmt::format("sweeps are {} apart and last up to {}; the latter is used as their period",
+                                in_ns(record_.sweep_period_ns), in_ns(longest_ns_)));
     record_.sweep_period_ns = longest_ns_;
   }
   note_what_was_left(notes);

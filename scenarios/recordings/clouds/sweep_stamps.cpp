@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "scenarios/recordings/clouds/sweep_stamps.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cctype>
 #include <charconv>
@@ -21,7 +23,7 @@ bool is_digit(char c) {
   return std::isdigit(static_cast<unsigned char>(c)) != 0;
 }
 
-/// Numbers within names count by value.
+/// Compares numbers in names by value.
 bool natural_less(const std::filesystem::path& left, const std::filesystem::path& right) {
   const std::string a = left.filename().string(), b = right.filename().string();
   std::size_t i = 0, j = 0;
@@ -41,10 +43,10 @@ bool natural_less(const std::filesystem::path& left, const std::filesystem::path
     if (order != 0) return order < 0;
   }
   if (a.size() - i != b.size() - j) return a.size() - i < b.size() - j;
-  return a < b;  // the same but for leading zeros
+  return a < b;  // equal except for leading zeros
 }
 
-/// The digits that `text` ends in, cut off from it.
+/// Cuts the trailing digits off `text` and returns them.
 std::string_view take_digits(std::string_view& text) {
   std::size_t begin = text.size();
   while (begin > 0 && is_digit(text[begin - 1])) --begin;
@@ -59,13 +61,13 @@ std::int64_t value_of(std::string_view digits) {
   return value;
 }
 
-/// `count` units and `rest_ns`, none of them negative; nothing beyond the year 2262, where nanoseconds end.
+/// Returns `count` units plus `rest_ns`, both non-negative; empty beyond the year 2262, where nanoseconds overflow.
 std::optional<std::int64_t> in_ns(std::int64_t count, std::int64_t unit_ns, std::int64_t rest_ns = 0) {
   if (count > (std::numeric_limits<std::int64_t>::max() - rest_ns) / unit_ns) return std::nullopt;
   return count * unit_ns + rest_ns;
 }
 
-/// Nanoseconds since the epoch of a number whose digits tell its unit; nothing for another number of digits.
+/// Returns nanoseconds since 1970; the number of digits determines the unit. Empty for other lengths.
 std::optional<std::int64_t> epoch_ns(std::string_view digits) {
   if (digits.size() == 13) return in_ns(value_of(digits), 1000000);
   if (digits.size() == 16) return in_ns(value_of(digits), 1000);
@@ -113,13 +115,14 @@ std::vector<std::filesystem::path> sweep_files(const std::filesystem::path& fold
     if (fits && (stem.empty() || stem_of(path) == stem)) files.push_back(path);
   }
   if (files.empty()) {
-    throw BadInput(folder.string() + ": holds no file that ends in " + ending +
+    throw BadInput(folder.string() + ": contains no file that ends in " + ending +
                    (stem.empty() ? "" : " and begins with '" + stem + "'"));
   }
   std::sort(files.begin(), files.end(), natural_less);
   if (stem_of(files.front()) != stem_of(files.back())) {
-    throw BadInput(folder.string() + ": holds files of several lidars, '" + stem_of(files.front()) + "' and '" +
-                   stem_of(files.back()) + "': say which stem");
+    throw BadInput(
+        fmt::format("{}: contains files of several lidars, '{}' and '{}'; select one by its file name prefix",
+                    folder.string(), stem_of(files.front()), stem_of(files.back())));
   }
   return files;
 }
@@ -135,8 +138,8 @@ std::vector<std::int64_t> stamps_in_names(const std::vector<std::filesystem::pat
       without = &file;
   }
   if (stamps.empty() || without == nullptr) return stamps;
-  throw BadInput(without->string() + ": its name holds no stamp, those of " + std::to_string(stamps.size()) +
-                 " other files do");
+  throw BadInput(fmt::format("{}: its file name has no time stamp, but those of {} other files have one",
+                             without->string(), stamps.size()));
 }
 
 std::vector<std::int64_t> read_stamps(const std::filesystem::path& file) {
@@ -148,8 +151,8 @@ std::vector<std::int64_t> read_stamps(const std::filesystem::path& file) {
     const std::optional<std::int64_t> whole = digits ? epoch_ns(text) : std::nullopt;
     const std::int64_t stamp = whole ? *whole : table.time_ns(row, 0);
     if (!stamps.empty() && stamp <= stamps.back()) {
-      throw BadInput(file.string() + ":" + std::to_string(row.line) + ": stamp " + std::to_string(stamp) +
-                     " ns does not rise, the one before is " + std::to_string(stamps.back()) + " ns");
+      throw BadInput(fmt::format("{}:{}: the time stamp {} ns does not increase; the previous one is {} ns",
+                                 file.string(), row.line, stamp, stamps.back()));
     }
     stamps.push_back(stamp);
   }

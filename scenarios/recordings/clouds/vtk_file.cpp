@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "scenarios/recordings/clouds/vtk_file.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cstdint>
 #include <fstream>
@@ -15,7 +17,7 @@ namespace tumble::scenarios {
 
 namespace {
 
-/// The words of a text, and the lines on which they stand.
+/// Splits a text into words and tracks the line number.
 class VtkWords {
  public:
   explicit VtkWords(const std::filesystem::path& path) : name_(path.string()) {
@@ -27,7 +29,7 @@ class VtkWords {
     throw BadInput(name_ + ":" + std::to_string(line_) + ": " + what);
   }
 
-  /// The rest of the line, which is passed.
+  /// Returns and skips the rest of the line.
   std::string_view line() {
     const std::size_t end = std::min(text_.find('\n', at_), text_.size());
     std::string_view out = std::string_view(text_).substr(at_, end - at_);
@@ -37,7 +39,7 @@ class VtkWords {
     return out;
   }
 
-  /// The next word; empty at the end of the file.
+  /// Returns the next word; empty at the end of the file.
   std::string_view next() {
     while (at_ < text_.size() && is_blank(text_[at_])) line_ += text_[at_++] == '\n';
     const std::size_t begin = at_;
@@ -45,31 +47,31 @@ class VtkWords {
     return std::string_view(text_).substr(begin, at_ - begin);
   }
 
-  /// The next word where one must stand.
+  /// Returns the next word; throws at the end of the file.
   std::string_view need(const char* what) {
     const std::string_view word = next();
-    if (word.empty()) fail(std::string("ends before ") + what + ": truncated?");
+    if (word.empty()) fail(fmt::format("the file ends before {}; it may be truncated", what));
     return word;
   }
 
   std::uint64_t whole(const char* what) {
     const std::string_view word = need(what);
     std::uint64_t value = 0;
-    if (!read_number(word, value)) fail(std::string(what) + " is '" + shortened(word) + "', no whole number");
+    if (!read_number(word, value)) fail(fmt::format("{} is '{}'; it must be a whole number", what, shortened(word)));
     return value;
   }
 
-  /// "nan" and "inf" are numbers: a lidar writes them for what it did not see.
+  /// Accepts "nan" and "inf", which lidars write for misses.
   double number() {
     std::string_view word = need("its numbers");
     if (word.starts_with('+')) word.remove_prefix(1);
     double value = 0.0;
     if (!read_number(word, value))
-      fail("'" + shortened(word) + "' is no number that a double holds, decimals behind a point");
+      fail("'" + shortened(word) + "' is not a number that fits a double (use a decimal point)");
     return value;
   }
 
-  /// Bytes that are left; a number takes two of them, a digit and what parts it from the next.
+  /// Returns the number of remaining bytes; a number needs two, a digit and a separator.
   std::uint64_t left() const { return text_.size() - at_; }
 
  private:
@@ -79,20 +81,19 @@ class VtkWords {
   int line_ = 1;
 };
 
-/// Holds so many numbers against what is left of the file, before anything is allocated for them.
+/// Checks a stated number of values against the remaining file before any allocation.
 void require_room(const VtkWords& words, std::uint64_t count, std::uint64_t each) {
   if (count > kCloudPointsMax) {
-    words.fail("promises " + std::to_string(count) + " points, at most " + std::to_string(kCloudPointsMax) +
-               " are read from a file");
+    words.fail(fmt::format("states {} points; at most {} can be read from a file", count, kCloudPointsMax));
   }
   if (count * each * 2 > words.left() + 1) {
-    words.fail("promises " + std::to_string(count) + " times " + std::to_string(each) + " numbers, but " +
-               std::to_string(words.left()) + " bytes follow: truncated?");
+    words.fail(fmt::format("states {} times {} numbers, but {} bytes follow; the file may be truncated", count, each,
+                           words.left()));
   }
 }
 
 void read_points(VtkWords& words, Cloud& cloud) {
-  if (!cloud.names.empty()) words.fail("POINTS stands twice");
+  if (!cloud.names.empty()) words.fail("POINTS occurs twice");
   cloud.points = words.whole("the number of points");
   words.need("the points' type");
   require_room(words, cloud.points, 3);
@@ -108,13 +109,13 @@ void pass_over(VtkWords& words, std::uint64_t count, std::uint64_t each) {
   for (std::uint64_t i = 0; i < count * each; ++i) words.number();
 }
 
-/// VERTICES lines numbers: so many numbers follow.
+/// VERTICES lines numbers: skips that many numbers.
 void pass_vertices(VtkWords& words) {
   words.whole("the number of vertices");
   pass_over(words, words.whole("the numbers of the vertices"), 1);
 }
 
-/// SCALARS name type [numbers a point], LOOKUP_TABLE name, a line each; then the numbers.
+/// SCALARS name type [numbers per point], LOOKUP_TABLE name, one line each; then the numbers.
 void read_scalars(VtkWords& words, Cloud& cloud) {
   const std::string name(words.need("the name of scalars"));
   words.need("the scalars' type");
@@ -122,13 +123,14 @@ void read_scalars(VtkWords& words, Cloud& cloud) {
   std::string_view word = words.need("LOOKUP_TABLE");
   if (word != "LOOKUP_TABLE") {
     if (!read_number(word, each) || each < 1 || each > 4)
-      words.fail("scalars '" + shortened(name) + "' of '" + shortened(word) + "' numbers a point, must be 1 to 4");
+      words.fail(fmt::format("scalars '{}' of '{}' numbers per point; there must be 1 to 4", shortened(name),
+                             shortened(word)));
     word = words.need("LOOKUP_TABLE");
   }
-  if (word != "LOOKUP_TABLE") words.fail("'" + shortened(word) + "' in the place of LOOKUP_TABLE");
+  if (word != "LOOKUP_TABLE") words.fail("'" + shortened(word) + "' instead of LOOKUP_TABLE");
   words.need("the name of the lookup table");
   if (each != 1) return pass_over(words, cloud.points, each);
-  if (cloud.find(name) != nullptr) words.fail("scalars '" + shortened(name) + "' stand twice");
+  if (cloud.find(name) != nullptr) words.fail(fmt::format("scalars '{}' occur twice", shortened(name)));
   require_room(words, cloud.points, 1);
   std::vector<double> column(cloud.points);
   for (double& value : column) value = words.number();
@@ -141,7 +143,7 @@ void pass_data(VtkWords& words, const Cloud& cloud, std::string_view section) {
   words.need("a name");
   if (section == "COLOR_SCALARS") {
     const std::uint64_t each = words.whole("the numbers of a colour");
-    if (each < 1 || each > 4) words.fail("colours of " + std::to_string(each) + " numbers, must be 1 to 4");
+    if (each < 1 || each > 4) words.fail(fmt::format("colours of {} numbers, must be 1 to 4", each));
     return pass_over(words, cloud.points, each);
   }
   words.need("a type");
@@ -149,13 +151,13 @@ void pass_data(VtkWords& words, const Cloud& cloud, std::string_view section) {
 }
 
 void read_header(VtkWords& words) {
-  if (!words.line().starts_with("# vtk DataFile Version")) words.fail("begins as no VTK file does");
-  words.line();  // a title
+  if (!words.line().starts_with("# vtk DataFile Version")) words.fail("does not begin as a VTK file");
+  words.line();  // title
   const std::string_view encoding = words.need("ASCII");
-  if (encoding == "BINARY") words.fail("is binary: VTK files are read as text (ASCII) alone");
-  if (encoding != "ASCII") words.fail("'" + shortened(encoding) + "' in the place of ASCII");
+  if (encoding == "BINARY") words.fail("is a binary file; only text (ASCII) VTK files are supported");
+  if (encoding != "ASCII") words.fail("'" + shortened(encoding) + "' instead of ASCII");
   if (words.need("DATASET") != "DATASET" || words.need("POLYDATA") != "POLYDATA")
-    words.fail("holds no POLYDATA, which clouds are");
+    words.fail("has no POLYDATA dataset; point clouds need one");
 }
 
 }  // namespace
@@ -173,7 +175,7 @@ Cloud read_vtk(const std::filesystem::path& path) {
     } else if (section == "POINT_DATA") {
       const std::uint64_t points = words.whole("the number of point data");
       if (points != cloud.points)
-        words.fail("POINT_DATA of " + std::to_string(points) + " points, POINTS has " + std::to_string(cloud.points));
+        words.fail(fmt::format("POINT_DATA has {} points, but POINTS has {}", points, cloud.points));
       of_points = true;
     } else if (of_points && section == "SCALARS") {
       read_scalars(words, cloud);
@@ -181,10 +183,10 @@ Cloud read_vtk(const std::filesystem::path& path) {
                (section == "NORMALS" || section == "VECTORS" || section == "TENSORS" || section == "COLOR_SCALARS")) {
       pass_data(words, cloud, section);
     } else {
-      words.fail("section '" + shortened(section) + "' is not read there");
+      words.fail(fmt::format("section '{}' is not supported at this position", shortened(section)));
     }
   }
-  if (cloud.names.empty()) words.fail("holds no POINTS");
+  if (cloud.names.empty()) words.fail("has no POINTS section");
   return cloud;
 }
 

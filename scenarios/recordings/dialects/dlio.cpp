@@ -16,7 +16,7 @@ ReaderNames dlio_names(const SensorFacts&) {
 }
 
 std::string sensors_file(const SensorFacts& facts) {
-  return fmt::format(R"(# in the place of cfg/dlio.yaml; numbers without a remark are the authors'
+  return fmt::format(R"(# replaces cfg/dlio.yaml; numbers without a comment are the authors' defaults
 dlio:
   version: 1.1.1
   adaptive: true
@@ -46,7 +46,7 @@ dlio:
 std::string params_file(const SensorFacts& facts, const ReaderNames& names) {
   constexpr double kAuthors_s = 3.0, kLeast_s = 0.1;
   const double rest_s = std::clamp(facts.imu->still_at_start_s, kLeast_s, kAuthors_s);
-  return fmt::format(R"(# in the place of cfg/params.yaml; numbers without a remark are the authors'
+  return fmt::format(R"(# replaces cfg/params.yaml; numbers without a comment are the authors' defaults
 dlio:
   frames:
     odom: odom
@@ -66,11 +66,11 @@ dlio:
       calibration:
         gyro: true
         accel: true
-        time: {}            # s: so long it is still at the start, 3 at most
+        time: {}            # s, rest at the start, at most 3
       bufferSize: 5000
     preprocessing:
       cropBoxFilter:
-        size: {}            # m: the robot itself is nearer
+        size: {}            # m; excludes the robot itself
       voxelFilter:
         res: 0.25
     keyframe:
@@ -116,7 +116,7 @@ Dialect dlio_dialect() {
   out.sweeps = ouster_layout;
   out.configuration = dlio_configuration;
   out.run = "roslaunch direct_lidar_inertial_odometry dlio.launch; rosbag play recording.bag";
-  out.notes = {"it averages the IMU while it is still at the start; a recording that does not rest has no level"};
+  out.notes = {"DLIO averages the IMU at rest at the start; a recording without rest cannot be levelled"};
   out.sources = {{repository, "include/dlio/dlio.h", "07bf91ed0e1adb726765cb82a466dca0dccb1e18"},
                  {repository, "src/dlio/odom.cc", "1637f88cf078775d2a92608297555bba7f22e683"},
                  {repository, "cfg/dlio.yaml", "044f8440818ab1dc2b161220ec5b29236f95a748"},

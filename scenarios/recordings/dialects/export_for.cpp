@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "scenarios/recordings/dialects/export_for.hpp"
 
+#include <fmt/format.h>
+
 #include <cmath>
 #include <map>
 
@@ -26,32 +28,34 @@ const Dialect& dialect_of(const std::string& peer) {
     known += " " + dialect.name;
   }
   const std::string near = sim::nearest_name(peer, peer_dialects());
-  throw BadInput("unknown peer '" + peer + "'" + (near.empty() ? "" : "; did you mean '" + near + "'?") +
-                 " (known:" + known + ")");
+  throw BadInput(fmt::format("unknown export target '{}'{} (known targets:{})", peer,
+                             near.empty() ? "" : "; did you mean '" + near + "'?", known));
 }
 
-/// Where a lidar's range comes from numbers that are none, so does a configuration.
+/// Rejects non-finite points, from which the configuration's range could not be computed.
 void require_finite(const sim::LidarRecord& lidar, const PointStore& aside) {
   for (std::size_t number = 0; number < lidar.sweep_start_ns.size(); ++number) {
     const sim::LidarRecord sweep = sweep_alone(lidar, &aside, number);
     for (std::size_t k = 0; k < sweep.range_m.size(); ++k) {
       if (sweep.position_L_m[k].allFinite() && std::isfinite(sweep.range_m[k]) && std::isfinite(sweep.intensity[k]))
         continue;
-      throw BadInput("point " + std::to_string(lidar.sweep_first[number] + k) + " of '" + lidar.name +
-                     "' is not finite in place, range or intensity");
+      throw BadInput(fmt::format("point {} of '{}' has a position, range or intensity that is not finite",
+                                 lidar.sweep_first[number] + k, lidar.name));
     }
   }
 }
 
 void require_fitting(const Dialect& dialect, const sim::Sensors& sensors, const std::vector<PointStore>& points,
                      const SensorFacts& facts) {
-  const auto refuse = [&](const std::string& what) { throw BadInput(what + ", which " + dialect.name + " reads"); };
-  if (!facts.lidar || facts.lidar->points == 0) refuse("the recording holds no return of a lidar");
-  if (dialect.needs_imu && (!facts.imu || facts.imu->samples == 0)) refuse("the recording holds no reading of an IMU");
+  const auto refuse = [&](const std::string& what) {
+    throw BadInput(what + "; " + dialect.name + " cannot read such a recording");
+  };
+  if (!facts.lidar || facts.lidar->points == 0) refuse("the recording has no lidar return");
+  if (dialect.needs_imu && (!facts.imu || facts.imu->samples == 0)) refuse("the recording has no IMU reading");
   if (dialect.needs_times && !facts.lidar->timed)
-    refuse("the points of '" + sensors.lidars.front().name + "' have no times of their own");
+    refuse(fmt::format("the points of '{}' have no time stamps", sensors.lidars.front().name));
   if (dialect.needs_rings && facts.lidar->livox)
-    refuse("the lidar '" + facts.lidar->device + "' does not scan in rings");
+    refuse(fmt::format("the lidar '{}' does not scan in rings", facts.lidar->device));
   require_finite(sensors.lidars.front(), points.front());
 }
 
@@ -62,14 +66,14 @@ void write_bag(const Dialect& dialect, const sim::Sensors& sensors, const BagWri
   writers.at(dialect.bag_format)(sensors, writing, place);
 }
 
-/// What the bag holds of the lidar: of sweeps without a point, which the peer cannot take, the dialect's notes say how
-/// many are left out. Returns what is to be said of them.
+/// Configures the bag to omit empty sweeps if the peer cannot read them, and adds their number to the dialect's notes.
+/// Returns the notes for the user.
 std::vector<std::string> leave_out_empty_sweeps(Dialect& dialect, LidarFacts& lidar) {
   const std::size_t empty = lidar.empty_sweeps;
   if (dialect.takes_empty || empty == 0) return {};
   lidar.sweeps -= empty;
-  const std::string note = std::to_string(empty) + (empty == 1 ? " sweep" : " sweeps") +
-                           " without a point left out: " + dialect.name + " cannot take an empty cloud";
+  const std::string note = fmt::format("{}{} without points are left out: {} cannot read an empty cloud", empty,
+                                       empty == 1 ? " sweep" : " sweeps", dialect.name);
   dialect.notes.push_back(note);
   return {note};
 }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// FAST-LIO2 (hku-mars/FAST_LIO, GPL-2): facts of its interface alone, none of its text.
+// FAST-LIO2 (hku-mars/FAST_LIO, GPL-2): contains facts about its interface only, none of its text.
 #include <fmt/format.h>
 
 #include "scenarios/recordings/dialects/dialect.hpp"
@@ -15,7 +15,7 @@ std::vector<ConfigurationFile> fast_lio_configuration(const SensorFacts& facts, 
   const Eigen::Isometry3d T_IL = facts.T_IL();
   const std::string file = lidar.livox ? "avia.yaml" : "velodyne.yaml";
   const std::string text = fmt::format(
-      R"(# in the place of config/{file}; numbers without a remark are the authors'
+      R"(# replaces config/{file}; numbers without a comment are the authors' defaults
 common:
   lid_topic: "{points}"
   imu_topic: "{imu}"
@@ -25,11 +25,11 @@ preprocess:
   lidar_type: {type}                    # 1 Livox CustomMsg, 2 Velodyne
   scan_line: {rings}                    # rings of this lidar
   scan_rate: {scan_rate}
-  timestamp_unit: {unit}                # of a Velodyne's time: 0 s; a CustomMsg has ns
-  blind: {blind}                       # m: the robot itself is nearer
+  timestamp_unit: {unit}                # unit of a Velodyne's point times: 0 is s; a CustomMsg has ns
+  blind: {blind}                       # m; excludes the robot itself
 mapping:
-  acc_cov: 0.1                      # of a sample by its sheet: {acc_var}
-  gyr_cov: 0.1                      # of a sample by its sheet: {gyr_var}
+  acc_cov: 0.1                      # variance of a sample by the data sheet: {acc_var}
+  gyr_cov: 0.1                      # variance of a sample by the data sheet: {gyr_var}
   b_acc_cov: 0.0001
   b_gyr_cov: 0.0001
   fov_degree: 180.0
@@ -65,7 +65,7 @@ Dialect fast_lio_dialect() {
   out.sweeps = fast_lio_layout;
   out.configuration = fast_lio_configuration;
   out.run = "roslaunch fast_lio mapping_velodyne.launch (mapping_avia.launch of a Livox); rosbag play recording.bag";
-  out.notes = {"it knows no rail: what the gyro clips is taken for a reading"};
+  out.notes = {"FAST-LIO has no saturation model and uses clipped gyro readings as valid"};
   out.sources = {{"hku-mars/FAST_LIO", "src/preprocess.h", "19f2212d16c4ec77e160fe81c3af0d3ea931196a"},
                  {"hku-mars/FAST_LIO", "src/preprocess.cpp", "0a3abe53558847d3981270a24c48677b231fa4cd"},
                  {"hku-mars/FAST_LIO", "src/laserMapping.cpp", "34b50d95da57b240d53e100298a6386aadad81ba"},

@@ -12,7 +12,7 @@ ReaderNames glim_names(const SensorFacts&) {
   return {"/os_cloud_node/imu", "imu", "/os_cloud_node/points", "lidar", "base_link", ""};
 }
 
-/// The sheet's density, or the authors' number where none is stated.
+/// Returns the data sheet's density, or the authors' number if none is stated.
 double density(double stated, double authors) {
   return stated > 0.0 ? stated : authors;
 }
@@ -45,8 +45,11 @@ Dialect glim_dialect() {
   out.sweeps = ouster_layout;
   out.configuration = glim_configuration;
   out.run =
-      "these two files over a copy of glim/config; ros2 run glim_ros glim_rosbag bag --ros-args -p config_path:=COPY";
-  out.notes = {"imu_acc_noise and imu_gyro_noise are the sheet's densities; its authors' 0.05 and 0.02 allow for more"};
+      "copy these two files into a copy of glim/config; ros2 run glim_ros glim_rosbag bag --ros-args -p "
+      "config_path:=COPY";
+  out.notes = {
+      "imu_acc_noise and imu_gyro_noise are the densities of the data sheet; the authors' values 0.05 and 0.02 are "
+      "larger"};
   out.sources = {
       {"koide3/glim", "include/glim/util/ros_cloud_converter.hpp", "0d7f61304db1fdd1e320e4f013fe05cf446f3cd4"},
       {"koide3/glim", "config/config_sensors.json", "d01f6872de4bca40fed0f43da92aab70562c2194"},

@@ -14,10 +14,10 @@ ReaderNames kiss_icp_names(const SensorFacts&) {
 }
 
 std::vector<ConfigurationFile> kiss_icp_configuration(const SensorFacts& facts, const ReaderNames&) {
-  const std::string text = fmt::format(R"(# what stands not here is as the authors have it
+  const std::string text = fmt::format(R"(# all other values are the authors' defaults
 data:
   deskew: {}
-  min_range: {}   # m: the robot itself is nearer
+  min_range: {}   # m; excludes the robot itself
 )",
                                        facts.lidar->timed, decimal(facts.lidar->own_body_m));
   return {{"kiss_icp.yaml", text}};
@@ -26,8 +26,8 @@ data:
 }  // namespace
 
 Dialect kiss_icp_dialect() {
-  // ROS 1, which its version 1.3.0 reads with PyPI's packages alone, as it does ROS 2 bags that bring definitions. Of
-  // MCAP its fields of points are not found with those of mcap-ros2-support 0.5.7 and 0.6.0.
+  // Version 1.3.0 reads ROS 1 bags, and ROS 2 bags with definitions, with packages from PyPI only. For MCAP,
+  // mcap-ros2-support 0.5.7 and 0.6.0 do not find the point fields.
   Dialect out{"kiss-icp", "rosbag1", "recording.bag"};
   out.needs_imu = out.needs_times = false;
   out.takes_empty = false;
@@ -36,10 +36,10 @@ Dialect kiss_icp_dialect() {
   out.configuration = kiss_icp_configuration;
   out.run = "kiss_icp_pipeline --topic /lidar/points --config kiss_icp.yaml recording.bag";
   out.notes = {
-      "pip install kiss-icp pyyaml rosbags: it reads its configuration by PyYAML and bags by rosbags, and asks for "
-      "neither",
-      "of the times it takes their share of the sweep; its poses belong to the sweep's last point",
-      "max_range stays 100 m, the authors': a hundredth of it is the voxel's size"};
+      "pip install kiss-icp pyyaml rosbags: PyYAML reads its configuration and rosbags reads bags, but kiss-icp does "
+      "not install them",
+      "KISS-ICP uses point times as a share of the sweep; its poses are those of the last point of a sweep",
+      "max_range is the authors' 100 m; the voxel size is a hundredth of it"};
   out.sources = {
       {"PRBonn/kiss-icp", "python/kiss_icp/tools/point_cloud2.py", "f396813d0806980a08b701f6fab73bb63a8d65ce"},
       {"PRBonn/kiss-icp", "python/kiss_icp/datasets/rosbag.py", "02c2fce874aa90ff59a3d2a8f5162557912fac88"},

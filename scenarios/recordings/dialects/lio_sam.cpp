@@ -13,7 +13,7 @@ ReaderNames lio_sam_names(const SensorFacts&) {
   return {"/imu_raw", "imu", "/points_raw", "lidar", "base_link", ""};
 }
 
-/// The sheet's density, or the authors' where none is stated.
+/// Returns the data sheet's density, or the authors' if none is stated.
 std::string density_text(double stated, const char* authors) {
   return stated > 0.0 ? decimal(stated) : authors;
 }
@@ -24,7 +24,7 @@ std::vector<ConfigurationFile> lio_sam_configuration(const SensorFacts& facts, c
   const Eigen::Isometry3d T_LI = facts.T_IL().inverse(Eigen::Isometry);
   const std::string R = rotation_of(T_LI);
   const std::string text = fmt::format(
-      R"(# in the place of config/params.yaml; numbers without a remark are the authors'
+      R"(# replaces config/params.yaml; numbers without a comment are the authors' defaults
 lio_sam:
   pointCloudTopic: "{points}"
   imuTopic: "{imu}"
@@ -44,10 +44,10 @@ lio_sam:
   N_SCAN: {rings}                  # rings of this lidar
   Horizon_SCAN: {columns}            # firings of a ring in a sweep
   downsampleRate: 1
-  lidarMinRange: {near}           # m: the robot itself is nearer
+  lidarMinRange: {near}           # m; excludes the robot itself
   lidarMaxRange: {far}           # m, farthest return
-  imuAccNoise: {acc}   # m/s^2/sqrt(Hz), the sheet's density
-  imuGyrNoise: {gyr}   # rad/s/sqrt(Hz), the sheet's density
+  imuAccNoise: {acc}   # m/s^2/sqrt(Hz), density of the data sheet
+  imuGyrNoise: {gyr}   # rad/s/sqrt(Hz), density of the data sheet
   imuAccBiasN: 6.4356659353532566e-05
   imuGyrBiasN: 3.5640318696367613e-05
   imuGravity: {gravity}           # m/s^2, of this recording
@@ -101,8 +101,8 @@ Dialect lio_sam_dialect() {
   out.configuration = lio_sam_configuration;
   out.run = "roslaunch lio_sam run.launch; rosbag play recording.bag";
   out.notes = {
-      "it is made for an IMU with an attitude; these readings have none (identity, covariance -1): it starts as if the "
-      "IMU stood level, and imuRPYWeight is 0"};
+      "LIO-SAM needs an IMU with attitude, but these readings have none (identity, covariance -1): it starts as if the "
+      "IMU were level, and imuRPYWeight is 0"};
   out.sources = {{"TixiaoShan/LIO-SAM", "src/imageProjection.cpp", "bfb271dcd13b708620269d06e5962a2e3e9a070f"},
                  {"TixiaoShan/LIO-SAM", "src/imuPreintegration.cpp", "041f4e63d5bee3a54bb646b0cfb704cdb1bd7147"},
                  {"TixiaoShan/LIO-SAM", "include/utility.h", "0d9d8f82c5297d36354255303cd9ea717e3eddeb"},

@@ -31,7 +31,7 @@ const char* word(NumberType type) {
   return "float64";
 }
 
-/// What the number of a field means.
+/// Returns the unit of a field.
 std::string unit(const PointColumn& column) {
   switch (column.quantity) {
     case PointQuantity::x_m:
@@ -41,22 +41,24 @@ std::string unit(const PointColumn& column) {
     case PointQuantity::intensity:
       return column.scale == 1.0 ? "0 to 1" : "0 to 255";
     case PointQuantity::ring:
-      return "from bottom to top, or line";
+      return "from bottom to top, or line number";
     case PointQuantity::time:
       break;
   }
   const std::string count = column.scale == 1.0 ? "ns" : "s";
-  return count + (column.absolute ? " since 1970" : " since the stamp of the header");
+  return count + (column.absolute ? " since 1970" : " since the header's time stamp");
 }
 
 Json fields_of(const SweepLayout& sweeps, bool timed) {
   Json out = Json::array();
   if (sweeps.livox) {
-    return {{{"name", "offset_time"}, {"type", "uint32"}, {"unit", "ns since timebase, which is the header's stamp"}},
+    return {{{"name", "offset_time"},
+             {"type", "uint32"},
+             {"unit", "ns since timebase, which equals the header's time stamp"}},
             {{"name", "x y z"}, {"type", "float32"}, {"unit", "m, in the lidar's frame, not deskewed"}},
             {{"name", "reflectivity"}, {"type", "uint8"}, {"unit", "0 to 255"}},
-            {{"name", "tag"}, {"type", "uint8"}, {"unit", "0: a single return of full confidence"}},
-            {{"name", "line"}, {"type", "uint8"}, {"unit", "from bottom to top, or line"}}};
+            {{"name", "tag"}, {"type", "uint8"}, {"unit", "0: a single return with full confidence"}},
+            {{"name", "line"}, {"type", "uint8"}, {"unit", "from bottom to top, or line number"}}};
   }
   for (const PointColumn& column : sweeps.columns) {
     if (column.quantity == PointQuantity::time && !timed) continue;
@@ -74,9 +76,9 @@ Json imu_of(const ImuFacts& imu, const ReaderNames& names) {
           {"rate_hz", 1.0 / imu.period_s},
           {"gyro_unit", "rad/s"},
           {"accel_unit", "m/s^2"},
-          {"accel_at_rest", "+gravity along up"},
+          {"accel_at_rest", "+gravity along the upward axis"},
           {"attitude", "none: identity, covariance -1"},
-          {"stamp", "end of the window that a sample is the mean over"},
+          {"stamp", "end of the window over which a sample is the mean"},
           {"gyro_noise_rad_s_sqrt_hz", imu.gyro_noise_rad_s_sqrt_hz},
           {"accel_noise_m_s2_sqrt_hz", imu.accel_noise_m_s2_sqrt_hz},
           {"stated_gyro_range_rad_s", imu.stated_gyro_range_rad_s},
@@ -94,8 +96,8 @@ Json lidar_of(const LidarFacts& lidar, const ReaderNames& names, const SweepLayo
           {"sweeps", lidar.sweeps},
           {"points", lidar.points},
           {"rate_hz", 1.0 / lidar.period_s},
-          {"stamp", "start of the sweep; in the bag's own order a sweep comes when it is over"},
-          {"order", "of time; no returns that missed"},
+          {"stamp", "start of the sweep; in the order of the bag, a sweep comes when it is complete"},
+          {"order", "by time; missing returns are left out"},
           {"fields", fields_of(sweeps, lidar.timed)},
           {"rings", lidar.rings},
           {"columns", lidar.columns},
@@ -125,7 +127,7 @@ std::string manifest_of(const Dialect& dialect, const SensorFacts& facts, const 
     out["extrinsics"]["T_body_imu"] = pose(facts.T_BI);
     out["extrinsics"]["T_imu_lidar"] = pose(facts.T_IL());
   }
-  if (with_truth) out["truth"] = {{"path", "truth.tum"}, {"of", names.body_frame}, {"clock", "the bag's"}};
+  if (with_truth) out["truth"] = {{"path", "truth.tum"}, {"of", names.body_frame}, {"clock", "clock of the bag"}};
   out["configuration"] = configuration;
   out["run"] = dialect.run;
   out["notes"] = dialect.notes;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// norlab_icp_mapper_ros (norlab-ulaval, BSD-3), the mapper of the published rig's authors.
+// norlab_icp_mapper_ros (norlab-ulaval, BSD-3), the mapper by the authors of the published rig.
 #include <fmt/format.h>
 
 #include "scenarios/recordings/dialects/dialect.hpp"
@@ -36,7 +36,7 @@ std::string node_file(const ReaderNames& names) {
 }
 
 std::string mapper_file(const SensorFacts& facts) {
-  return fmt::format(R"(# numbers without a remark are the authors'
+  return fmt::format(R"(# numbers without a comment are the authors' defaults
 mapper:
   updateCondition:
     type: distance
@@ -76,7 +76,7 @@ icp:
       maxDist: 2.0                 # m; of the authors' 200 and 2
   errorMinimizer:
     PointToPlaneErrorMinimizer:
-      force4DOF: 0                 # 1 of the authors: a vehicle does not tumble
+      force4DOF: 0                 # the authors use 1, for a vehicle that does not tumble
   transformationCheckers:
     - CounterTransformationChecker:
         maxIterationCount: 40
@@ -107,10 +107,10 @@ Dialect norlab_dialect() {
   out.configuration = norlab_configuration;
   out.run = "ros2 run norlab_icp_mapper_ros mapper_node --ros-args --params-file mapper_node.yaml; ros2 bag play bag";
   out.notes = {
-      "it asks for the lidar in odom at each cloud: base_link stands still there in /tf_static, so that the last pose "
-      "is "
-      "the prior; an odometry on /tf in its place is better",
-      "it does not deskew: t comes along as a descriptor, under no name of a time, which its converter would not take"};
+      "the mapper needs the lidar in odom at each cloud: base_link is fixed there in /tf_static, so the prior is the "
+      "last pose; replace it by an odometry on /tf if available",
+      "the mapper does not deskew: t is exported as a descriptor under a name that its converter does not read as a "
+      "time"};
   out.sources = {
       {repository, "src/mapper_node.cpp", "00cedbe643e593a0f151909728953f715100e568"},
       {repository, "launch/mapper.launch.py", "0597a99fe485f93dc6684fa267c68c53fa1a966d"},

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Point-LIO (hku-mars/Point-LIO, GPL-2): facts of its interface alone, none of its text.
+// Point-LIO (hku-mars/Point-LIO, GPL-2): contains facts about its interface only, none of its text.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -11,7 +11,8 @@ namespace tumble::scenarios {
 
 namespace {
 
-/// Where the peer takes an axis for clipped. Its sheet may state less than the device gives: then what was read holds.
+/// Returns the saturation threshold for the peer. The data sheet may state less than the device reaches; then the
+/// largest reading is used.
 double rail(double stated, double largest) {
   return std::max(stated, largest);
 }
@@ -21,7 +22,7 @@ std::vector<ConfigurationFile> point_lio_configuration(const SensorFacts& facts,
   const LidarFacts& lidar = *facts.lidar;
   const Eigen::Isometry3d T_IL = facts.T_IL();
   const std::string text = fmt::format(
-      R"(# in the place of config/{file}; numbers without a remark are the authors'
+      R"(# replaces config/{file}; numbers without a comment are the authors' defaults
 common:
   lid_topic: "{points}"
   imu_topic: "{imu}"
@@ -34,23 +35,23 @@ preprocess:
   lidar_type: {type}                    # 1 Livox CustomMsg, 2 Velodyne
   scan_line: {rings}                    # rings of this lidar
   scan_rate: {scan_rate}
-  timestamp_unit: {unit}                # of a Velodyne's time: 0 s; a CustomMsg has ns
-  blind: {blind}                       # m: the robot itself is nearer
+  timestamp_unit: {unit}                # unit of a Velodyne's point times: 0 is s; a CustomMsg has ns
+  blind: {blind}                       # m; excludes the robot itself
 mapping:
   imu_en: true
   extrinsic_est_en: false
   imu_time_inte: {imu_period}           # s, period of this IMU
   lidar_time_inte: {sweep_period}
-  satu_acc: {satu_acc}                 # m/s^2: the stated {stated_acc}, or the largest reading where that is more
-  satu_gyro: {satu_gyro}               # rad/s: the stated {stated_gyro}, or the largest reading where that is more
+  satu_acc: {satu_acc}                 # m/s^2: the stated {stated_acc}, or the largest reading if larger
+  satu_gyro: {satu_gyro}               # rad/s: the stated {stated_gyro}, or the largest reading if larger
   acc_norm: 9.81                    # readings are in m/s^2
   lidar_meas_cov: 0.01
   acc_cov_output: 500.0
   gyr_cov_output: 1000.0
   b_acc_cov: 0.0001
   b_gyr_cov: 0.0001
-  imu_meas_acc_cov: 0.1             # of a sample by its sheet: {acc_var}
-  imu_meas_omg_cov: 0.1             # of a sample by its sheet: {gyr_var}
+  imu_meas_acc_cov: 0.1             # variance of a sample by the data sheet: {acc_var}
+  imu_meas_omg_cov: 0.1             # variance of a sample by the data sheet: {gyr_var}
   gyr_cov_input: 0.01
   acc_cov_input: 0.1
   plane_thr: 0.1
@@ -96,8 +97,7 @@ Dialect point_lio_dialect() {
   out.sweeps = fast_lio_layout;
   out.configuration = point_lio_configuration;
   out.run = "roslaunch point_lio mapping_velody16.launch (mapping_avia.launch of a Livox); rosbag play recording.bag";
-  out.notes = {
-      "check_satu is on by default: an axis at 0.99 of satu_gyro or satu_acc or above is left out of the update"};
+  out.notes = {"check_satu is on by default: the update leaves out an axis at or above 0.99 of satu_gyro or satu_acc"};
   out.sources = {{"hku-mars/Point-LIO", "src/preprocess.h", commit},
                  {"hku-mars/Point-LIO", "src/preprocess.cpp", commit},
                  {"hku-mars/Point-LIO", "src/parameters.cpp", commit},

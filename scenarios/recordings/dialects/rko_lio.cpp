@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// RKO-LIO (PRBonn/rko_lio, MIT), by its program for Python.
+// RKO-LIO (PRBonn/rko_lio, MIT), with its Python program.
 #include <fmt/format.h>
 
 #include "scenarios/recordings/dialects/dialect.hpp"
@@ -14,14 +14,14 @@ ReaderNames rko_lio_names(const SensorFacts&) {
 }
 
 std::vector<ConfigurationFile> rko_lio_configuration(const SensorFacts& facts, const ReaderNames&) {
-  const std::string text = fmt::format(R"(# what stands not here is as the authors have it
+  const std::string text = fmt::format(R"(# all other values are the authors' defaults
 deskew: true
 max_range: {}   # m, farthest return
-min_range: {}   # m: the robot itself is nearer
+min_range: {}   # m; excludes the robot itself
 lidar_timestamps:
   multiplier_to_seconds: 1.0e-9   # t is in ns
   force_absolute: false
-  force_relative: true            # since the stamp, also where the first return comes late
+  force_relative: true            # times count from the stamp, even if the first return is late
 extrinsic_imu2base_quat_xyzw_xyz: {}
 extrinsic_lidar2base_quat_xyzw_xyz: {}
 )",
@@ -39,7 +39,7 @@ Dialect rko_lio_dialect() {
   out.sweeps = ouster_layout;
   out.configuration = rko_lio_configuration;
   out.run = "rko_lio -c rko_lio.yaml --imu /imu --lidar /lidar/points bag";
-  out.notes = {"its noise is not asked for; its poses are those of base_link"};
+  out.notes = {"RKO-LIO needs no noise parameters; its poses are those of base_link"};
   out.sources = {
       {"PRBonn/rko_lio", "rko_lio/core/process_timestamps.cpp", "2250832d5b20fd3cc9e41025da8e9660c24d3c98"},
       {"PRBonn/rko_lio", "rko_lio/python/rko_lio/config.py", "0a4d0eff6583054938b21cf8625e43e002031ccf"},

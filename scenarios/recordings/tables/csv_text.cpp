@@ -22,7 +22,7 @@ std::string_view trimmed(std::string_view text) {
   return text;
 }
 
-/// Of the first line.
+/// Returns the most frequent separator in the first line.
 char likely_separator(std::string_view text) {
   const std::string_view line = text.substr(0, text.find('\n'));
   char most = ',';
@@ -32,16 +32,17 @@ char likely_separator(std::string_view text) {
   return most;
 }
 
-/// Throws BadInput where the bytes are no lines of text in UTF-8, which is met before what it makes of columns.
+/// Throws BadInput unless the file is UTF-8 text with lines; checked before columns, for a better message.
 void require_lines(const std::string& name, std::string_view text) {
   const std::string_view mark = text.substr(0, 2);
-  if (mark == "\xFF\xFE" || mark == "\xFE\xFF") throw BadInput(name + ": is text in UTF-16, must be in UTF-8");
+  if (mark == "\xFF\xFE" || mark == "\xFE\xFF") throw BadInput(name + ": the text is in UTF-16; it must be in UTF-8");
   if (const std::size_t zero = text.find('\0'); zero != std::string_view::npos) {
     const auto line = std::count(text.begin(), text.begin() + static_cast<std::ptrdiff_t>(zero), '\n') + 1;
-    throw BadInput(name + ":" + std::to_string(line) + ": holds a byte 0: no text, or a file that is damaged");
+    throw BadInput(name + ":" + std::to_string(line) +
+                   ": contains a zero byte; the file is damaged or not a text file");
   }
   if (text.find('\n') == std::string_view::npos && text.find('\r') != std::string_view::npos)
-    throw BadInput(name + ": its lines end in a carriage return alone, must end in a line feed");
+    throw BadInput(name + ": its lines end in a carriage return only; they must end in a line feed");
 }
 
 }  // namespace
@@ -55,9 +56,9 @@ CsvText::CsvText(const std::filesystem::path& path, char separator) : name_(path
   if (text_.back() != '\n') {
     const auto lines = std::count(text_.begin(), text_.end(), '\n') + 1;
     throw BadInput(name_ + ":" + std::to_string(lines) +
-                   ": the last line has no line end: the file may be cut in the middle of a number");
+                   ": the last line has no line end; the file may be truncated within a number");
   }
-  if (text_.starts_with("\xEF\xBB\xBF")) at_ = 3;  // a mark of the encoding
+  if (text_.starts_with("\xEF\xBB\xBF")) at_ = 3;  // byte order mark
   text_.erase(text_.find_last_not_of(" \t\r\n") + 1);
   text_ += '\n';
 }
@@ -68,7 +69,7 @@ CsvText::CsvText(const std::filesystem::path& path) : CsvText(path, ',') {
 
 bool CsvText::next(CsvLine& line) {
   if (at_ >= text_.size()) return false;
-  const std::size_t end = text_.find('\n', at_);  // there is one: the text ends in it
+  const std::size_t end = text_.find('\n', at_);  // always found: the text ends in a newline
   std::string_view text = std::string_view(text_).substr(at_, end - at_);
   at_ = end + 1;
   line.where = name_ + ":" + std::to_string(++number_);
@@ -91,8 +92,8 @@ double csv_number(const CsvLine& line, std::size_t index, const std::string& col
   const std::string place = line.where + ": column " + column + " ";
   if (!read_number(text, value)) {
     const bool comma = text.find(',') != std::string_view::npos;
-    throw BadInput(place + "must be a number, is '" + std::string(text) + "'" +
-                   (comma ? ": decimals stand behind a point" : ""));
+    throw BadInput(place + "must be a number; it is '" + std::string(text) + "'" +
+                   (comma ? "; use a decimal point" : ""));
   }
   if (!std::isfinite(value)) throw BadInput(place + "is not finite");
   return value;

@@ -15,7 +15,7 @@ constexpr double kHeldShare = 0.05, kFrozenShare = 0.98;
 constexpr double kRailLeast_m_s2 = 14.7;
 constexpr int kRailReadings = 5, kRailContrast = 3;
 
-/// Rows whose reading differs from the row before; the first one is new.
+/// Returns the rows whose reading differs from the previous row, and the first row.
 std::vector<std::size_t> fresh_rows(const std::vector<Eigen::Vector3d>& readings) {
   std::vector<std::size_t> rows;
   for (std::size_t k = 0; k < readings.size(); ++k) {
@@ -24,7 +24,7 @@ std::vector<std::size_t> fresh_rows(const std::vector<Eigen::Vector3d>& readings
   return rows;
 }
 
-/// A reading came after the row before and before its own.
+/// A reading was taken between the previous row's time and its own.
 std::vector<std::int64_t> beat_of(const std::vector<std::int64_t>& time_ns, const std::vector<std::size_t>& rows) {
   std::vector<std::int64_t> stamps;
   std::vector<StampBounds> bounds;
@@ -39,12 +39,13 @@ double repeated_share(std::size_t fresh, std::size_t rows) {
   return rows < 2 ? 0.0 : static_cast<double>(rows - fresh) / static_cast<double>(rows - 1);
 }
 
-/// What repeats for ever is not held but frozen, or at rest to the last digit: nothing is known of its beat.
+/// Readings that almost always repeat are not held: the sensor is frozen or noise-free at rest, and its period is
+/// unknown.
 bool is_held(double share) {
   return share > kHeldShare && share < kFrozenShare;
 }
 
-/// Readings at `times`, which rise, by straight lines between the sensor's own; the nearest beyond its ends.
+/// Interpolates readings linearly at `times`, which increase; beyond the ends the nearest reading is used.
 std::vector<Eigen::Vector3d> interpolated(const std::vector<std::int64_t>& own,
                                           const std::vector<Eigen::Vector3d>& values,
                                           const std::vector<std::int64_t>& times) {
@@ -94,11 +95,11 @@ HoldReport undo_hold(const LoggedReadings& log, sim::ImuRecord& imu) {
 std::string HoldReport::text() const {
   if (!gyro_held && !accel_held) return "";
   std::string out = fmt::format(
-      "sample and hold: {:.1f} % of the gyro's and {:.1f} % of the accelerometer's rows repeat the "
-      "one before: {} readings of the gyro and {} of the accelerometer in {} rows",
+      "sample and hold: {:.1f} % of the gyro's and {:.1f} % of the accelerometer's rows repeat the previous row: {} "
+      "readings of the gyro and {} of the accelerometer in {} rows",
       100.0 * gyro_repeated, 100.0 * accel_repeated, gyro_held ? readings : rows, accel_readings, rows);
-  if (gyro_held) out += "; repetitions are left out, the rest is put on the gyro's own beat";
-  if (accel_held) out += "; the accelerometer is interpolated between its own readings";
+  if (gyro_held) out += "; repeated rows are left out, and the remaining readings get the sample times of the gyro";
+  if (accel_held) out += "; the accelerometer is interpolated between its distinct readings";
   return out;
 }
 
@@ -121,7 +122,7 @@ std::string accel_rail_text(const std::vector<Eigen::Vector3d>& logged) {
                          "xyz"[axis], sign * extreme, top);
     }
   }
-  return out.empty() ? "" : "accelerometer: readings gather at their extreme, as at a rail: " + out;
+  return out.empty() ? "" : "accelerometer: many readings are at the largest value, as if saturated: " + out;
 }
 
 }  // namespace tumble::scenarios

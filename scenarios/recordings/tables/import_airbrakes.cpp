@@ -21,16 +21,16 @@ namespace {
 constexpr const char* kAirbrakesAttribution =
     "AirbrakesV2, NCSU High-Powered Rocketry Club (github.com/NCSU-High-Powered-Rocketry-Club/AirbrakesV2), MIT; ";
 constexpr double kAirbrakesStampMax_s = 1e9;
-/// No estimator bridges more.
+/// Estimators bridge no longer gap.
 constexpr std::int64_t kBridgedGap_ns = 1'000'000'000;
 
 using Columns3 = std::array<std::size_t, 3>;
 
 std::size_t column(const CsvLine& header, const std::string& name) {
   const auto found = std::find(header.fields.begin(), header.fields.end(), name);
-  if (found == header.fields.end()) throw BadInput(header.where + ": column is missing: " + name);
+  if (found == header.fields.end()) throw BadInput(header.where + ": a column is missing: " + name);
   if (std::count(header.fields.begin(), header.fields.end(), name) > 1)
-    throw BadInput(header.where + ": two columns are called " + name);
+    throw BadInput(header.where + ": two columns have the name " + name);
   return static_cast<std::size_t>(found - header.fields.begin());
 }
 
@@ -50,7 +50,7 @@ void keep(std::vector<T>& rows, std::size_t first, std::size_t end) {
                         rows.begin() + static_cast<std::ptrdiff_t>(end));
 }
 
-/// Logs begin long before the flight with a few samples: the longest segment without a gap stays.
+/// Logs start long before the flight with few samples: keeps the longest segment without a gap.
 void keep_longest_segment(sim::ImuRecord& imu, std::vector<std::string>& notes) {
   const std::size_t count = imu.time_ns.size();
   std::size_t first = 0, end = 0, gaps = 0;
@@ -61,7 +61,7 @@ void keep_longest_segment(sim::ImuRecord& imu, std::vector<std::string>& notes) 
     begin = k;
   }
   if (gaps == 0) return;
-  notes.push_back(fmt::format("{} gaps of more than 1 s: the longest segment is kept, samples {} to {} of {}", gaps,
+  notes.push_back(fmt::format("{} gaps of more than 1 s; the longest segment is kept: samples {} to {} of {}", gaps,
                               first, end - 1, count));
   keep(imu.time_ns, first, end);
   keep(imu.gyro_rad_s, first, end);
@@ -94,8 +94,8 @@ Imported import_airbrakes(const std::filesystem::path& path) {
   std::size_t doubled = 0;
   while (text.next(line)) {
     if (line.fields.size() != count) {
-      throw BadInput(line.where + ": has " + std::to_string(line.fields.size()) + " columns, the header " +
-                     std::to_string(count) + "; must be equal");
+      throw BadInput(fmt::format("{}: has {} columns, but the header has {}; must be equal", line.where,
+                                 line.fields.size(), count));
     }
     const double time_s = csv_number(line, stamp, "timestamp_seconds");
     if (!(time_s >= 0.0 && time_s <= kAirbrakesStampMax_s)) {
@@ -116,7 +116,7 @@ Imported import_airbrakes(const std::filesystem::path& path) {
   finish_readings(path.string(), AccelUnit::g, imu);
   const std::int64_t first_ns = imu.time_ns.front();
   for (std::int64_t& time : imu.time_ns) time -= first_ns;
-  if (doubled > 0) out.notes.push_back(fmt::format("{} rows repeat a stamp: left out", doubled));
+  if (doubled > 0) out.notes.push_back(fmt::format("{} rows repeat a time stamp; they are left out", doubled));
   for (const std::string& note :
        {require_plausible_rates(path.string(), imu, GyroUnit::deg_s), accel_rail_text(imu.accel_m_s2)}) {
     if (!note.empty()) out.notes.push_back(note);

@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -21,8 +23,8 @@ constexpr const char* kBroadAttribution =
     "D. Laidig, M. Caruso, A. Cereatti, T. Seel: BROAD - A Benchmark for Robust Inertial Orientation Estimation, "
     "Data 2021, 6(7), 72; CC BY 4.0; trial ";
 
-/// Half the span over which the reference is differentiated: 70 ms, so that its noise at rest stays below the bounds by
-/// which scores tell rest from motion (measured: 0.022 rad/s at half of this); fast turns are blurred.
+/// Half the span of the reference's differences: 70 ms. The noise at rest then stays below the thresholds that scores
+/// use for rest (measured: 0.022 rad/s at half this span). Fast rotations are blurred.
 constexpr std::size_t kSlopeReach = 20;
 
 sim::ImuRecord read_imu(const hdf5::Group& root, double rate_hz) {
@@ -34,14 +36,14 @@ sim::ImuRecord read_imu(const hdf5::Group& root, double rate_hz) {
   if (root.has("imu_mag")) root.read("imu_mag", imu.magnetic_field_t);
   for (Eigen::Vector3d& field : imu.magnetic_field_t) field *= kTeslaPerMicrotesla;
   for (std::size_t k = 0; k < imu.gyro_rad_s.size(); ++k) {
-    // from the rate itself: multiples of the rounded period would drift
+    // computed from the rate: multiples of a rounded period would drift
     imu.time_ns.push_back(std::llround(static_cast<double>(k) * 1e9 / rate_hz));
   }
   imu.clip_flags.assign(imu.time_ns.size(), 0);
   return imu;
 }
 
-/// Attitudes of length one; NaN where the cameras saw too few markers.
+/// Returns unit quaternions; NaN where the cameras saw too few markers.
 std::vector<Eigen::Quaterniond> attitudes(const hdf5::Group& root) {
   std::vector<Eigen::Vector4d> rows;
   root.read("opt_quat", rows);
@@ -50,7 +52,7 @@ std::vector<Eigen::Quaterniond> attitudes(const hdf5::Group& root) {
     Eigen::Quaterniond q(row[0], row[1], row[2], row[3]);
     if (row.allFinite()) {
       if (std::abs(q.norm() - 1.0) > 1e-2)
-        root.fail("opt_quat", "row " + std::to_string(q_WB.size()) + " is not of unit length");
+        root.fail("opt_quat", fmt::format("row {} is not of unit length", q_WB.size()));
       q.normalize();
     } else {
       q.coeffs().setConstant(kNaN);
@@ -60,7 +62,7 @@ std::vector<Eigen::Quaterniond> attitudes(const hdf5::Group& root) {
   return q_WB;
 }
 
-/// The attitudes that the cameras saw, at the samples' stamps.
+/// Returns the known attitudes at the samples' stamps.
 std::vector<ReferencePose> known_poses(const sim::Truth& truth, const sim::ImuRecord& imu) {
   std::vector<ReferencePose> poses;
   for (std::size_t k = 0; k < truth.q_WB.size(); ++k) {
@@ -69,7 +71,7 @@ std::vector<ReferencePose> known_poses(const sim::Truth& truth, const sim::ImuRe
   return poses;
 }
 
-/// The optical reference. The body's axes are the IMU's, the world's are east, north and up.
+/// Reads the optical reference. Body axes are the IMU's; world axes are east, north, up.
 std::optional<sim::Truth> read_reference(const hdf5::Group& root, const sim::ImuRecord& imu) {
   if (!root.has("opt_quat") || !root.has("opt_pos")) return std::nullopt;
   sim::Truth truth;
@@ -79,7 +81,7 @@ std::optional<sim::Truth> read_reference(const hdf5::Group& root, const sim::Imu
   for (const auto& [name, rows] :
        {std::pair{"opt_quat", truth.q_WB.size()}, std::pair{"opt_pos", truth.p_WB_m.size()}}) {
     if (rows != imu.time_ns.size()) {
-      root.fail(name, "has " + std::to_string(rows) + " rows, imu_gyr has " + std::to_string(imu.time_ns.size()));
+      root.fail(name, fmt::format("has {} rows, but imu_gyr has {}", rows, imu.time_ns.size()));
     }
   }
   differentiate(truth, kSlopeReach);
@@ -96,7 +98,7 @@ Imported import_broad(const std::filesystem::path& path) {
   const hdf5::InputFile file(path);
   const hdf5::Group& root = file.root();
   if (root.has_attribute("format") && root.text_attribute("format") == kRecordingFormat)
-    throw BadInput(path.string() + ": is a recording already, which every verb reads as it is; nothing to import");
+    throw BadInput(path.string() + ": this file is a recording already; it can be used directly and needs no import");
   const double rate_hz = root.double_attribute("sampling_rate");
   if (!(rate_hz >= 1.0 && rate_hz <= 1e5)) root.fail("sampling_rate", "must be within 1 and 100000 Hz");
   Imported out;

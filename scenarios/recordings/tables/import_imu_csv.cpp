@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include <fmt/format.h>
+
 #include <array>
 #include <optional>
 #include <string>
@@ -13,13 +15,12 @@ namespace tumble::scenarios {
 
 namespace {
 
-/// The unit that the names state, else the one asked for. Another than theirs cannot be asked for; the usual one counts
-/// as not asked.
+/// Returns the unit in the column names, else the requested one. Throws if a non-default request contradicts the names.
 template <class Unit>
 Unit chosen(std::optional<Unit> stated, Unit asked, Unit usual, const CsvLine& header) {
   if (!stated || *stated == asked) return asked;
   if (asked == usual) return *stated;
-  throw BadInput(header.where + ": its names say rad/s and m/s^2, another unit is asked for");
+  throw BadInput(header.where + ": the column names state rad/s and m/s^2, but another unit was given");
 }
 
 Eigen::Vector3d vector(const CsvLine& line, const std::array<std::size_t, 3>& columns) {
@@ -31,15 +32,17 @@ std::string unit_of_stamps(int decimals) {
   return decimals == 9 ? "s" : decimals == 6 ? "ms" : decimals == 3 ? "us" : "ns";
 }
 
-/// What was taken for what, where a logger's names leave room.
+/// Notes the interpretation of ambiguous column names.
 void say_columns(const ImuColumns& columns, bool stated, std::vector<std::string>& notes) {
   if (columns.stamp_form != StampForm::decimal) return;
-  if (!stated) notes.push_back("times are taken for " + unit_of_stamps(*columns.stamp_decimals) + " by their steps");
-  if (columns.gyro_unit == GyroUnit::deg_s) notes.push_back("rates in deg/s, as their names say");
-  if (columns.accel_unit == AccelUnit::g) notes.push_back("specific force in g, as its names say");
+  if (!stated)
+    notes.push_back(
+        fmt::format("times are read in {}, from the size of their steps", unit_of_stamps(*columns.stamp_decimals)));
+  if (columns.gyro_unit == GyroUnit::deg_s) notes.push_back("rates are read in deg/s, from the column names");
+  if (columns.accel_unit == AccelUnit::g) notes.push_back("specific force is read in g, from the column names");
   std::string others;
   for (const std::string& name : columns.left_out) others += (others.empty() ? "" : ", ") + name;
-  if (!others.empty()) notes.push_back("columns left out: " + others);
+  if (!others.empty()) notes.push_back("ignored columns: " + others);
 }
 
 }  // namespace
@@ -74,8 +77,7 @@ Imported import_imu_csv(const std::filesystem::path& path, const sim::ImuRecord&
   }
   const std::int64_t first_ns = imu.time_ns.front();
   for (std::int64_t& time : imu.time_ns) time -= first_ns;
-  out.info.attribution =
-      "imported from " + path.filename().string() + ", first stamp " + std::to_string(first_ns) + " ns";
+  out.info.attribution = fmt::format("imported from {}, first time stamp {} ns", path.filename().string(), first_ns);
   out.info.origin_ns = first_ns;
   out.sensors.imus.push_back(std::move(imu));
   return out;

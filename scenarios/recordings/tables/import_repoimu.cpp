@@ -30,17 +30,17 @@ constexpr const char* kRepoimuAttribution =
 
 constexpr double kBadNormShareMax = 0.2;
 constexpr double kRepoimuStampMax_s = 86400.0;
-/// Rows on either side that tell how finely stamps are printed around a row.
+/// Rows on either side used to find the precision of printed stamps.
 constexpr std::size_t kDigitsReach = 50;
-constexpr double kCoarse = 0.02;  // of a step: printed more coarsely than this is worth a remark
+constexpr double kCoarse = 0.02;  // fraction of a step above which coarse printing is noted
 
-/// The groups of columns, and where each column stands.
+/// Positions of the columns by group.
 struct RepoimuColumns {
   std::size_t time = 0;
   std::array<std::size_t, 4> attitude{};  ///< w x y z
   std::array<std::size_t, 3> force{}, rate{};
   std::size_t count = 0;    ///< of the header
-  bool open_ended = false;  ///< the header ends in a separator, rows need not
+  bool open_ended = false;  ///< the header ends in a separator, rows may not
 };
 
 struct Log {
@@ -51,11 +51,11 @@ struct Log {
   std::vector<std::string> where;
 };
 
-/// "Vicon Orientation/W": the group's name stands above its first column.
+/// "Vicon Orientation/W": the group's name is above its first column.
 std::vector<std::string> column_names(const CsvLine& groups, const CsvLine& names) {
   if (groups.fields.size() != names.fields.size()) {
-    fail(names, "has " + std::to_string(names.fields.size()) + " columns, the line above " +
-                    std::to_string(groups.fields.size()) + "; must be equal");
+    fail(names, fmt::format("has {} columns, but the line above has {}; must be equal", names.fields.size(),
+                            groups.fields.size()));
   }
   std::vector<std::string> full;
   std::string group;
@@ -75,17 +75,17 @@ RepoimuColumns columns_of(const CsvLine& groups, const CsvLine& second) {
   std::string missing;
   const auto take = [&](const std::string& name, std::size_t& place) {
     const auto count = std::count(names.begin(), names.end(), name);
-    if (count > 1) fail(second, "two columns are called " + name);
+    if (count > 1) fail(second, "two columns have the name " + name);
     if (count == 0) missing += " '" + name + "'";
     const auto found = std::find(names.begin(), names.end(), name);
     place = static_cast<std::size_t>(found - names.begin());
-    if (found != names.end()) *found = "";  // taken
+    if (found != names.end()) *found = "";  // used
   };
   take("Time", columns.time);
   for (std::size_t i = 0; i < 4; ++i) take(std::string("Vicon Orientation/") + "WXYZ"[i], columns.attitude[i]);
   for (std::size_t i = 0; i < 3; ++i) take(std::string("IMU Acceleration/") + "XYZ"[i], columns.force[i]);
   for (std::size_t i = 0; i < 3; ++i) take(std::string("IMU Gyroscope/") + "XYZ"[i], columns.rate[i]);
-  if (!missing.empty()) fail(second, "columns are missing:" + missing);
+  if (!missing.empty()) fail(second, "missing columns:" + missing);
   for (const std::string& name : names) {
     const bool magnetic = name.starts_with("IMU Magnetometer/") && name.size() == 18 && name.back() >= 'X';
     if (!name.empty() && !magnetic) fail(second, "unknown column '" + name + "'");
@@ -93,7 +93,7 @@ RepoimuColumns columns_of(const CsvLine& groups, const CsvLine& second) {
   return columns;
 }
 
-/// A published file holds a value with a decimal comma among thousands with points; between ';' it is no separator.
+/// Accepts a decimal comma, which one published file contains; between ';' it is unambiguous.
 class DecimalNumbers {
  public:
   DecimalNumbers(const CsvLine& line, std::size_t& commas) : line_(line), commas_(commas) {}
@@ -102,7 +102,7 @@ class DecimalNumbers {
     const std::size_t comma = text.find(',');
     if (comma == std::string_view::npos) return csv_number(line_, column, name);
     if (text.find('.') != std::string_view::npos || text.find(',', comma + 1) != std::string_view::npos)
-      return csv_number(line_, column, name);  // refuses it
+      return csv_number(line_, column, name);  // throws
     std::string pointed(text);
     pointed[comma] = '.';
     ++commas_;
@@ -111,7 +111,7 @@ class DecimalNumbers {
   Eigen::Vector3d at(const std::array<std::size_t, 3>& columns, const char* name) {
     return {at(columns[0], name), at(columns[1], name), at(columns[2], name)};
   }
-  /// NaN or nothing where the cameras saw nothing.
+  /// Returns NaN for missing values, where the cameras saw nothing.
   double or_unknown(std::size_t column, const char* name) {
     const std::string_view text = line_.fields[column];
     if (text.empty() || text == "NaN" || text == "nan") return kNaN;
@@ -123,13 +123,13 @@ class DecimalNumbers {
   std::size_t& commas_;
 };
 
-/// Decimals of a number as it is printed.
+/// Returns the number of printed decimals.
 int decimals(std::string_view text) {
   const std::size_t point = text.find('.');
   return point == std::string_view::npos ? 0 : static_cast<int>(text.size() - point - 1);
 }
 
-/// Half of the last decimal that stamps around a row are printed with.
+/// Returns half of the last printed decimal of the stamps around each row.
 std::vector<StampBounds> rounding_of(const std::vector<int>& decimals) {
   std::vector<StampBounds> bounds;
   for (std::size_t k = 0; k < decimals.size(); ++k) {
@@ -147,7 +147,7 @@ Log read_log(const std::filesystem::path& path) {
   CsvText text(path, ';');
   CsvLine groups, line;
   text.next(groups);
-  if (!text.next(line)) throw BadInput(path.string() + ": ends in its header");
+  if (!text.next(line)) throw BadInput(path.string() + ": the file ends within its header");
   const RepoimuColumns columns = columns_of(groups, line);
   Log log;
   std::vector<int> digits;
@@ -155,8 +155,7 @@ Log read_log(const std::filesystem::path& path) {
     const std::size_t found = line.fields.size();
     const bool trailing = columns.open_ended && found == columns.count && line.fields.back().empty();
     if (found != columns.count - (columns.open_ended ? 1 : 0) && !trailing) {
-      fail(line, "has " + std::to_string(found) + " columns, must have " +
-                     std::to_string(columns.count - (columns.open_ended ? 1 : 0)));
+      fail(line, fmt::format("has {} columns, must have {}", found, columns.count - (columns.open_ended ? 1 : 0)));
     }
     DecimalNumbers numbers(line, log.decimal_commas);
     const double time_s = numbers.at(columns.time, "Time");
@@ -164,7 +163,7 @@ Log read_log(const std::filesystem::path& path) {
       fail(line, fmt::format("Time is {} s, must be within 0 and {}", time_s, kRepoimuStampMax_s));
     const std::int64_t time_ns = std::llround(time_s * 1e9);
     if (!log.readings.time_ns.empty() && time_ns < log.readings.time_ns.back()) {
-      fail(line, fmt::format("Time goes back: {:.9g} s after {:.9g} s", time_s,
+      fail(line, fmt::format("Time decreases: {:.9g} s after {:.9g} s", time_s,
                              1e-9 * static_cast<double>(log.readings.time_ns.back())));
     }
     const auto& a = columns.attitude;
@@ -184,7 +183,7 @@ Log read_log(const std::filesystem::path& path) {
   return log;
 }
 
-/// Stamps on their beat; says so where printing had coarsened them.
+/// Regularises the stamps, with a note if printing was coarse.
 void steady(Log& log, std::vector<std::string>& notes) {
   const std::vector<std::int64_t> printed = log.readings.time_ns;
   log.readings.time_ns = steady_stamps(printed, log.rounding);
@@ -196,19 +195,19 @@ void steady(Log& log, std::vector<std::string>& notes) {
     if (k == 0) continue;
     const bool same = printed[k] == printed[k - 1];
     equal += same ? 1 : 0;
-    // stamps that are printed finely do not repeat by their rounding
+    // precise stamps do not repeat because of rounding
     const bool coarse = 2 * (log.rounding[k].before_ns + log.rounding[k].after_ns) >= mean_step;
     if (time_ns <= log.readings.time_ns[k - 1] || (same && !coarse)) {
-      throw BadInput(fmt::format("{}: Time does not rise: {:.9g} s twice, beyond what its rounding explains",
-                                 log.where[k], 1e-9 * static_cast<double>(printed[k])));
+      throw BadInput(fmt::format("{}: Time does not increase: {:.9g} s occurs twice, beyond its rounding", log.where[k],
+                                 1e-9 * static_cast<double>(printed[k])));
     }
   }
   for (std::size_t k = 0; k < printed.size(); ++k) log.poses[k].time_ns = log.readings.time_ns[k];
   const auto span = static_cast<double>(printed.back() - printed.front());
   if (static_cast<double>(most_ns) > kCoarse * span / static_cast<double>(printed.size() - 1)) {
     notes.push_back(fmt::format(
-        "stamps are printed in steps of up to {} ms: put on a steady beat within their rounding, moved "
-        "by up to {:.1f} ms ({} were equal to the one before)",
+        "time stamps are rounded to {} ms; they are replaced by equally spaced times within their rounding, shifted by "
+        "up to {:.1f} ms ({} were equal to the previous one)",
         2e-6 * static_cast<double>(log.rounding.back().before_ns), 1e-6 * static_cast<double>(most_ns), equal));
   }
 }
@@ -221,12 +220,12 @@ void require_attitudes(const std::filesystem::path& path, const Log& log) {
   }
   if (static_cast<double>(bad) <= kBadNormShareMax * static_cast<double>(log.poses.size())) return;
   throw BadInput(
-      fmt::format("{}: the quaternion's norm is {:.4f}, must be 1 within a percent; so are {} of {} in {}, at most "
-                  "a fifth may be",
+      fmt::format("{}: the quaternion's norm is {:.4f}; it must be 1 within 1 %. This is so for {} of {} in {}; at "
+                  "most a fifth is allowed",
                   log.where[first], log.poses[first].q_WA.norm(), bad, log.poses.size(), path.filename().string()));
 }
 
-/// Errors of the reference's rates at samples whose axes are all far from their extreme.
+/// Describes errors of the reference's rates where all axes are far from their extreme.
 std::string rate_error_text(const sim::ImuRecord& imu, const std::vector<Eigen::Vector3d>& rates) {
   Eigen::Vector3d extreme = Eigen::Vector3d::Zero();
   for (const Eigen::Vector3d& w : imu.gyro_rad_s) extreme = extreme.cwiseMax(w.cwiseAbs());
@@ -239,26 +238,26 @@ std::string rate_error_text(const sim::ImuRecord& imu, const std::vector<Eigen::
   if (errors.empty()) return "";
   std::sort(errors.begin(), errors.end());
   return fmt::format(
-      "reference: rates from attitudes over +-{} ms differ from the free gyro in motion by {:.3f} rad/s on the "
-      "median, {:.3f} at 90 % ({} samples)",
+      "reference: rates from attitudes over +-{} ms differ from the unclipped gyro in motion by {:.3f} rad/s (median) "
+      "and {:.3f} rad/s (90th percentile), {} samples",
       kRateWindow_ns / 1'000'000, errors[errors.size() / 2], errors[errors.size() * 9 / 10], errors.size());
 }
 
-/// The reference becomes the truth of the recording.
+/// Adds the reference as the recording's truth.
 void add_reference(const std::filesystem::path& path, Log& log, bool align, Imported& out) {
   const sim::ImuRecord& imu = out.sensors.imus.front();
   const std::size_t samples = log.poses.size();
   const GlitchReport glitches = leave_out_glitches(log.poses);
   out.notes.push_back(glitches.text(samples));
   if (log.poses.size() < 2) {
-    out.notes.push_back("the reference knows nothing: left out");
+    out.notes.push_back("the reference has no valid samples; it is left out");
     return;
   }
   const ReferenceAlignment alignment = align_reference(log.poses, imu);
   if (alignment.known && align) apply(alignment, log.poses);
   if (!alignment.known && align) throw BadInput(path.string() + ": --align-reference: " + alignment.text());
-  out.notes.push_back(alignment.text() + (align             ? ": taken out"
-                                          : alignment.known ? ": left in; --align-reference takes it out"
+  out.notes.push_back(alignment.text() + (align             ? ": removed"
+                                          : alignment.known ? ": not removed; set --align-reference to remove it"
                                                             : ""));
   try {
     out.reference = reference_truth(log.poses, imu.time_ns.back());
@@ -288,12 +287,12 @@ Imported import_repoimu(const std::filesystem::path& path, bool align) {
   sim::ImuRecord imu;
   imu.name = "imu";
   if (log.where.size() < 2)
-    throw BadInput(path.string() + ": holds " + std::to_string(log.where.size()) + " samples, needs 2");
+    throw BadInput(fmt::format("{}: has {} samples; it needs at least 2", path.string(), log.where.size()));
   require_attitudes(path, log);
   out.info.origin_ns = log.readings.time_ns.front();
   for (std::int64_t& time : log.readings.time_ns) time -= out.info.origin_ns;
   steady(log, out.notes);
-  // the first stamp is time 0, wherever its beat lies within the rounding
+  // time 0 is the first printed stamp, not its regularised time
   const std::int64_t first_ns = log.readings.time_ns.front();
   for (std::int64_t& time : log.readings.time_ns) time -= first_ns;
   for (ReferencePose& pose : log.poses) pose.time_ns -= first_ns;
@@ -306,8 +305,8 @@ Imported import_repoimu(const std::filesystem::path& path, bool align) {
     if (!note.empty()) out.notes.push_back(note);
   }
   if (log.decimal_commas > 0)
-    out.notes.push_back(fmt::format("{} numbers with a decimal comma, read as such", log.decimal_commas));
-  out.notes.push_back("the magnetometer's columns have no unit: left out");
+    out.notes.push_back(fmt::format("{} numbers have a decimal comma; they are read as decimals", log.decimal_commas));
+  out.notes.push_back("the magnetometer's columns have no unit; they are left out");
   out.info.attribution = kRepoimuAttribution + path.filename().string();
   out.sensors.imus.push_back(std::move(imu));
   add_reference(path, log, align, out);

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "scenarios/recordings/tables/imu_columns.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cctype>
 #include <charconv>
@@ -20,24 +22,24 @@ namespace {
 
 constexpr std::int64_t kLatest_ns = kSecondsMax * kSecond_ns;
 
-/// RequiredColumns that a header-less sensor_msgs/Imu must have.
+/// Minimum number of columns of a sensor_msgs/Imu table without header.
 constexpr std::size_t kColumnsByPlace = 15;
 
 const std::array<std::string, 3> kAxes = {"x", "y", "z"};
 
-/// What `export` writes: each of these once, and nothing else.
+/// Columns written by `export`: each once, and nothing else.
 const std::vector<std::string> kExported = {"stamp_s",  "stamp_ns", "frame_id", "qx",
                                             "qy",       "qz",       "qw",       "orientation_covariance",
                                             "wx_rad_s", "wy_rad_s", "wz_rad_s", "angular_velocity_covariance",
                                             "fx_m_s2",  "fy_m_s2",  "fz_m_s2",  "linear_acceleration_covariance"};
 
-/// The one column that `fits`; a second one would be another sensor's.
+/// Returns the only column that `fits`; a second one would belong to another sensor.
 template <class Fits>
 std::optional<std::size_t> find_column(const CsvLine& header, const std::string& name, const Fits& fits) {
   std::optional<std::size_t> found;
   for (std::size_t i = 0; i < header.fields.size(); ++i) {
     if (!fits(header.fields[i])) continue;
-    if (found) fail(header, "two columns are called " + name);
+    if (found) fail(header, "two columns have the name " + name);
     found = i;
   }
   return found;
@@ -53,7 +55,7 @@ std::optional<std::size_t> find_any(const CsvLine& header, const std::vector<std
   });
 }
 
-/// Collects the columns of a header that must all be there.
+/// Collects the columns of a header that must all exist.
 class RequiredColumns {
  public:
   explicit RequiredColumns(const CsvLine& header) : header_(header) {}
@@ -63,10 +65,10 @@ class RequiredColumns {
     else
       missing_ += " " + name;
   }
-  /// False when none is there; throws when some are.
+  /// Returns false if none exists; throws if only some do.
   bool complete() const {
     if (found_ == 0) return false;
-    if (!missing_.empty()) fail(header_, "columns are missing:" + missing_);
+    if (!missing_.empty()) fail(header_, "missing columns:" + missing_);
     return true;
   }
 
@@ -76,7 +78,7 @@ class RequiredColumns {
   std::string missing_;
 };
 
-/// ".../header/stamp" and so on, as tools that flatten messages write them.
+/// Columns ".../header/stamp" and so on, as written by tools that flatten messages.
 std::optional<ImuColumns> flattened(const CsvLine& header) {
   ImuColumns layout;
   RequiredColumns columns(header);
@@ -90,7 +92,7 @@ std::optional<ImuColumns> flattened(const CsvLine& header) {
   return columns.complete() ? std::optional(layout) : std::nullopt;
 }
 
-/// "wx_rad_s" or "wx", "fx_m_s2", "fx" or "ax", "stamp_s", "sec", "secs" or "s" with "stamp_ns" and so on.
+/// Columns "wx_rad_s" or "wx", "fx_m_s2", "fx" or "ax", "stamp_s", "sec", "secs" or "s" with "stamp_ns" and so on.
 std::optional<ImuColumns> named(const CsvLine& header) {
   ImuColumns layout;
   RequiredColumns columns(header);
@@ -104,7 +106,7 @@ std::optional<ImuColumns> named(const CsvLine& header) {
   return columns.complete() ? std::optional(layout) : std::nullopt;
 }
 
-/// A header with names of our own export has all of them, each once, and no other.
+/// Throws unless a header with names of our export has all of them once and no other.
 void require_exported(const CsvLine& header) {
   for (const std::string_view field : header.fields) {
     const std::string name(field);
@@ -113,7 +115,7 @@ void require_exported(const CsvLine& header) {
   }
   for (const std::string& name : kExported) {
     const auto count = std::count(header.fields.begin(), header.fields.end(), name);
-    if (count > 1) fail(header, "two columns are called " + name);
+    if (count > 1) fail(header, "two columns have the name " + name);
   }
 }
 
@@ -124,8 +126,8 @@ double number(const CsvLine& line, std::size_t column) {
 std::int64_t whole_number(const CsvLine& line, std::size_t column, std::int64_t largest) {
   const double value = number(line, column);
   if (value != std::floor(value) || value < 0.0 || value > static_cast<double>(largest)) {
-    fail(line, "column " + std::to_string(column) + " must be a whole number from 0 to " + std::to_string(largest) +
-                   ", is '" + std::string(line.fields[column]) + "'");
+    fail(line, fmt::format("column {} must be a whole number from 0 to {}; it is '{}'", column, largest,
+                           std::string(line.fields[column])));
   }
   return static_cast<std::int64_t>(value);
 }
@@ -134,7 +136,7 @@ bool all_digits(std::string_view text) {
   return std::all_of(text.begin(), text.end(), [](unsigned char c) { return std::isdigit(c) != 0; });
 }
 
-/// A number and what follows its point.
+/// Integer part and decimals of a number.
 struct Decimal {
   std::string_view whole, part;
 
@@ -143,7 +145,7 @@ struct Decimal {
   bool sound() const { return !whole.empty() && all_digits(whole) && all_digits(part); }
 };
 
-/// Of a unit with so many decimals, rounded to nanoseconds without the rounding of a double; none where it is no time.
+/// Converts a number in a unit with this many decimals to nanoseconds, without a double's rounding; empty if invalid.
 std::optional<std::int64_t> scaled_ns(const Decimal& number, std::size_t decimals) {
   std::string digits = std::string(number.whole) + std::string(number.part.substr(0, decimals));
   digits.resize(number.whole.size() + decimals, '0');
@@ -158,24 +160,23 @@ std::int64_t seconds_ns(const CsvLine& line, std::size_t column) {
   const Decimal number(text);
   const auto ns = number.whole.size() <= 10 && number.part.size() <= 9 ? scaled_ns(number, 9) : std::nullopt;
   if (ns) return *ns;
-  fail(line, "column " + std::to_string(column) + " must be seconds with at most nine decimals, is '" +
-                 std::string(text) + "'");
+  fail(line, fmt::format("column {} must be seconds with at most nine decimals; it is '{}'", column, text));
 }
 
 std::int64_t decimal_ns(const CsvLine& line, std::size_t column, int decimals) {
   const std::string_view text = line.fields[column];
   if (const auto ns = scaled_ns(Decimal(text), static_cast<std::size_t>(decimals))) return *ns;
-  fail(line, "column " + std::to_string(column) +
-                 " must be a time, digits with a point or without, up to the year 2255, is '" + std::string(text) +
-                 "'");
+  fail(line,
+       fmt::format("column {} must be a time, digits with or without a decimal point, up to the year 2255; it is '{}'",
+                   column, text));
 }
 
-/// Whole seconds in a column and nanoseconds in another.
+/// Returns true if seconds and nanoseconds are in separate columns.
 bool has_split_stamp(const CsvLine& header) {
   return find_any(header, {"sec", "secs", "s"}) || find_any(header, {"nsec", "nsecs", "ns"});
 }
 
-/// A column that `export` writes and nobody else.
+/// Returns true for a column name that only `export` writes.
 bool is_own(std::string_view field) {
   return (field == "stamp_s" || field.ends_with("_rad_s") || field.ends_with("_m_s2")) &&
          std::find(kExported.begin(), kExported.end(), field) != kExported.end();
@@ -188,8 +189,7 @@ ImuColumns imu_columns(const CsvLine& first) {
     ImuColumns columns;
     columns.has_header = false;
     if (first.fields.size() < kColumnsByPlace) {
-      fail(first, "has " + std::to_string(first.fields.size()) + " columns and no header, needs " +
-                      std::to_string(kColumnsByPlace));
+      fail(first, fmt::format("has {} columns and no header; it needs {}", first.fields.size(), kColumnsByPlace));
     }
     return columns;
   }
@@ -201,9 +201,9 @@ ImuColumns imu_columns(const CsvLine& first) {
     return *columns;
   }
   fail(first,
-       "names no column that is known: stamp_s, stamp_ns, wx_rad_s, ..., fx_m_s2, ... (as 'export' writes them), "
-       ".../header/stamp, .../angular_velocity/x, ..., names of loggers (time, gyro_x, ..., accel_x, ...) or none at "
-       "all");
+       "contains no known column name: stamp_s, stamp_ns, wx_rad_s, ..., fx_m_s2, ... (as written by 'export'), "
+       ".../header/stamp, .../angular_velocity/x, ..., or logger names (time, gyro_x, ..., accel_x, ...). A file "
+       "without a header is possible too");
 }
 
 std::int64_t stamp_ns(const CsvLine& line, const ImuColumns& columns) {
@@ -221,8 +221,7 @@ std::int64_t stamp_ns(const CsvLine& line, const ImuColumns& columns) {
 
 void require_width(const CsvLine& line, std::size_t columns) {
   if (line.fields.size() == columns) return;
-  fail(line, "has " + std::to_string(line.fields.size()) + " columns, the first line " + std::to_string(columns) +
-                 "; must be equal");
+  fail(line, fmt::format("has {} columns, but the first line has {}; must be equal", line.fields.size(), columns));
 }
 
 int decimals_by_step(CsvText text, std::size_t stamp, std::size_t columns, const std::string& file) {
@@ -236,16 +235,17 @@ int decimals_by_step(CsvText text, std::size_t stamp, std::size_t columns, const
     steps.push_back(now - last);
     last = now;
   }
-  if (steps.size() < 2) return 9;  // too few samples, which is said where they are counted
+  if (steps.size() < 2) return 9;  // too few samples; reported later
   steps.erase(steps.begin());      // the first stamp is no step
   const double step = upper_median(steps);
   for (const int decimals : {9, 6, 3, 0}) {
     const double step_s = step * std::pow(10.0, decimals - 9);
     if (step_s >= kLeast_s && step_s < kMost_s) return decimals;
   }
-  throw BadInput(file + ": the times step by " + std::to_string(step) +
-                 ", in no unit of s, ms, us and ns 10 to 1000 times a second: name the column with its unit, as "
-                 "time_s or 'time [ns]'");
+  throw BadInput(
+      fmt::format("{}: the time step is {}; in none of s, ms, us and ns is this a rate of 10 to 1000 Hz. Add the unit "
+                  "to the column name, as in time_s or 'time [ns]'",
+                  file, std::to_string(step)));
 }
 
 }  // namespace tumble::scenarios

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "scenarios/recordings/tables/imu_readings.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 
@@ -15,14 +17,14 @@ namespace tumble::scenarios {
 
 namespace {
 
-/// At rest and while rolling or carried the median is near g; in g, mg or raw counts it is not.
+/// At rest, rolling or hand-held, the median is near g; in g, mg or raw counts it is not.
 constexpr double kLeastMedian_m_s2 = 3.0, kLargestMedian_m_s2 = 30.0;
 
 bool near_factor(double ratio, double factor) {
   return ratio > factor / 2.0 && ratio < factor * 2.0;
 }
 
-/// The unit that would make the median gravity's size; of counts nobody knows the scale.
+/// Returns the unit in which the median would be close to gravity; none for raw counts.
 const char* likely_force_unit(double median, AccelUnit read_as) {
   constexpr double kThousand = 1000.0;
   const double numbers = read_as == AccelUnit::g ? median / kStandardGravity_m_s2 : median;
@@ -39,41 +41,41 @@ void require_plausible_force(const std::string& where, const sim::ImuRecord& imu
   const char* read_as = unit == AccelUnit::g ? "g" : "m/s^2";
   const std::string likely = likely_force_unit(middle, unit);
   const bool known = likely == "g" || likely == "m/s^2";
-  throw BadInput(where + ": read in " + read_as + " the median specific force is " + std::to_string(middle) +
-                 " m/s^2, must be within 3 and 30: is the file in " + likely + "?" +
-                 (known ? " ('--accel-unit " + likely + "' takes it so)" : "") +
-                 (middle < kLeastMedian_m_s2 ? " Or was gravity taken out of it?" : ""));
+  throw BadInput(fmt::format(
+      "{}: read in {}, the median specific force is {} m/s^2; it must be within 3 and 30. The file may be in {}{}{}",
+      where, read_as, std::to_string(middle), likely, known ? " (set '--accel-unit " + likely + "')" : "",
+      middle < kLeastMedian_m_s2 ? ". Or gravity may have been removed" : ""));
 }
 
-constexpr const char *kTakenInDegrees = " ('--gyro-unit deg/s' takes them so)",
-                     *kTakenInRadians = " ('--gyro-unit rad/s' takes them so)";
+constexpr const char *kTakenInDegrees = " (set '--gyro-unit deg/s')", *kTakenInRadians = " (set '--gyro-unit rad/s')";
 
-/// Of either triad [rad/s, m/s^2]: as the estimators bear.
+/// Limit of both triads [rad/s, m/s^2], as in the estimator.
 constexpr double kSensorReadingMax = 1e6;
 
-/// Not finite where one of them is not.
+/// Returns a non-finite value if any axis is.
 double largest_of_triad(const Eigen::Vector3d& reading) {
   return reading.allFinite() ? reading.cwiseAbs().maxCoeff() : std::nan("");
 }
 
-/// From 0.5 Hz to 50 kHz: what an IMU gives at all.
+/// 0.5 Hz to 50 kHz, the range of IMUs.
 constexpr double kLeastPeriod_s = 2e-5, kLargestPeriod_s = 2.0;
 
 void require_plausible_period(const std::string& where, const sim::ImuRecord& imu) {
   const double period_s = static_cast<double>(imu.period_ns) * 1e-9;
   if (period_s >= kLeastPeriod_s && period_s <= kLargestPeriod_s) return;
-  throw BadInput(where + ": the median step of the stamps is " + rounded(period_s) + " s, must be within " +
-                 rounded(kLeastPeriod_s) + " and " + rounded(kLargestPeriod_s) + ": are the stamps in another unit" +
-                 (period_s > kLargestPeriod_s ? ", in ms or us?" : " than s and ns?"));
+  throw BadInput(fmt::format(
+      "{}: the median time step is {} s, must be within {} and {}. The time stamps may be in another unit{}", where,
+      rounded(period_s), rounded(kLeastPeriod_s), rounded(kLargestPeriod_s),
+      period_s > kLargestPeriod_s ? ", ms or us" : " than s or ns"));
 }
 
-/// Of a device whose sheet is not known: none that a robot bears reads more.
+/// Largest plausible rate of a robot's device without a data sheet.
 constexpr double kLargestRate_rad_s = 100.0;
-/// Of the samples; single ones are glitches.
+/// Fraction of the samples; single ones are glitches.
 constexpr double kBeyondShare = 0.01, kBeyondRange = 2.0;
 constexpr double kDegreesPerRadian = 57.29577951308232;
 
-/// Of samples whose largest axis, times `factor`, lies beyond the bound.
+/// Returns the fraction of samples whose largest axis, times `factor`, exceeds the bound.
 double beyond_share(const sim::ImuRecord& imu, double bound_rad_s, double factor) {
   const auto beyond = std::count_if(imu.gyro_rad_s.begin(), imu.gyro_rad_s.end(), [&](const Eigen::Vector3d& w) {
     return factor * w.cwiseAbs().maxCoeff() > bound_rad_s;
@@ -88,18 +90,19 @@ void require_rates_in_range(const std::string& where, const sim::ImuRecord& imu,
   if (share <= kBeyondShare) return;
   const bool as_rad = unit == GyroUnit::rad_s;
   const bool degrees = as_rad && beyond_share(imu, bound, 1.0 / kDegreesPerRadian) <= kBeyondShare;
-  throw BadInput(where + ": read in " + (as_rad ? "rad/s " : "deg/s ") + rounded(100.0 * share) +
-                 " % of the rates lie beyond " + rounded(bound) + " rad/s, " +
-                 (stated ? "twice the range that the device's sheet states" : "more than any robot turns") +
-                 "; must be at most 1 %: are the rates in " + (degrees ? "deg/s" : "raw counts of the sensor") + "?" +
-                 (degrees ? kTakenInDegrees : ""));
+  throw BadInput(fmt::format(
+      "{}: read in {}{} % of the rates are beyond {} rad/s, {}; this must be at most 1 %. The rates may be in {}{}",
+      where, as_rad ? "rad/s " : "deg/s ", rounded(100.0 * share), rounded(bound),
+      stated ? "twice the stated range of the device" : "more than any robot rotates",
+      degrees ? "deg/s" : "raw counts of the sensor", degrees ? kTakenInDegrees : ""));
 }
 
 constexpr double kRotationWindow_s = 0.2, kNearGravity = 0.1;
-constexpr double kLeastRotation = 0.0175, kMostRotation = 0.4;  // of the force, as shares of it: from one degree on
+constexpr double kLeastRotation = 0.0175, kMostRotation = 0.4;  // rotation of the force in units of the force: at least
+                                                                // one degree
 constexpr int kLeastWindows = 10;
 constexpr double kLeastCorrelation = 0.8;
-/// Of gravity, at which a brisk window ends.
+/// Change of gravity that ends a brisk window.
 constexpr double kBriskRotation = 0.25;
 
 }  // namespace
@@ -114,9 +117,9 @@ std::string gaps_text(const sim::ImuRecord& imu) {
     if (step_ns(k) > step_ns(longest)) longest = k;
   }
   if (gaps == 0) return "";
-  return "caution: " + std::to_string(gaps) + (gaps == 1 ? " gap" : " gaps") + " beyond a second, the longest " +
-         rounded(1e-9 * static_cast<double>(step_ns(longest))) + " s before reading " + std::to_string(longest) +
-         ", of which nothing is known";
+  return fmt::format(
+      "caution: {}{} of more than 1 s; the longest lasts {} s before reading {}. No data exist in these gaps", gaps,
+      gaps == 1 ? " gap" : " gaps", rounded(1e-9 * static_cast<double>(step_ns(longest))), longest);
 }
 
 GravityRotation gravity_rotation(const sim::ImuRecord& imu, RotationWindows windows) {
@@ -136,14 +139,14 @@ GravityRotation gravity_rotation(const sim::ImuRecord& imu, RotationWindows wind
     while (end + 1 < count && near(end) && !turned() &&
            1e-9 * static_cast<double>(imu.time_ns[end] - imu.time_ns[begin]) < kRotationWindow_s) {
       ++end;
-      // a sample is the mean over what ends at its stamp
+      // a sample is the mean over the window that ends at its stamp
       angle += imu.gyro_rad_s[end] * (1e-9 * static_cast<double>(imu.time_ns[end] - imu.time_ns[end - 1]));
     }
     const double length_s = 1e-9 * static_cast<double>(imu.time_ns[end] - imu.time_ns[begin]);
     const bool whole = near(end) && end >= begin + 4 && (length_s >= kRotationWindow_s || turned()) &&
                        length_s < 1.5 * kRotationWindow_s;
     if (whole) {
-      // the ends' means over a quarter each, so that noise does not pass for turning
+      // Average a quarter of the window at each end, so that noise does not appear as rotation.
       const std::size_t quarter = std::max<std::size_t>(1, (end - begin) / 4);
       Eigen::Vector3d first = Eigen::Vector3d::Zero(), last = Eigen::Vector3d::Zero(), middle = Eigen::Vector3d::Zero();
       for (std::size_t k = 0; k < quarter; ++k) first += imu.accel_m_s2[begin + k], last += imu.accel_m_s2[end - k];
@@ -173,15 +176,17 @@ bool tells_rotation(const GravityRotation& turn) {
 
 GravityRotation telling_rotation(const sim::ImuRecord& imu) {
   const GravityRotation turn = gravity_rotation(imu, RotationWindows::even);
-  // a sphere that rolls turns too far within them
+  // a rolling sphere rotates too far in even windows
   return tells_rotation(turn) ? turn : gravity_rotation(imu, RotationWindows::brisk);
 }
 
-/// Why the motion does not tell.
+/// Explains why the motion does not suffice.
 std::string untold_text(const GravityRotation& turn) {
-  if (turn.windows < kLeastWindows) return "gravity turns too little in the accelerometer to show them";
-  return "the force turns in the accelerometer, but too little as the gyro says to show them (" +
-         std::to_string(turn.windows) + " windows, correlation " + rounded(turn.correlation) + ")";
+  if (turn.windows < kLeastWindows) return "gravity's rotation in the accelerometer is too small to check them";
+  return fmt::format(
+      "the force rotates in the accelerometer, but agrees too little with the gyro to check them ({} windows, "
+      "correlation {})",
+      turn.windows, rounded(turn.correlation));
 }
 
 }  // namespace
@@ -192,28 +197,29 @@ std::string require_plausible_rates(const std::string& where, const sim::ImuReco
   const bool dead =
       std::all_of(imu.gyro_rad_s.begin(), imu.gyro_rad_s.end(), [](const auto& w) { return w.isZero(0.0); });
   if (dead) {
-    return "caution: the gyro reads 0 on all axes in all " + std::to_string(imu.gyro_rad_s.size()) +
-           " samples: is it dead, or not in what was recorded?";
+    return fmt::format("caution: the gyro reads 0 on all axes in all {} samples; it may be defective or not recorded",
+                       imu.gyro_rad_s.size());
   }
   if (!tells_rotation(turn)) return "";
-  const std::string seen = "gravity turns in the accelerometer " + rounded(turn.ratio) + " times as the gyro says (" +
-                           std::to_string(turn.windows) + " windows, correlation " + rounded(turn.correlation) + ")";
+  const std::string seen = fmt::format(
+      "gravity's rotation in the accelerometer is {} times the gyro's rotation ({} windows, correlation {})",
+      rounded(turn.ratio), turn.windows, rounded(turn.correlation));
   const bool as_deg = unit == GyroUnit::deg_s;
   if (!as_deg && near_factor(turn.ratio, 1.0 / kDegreesPerRadian))
-    throw BadInput(where + ": read in rad/s, " + seen + ", must be within 0.5 and 2: are the rates in deg/s?" +
-                   kTakenInDegrees);
+    throw BadInput(fmt::format("{}: read in rad/s, {}; the ratio must be within 0.5 and 2. The rates may be in deg/s{}",
+                               where, seen, kTakenInDegrees));
   if (as_deg && near_factor(turn.ratio, kDegreesPerRadian))
-    throw BadInput(where + ": read in deg/s, " + seen + ", must be within 0.5 and 2: are the rates in rad/s?" +
-                   kTakenInRadians);
+    throw BadInput(fmt::format("{}: read in deg/s, {}; the ratio must be within 0.5 and 2. The rates may be in rad/s{}",
+                               where, seen, kTakenInRadians));
   if (near_factor(turn.ratio, 1.0)) return seen + ": units and axes agree";
-  return "caution: " + seen + ", and should once: another unit, sign or order of the axes?";
+  return fmt::format("caution: {}; the ratio should be 1. Check the unit, the signs and the order of the axes", seen);
 }
 
 std::string rates_text(const std::string& where, const sim::ImuRecord& imu, GyroUnit unit) {
   const std::string told = require_plausible_rates(where, imu, unit);
   if (!told.empty()) return told;
-  return std::string("rates taken in ") + (unit == GyroUnit::deg_s ? "deg/s" : "rad/s") +
-         ", senses and axes as they are: " + untold_text(telling_rotation(imu));
+  return fmt::format("rates are read in {}, with unchanged signs and axes: {}",
+                     unit == GyroUnit::deg_s ? "deg/s" : "rad/s", untold_text(telling_rotation(imu)));
 }
 
 sim::ImuRecord without_readings(sim::ImuRecord device) {
@@ -228,12 +234,13 @@ void add_reading(const std::string& where, std::int64_t stamp_ns, const Eigen::V
   for (const double value : {largest_of_triad(rate_rad_s), largest_of_triad(force_m_s2)}) {
     if (!std::isfinite(value)) throw BadInput(where + ": a reading is not finite");
     if (value > kSensorReadingMax)
-      throw BadInput(where + ": a reading is of size " + rounded(value) + " rad/s or m/s^2, must be at most " +
-                     rounded(kSensorReadingMax) + ": no sensor says that");
+      throw BadInput(
+          fmt::format("{}: a reading has the magnitude {} rad/s or m/s^2, must be at most {}, the limit of any sensor",
+                      where, rounded(value), rounded(kSensorReadingMax)));
   }
   if (!imu.time_ns.empty() && stamp_ns <= imu.time_ns.back()) {
-    throw BadInput(where + ": stamp does not rise: " + std::to_string(stamp_ns - imu.time_ns.front()) +
-                   " ns after the first, the one before " + std::to_string(imu.time_ns.back() - imu.time_ns.front()));
+    throw BadInput(fmt::format("{}: the time stamp does not increase: {} ns after the first; the previous one is at {}",
+                               where, stamp_ns - imu.time_ns.front(), imu.time_ns.back() - imu.time_ns.front()));
   }
   imu.time_ns.push_back(stamp_ns);
   imu.gyro_rad_s.push_back(rate_rad_s);
@@ -243,7 +250,7 @@ void add_reading(const std::string& where, std::int64_t stamp_ns, const Eigen::V
 
 void finish_readings(const std::string& where, AccelUnit unit, sim::ImuRecord& imu) {
   if (imu.time_ns.size() < 2)
-    throw BadInput(where + ": holds " + std::to_string(imu.time_ns.size()) + " samples, needs 2");
+    throw BadInput(fmt::format("{}: has {} samples; it needs at least 2", where, imu.time_ns.size()));
   require_plausible_force(where, imu, unit);
   imu.period_ns = median_step_ns(imu.time_ns);
   require_plausible_period(where, imu);
@@ -263,8 +270,10 @@ std::string even_out_stamps(sim::ImuRecord& imu) {
   if (!are_rounded(imu.time_ns)) return "";
   imu.time_ns = evened(imu.time_ns);
   imu.period_ns = mean_step_ns(imu.time_ns);
-  return "stamps are whole milliseconds of an IMU that beats every " +
-         rounded(1e-6 * static_cast<double>(imu.period_ns)) + " ms: put on that beat, by a millisecond at most";
+  return fmt::format(
+      "time stamps are in whole milliseconds, but the IMU samples every {} ms; they are replaced by equally spaced "
+      "times, shifted by at most 1 ms",
+      rounded(1e-6 * static_cast<double>(imu.period_ns)));
 }
 
 double scale_of(AccelUnit unit) {

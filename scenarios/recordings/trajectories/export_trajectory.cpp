@@ -37,7 +37,7 @@ Pose pose(const sim::Truth& truth, std::size_t i, const Eigen::Isometry3d& T_BA)
   return {truth.p_WB_m[i] + q_WB * T_BA.translation(), q_WB * Eigen::Quaterniond(T_BA.linear())};
 }
 
-/// `first_ns`: stamp of the first of them.
+/// `first_ns`: stamp of the first pose.
 void append_poses(const sim::Truth& truth, const Eigen::Isometry3d& T_BA, std::int64_t first_ns, std::string& text) {
   for (std::size_t i = 0; i < truth.p_WB_m.size(); ++i) {
     if (!known(truth, i)) continue;
@@ -49,7 +49,7 @@ void append_poses(const sim::Truth& truth, const Eigen::Isometry3d& T_BA, std::i
   }
 }
 
-/// Of the sensor that is written as `frame`; of one whose name cannot be written also by that.
+/// Finds the sensor exported as `frame`, or one whose original name cannot be exported.
 template <class Record>
 std::optional<Eigen::Isometry3d> mounting_in(const std::vector<Record>& records, const GivenNames& given,
                                              Eigen::Isometry3d Record::*mounting, const std::string& frame) {
@@ -72,7 +72,7 @@ Eigen::Isometry3d true_mounting(const sim::Truth& truth, const std::string& fram
   std::vector<std::string> known = {"body", "centre"};
   for (const GivenNames* given : {&names.imus, &names.lidars, &names.series})
     known.insert(known.end(), given->names.begin(), given->names.end());
-  throw BadInput(fmt::format("the truth has no frame '{}' (known: {})", frame, fmt::join(known, " ")));
+  throw BadInput(fmt::format("the truth has no frame '{}' (known frames: {})", frame, fmt::join(known, " ")));
 }
 
 void export_tum(const sim::Truth& truth, const std::filesystem::path& file, std::int64_t origin_ns,
@@ -102,7 +102,7 @@ void export_kitti(const sim::Truth& truth, const std::filesystem::path& file, co
   std::string text;
   for (std::size_t i = 0; i < truth.p_WB_m.size(); ++i) {
     if (!known(truth, i))
-      throw BadInput("the reference has gaps, and KITTI's format has no time to leave them out; use tum");
+      throw BadInput("the reference has gaps; KITTI's format has no times to represent them, so use tum");
     const Pose each = pose(truth, i, T_BA);
     const Eigen::Matrix3d R_WA = each.q_WA.toRotationMatrix();
     for (int row = 0; row < 3; ++row) {

@@ -1,20 +1,23 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "scenarios/errors.hpp"
+
+#include <fmt/format.h>
+
 #include "scenarios/recordings/clouds/sweep_stamps.hpp"
 #include "scenarios/recordings/import.hpp"
 #include "scenarios/recordings/recording_clock.hpp"
+#include "scenarios/recordings/trajectories/reference_check.hpp"
 
 namespace tumble::scenarios {
 
 namespace {
 
-/// Times of a KITTI file's poses when there are no sweeps to give them.
+/// Returns times for a KITTI file's poses without sweeps.
 std::vector<std::int64_t> own_times(const ReferenceSource& source) {
   if (!source.times.empty()) return read_stamps(source.times);
   if (source.steady_ns <= 0) {
     throw BadInput(source.file.string() +
-                   ": KITTI's format has no times: a file of stamps (--times) or "
-                   "a period (--sweep-period) is needed");
+                   ": KITTI's format has no times; give a file of time stamps (--times) or a period (--sweep-period)");
   }
   const std::size_t poses = count_kitti_poses(source.file);
   std::vector<std::int64_t> times;
@@ -26,10 +29,11 @@ std::vector<ReferencePose> poses_of(const ReferenceSource& source, const std::ve
   if (source.format == "tum") return read_tum_poses(source.file, source.sorted);
   if (source.format == "kitti") return read_kitti_poses(source.file, sweeps_ns.empty() ? own_times(source) : sweeps_ns);
   if (source.format == "odometry") return read_odometry_poses(source.file);
-  throw BadInput("poses of format '" + source.format + "' are not read: tum, kitti or odometry");
+  throw BadInput(
+      fmt::format("the pose format '{}' is not supported; supported: tum, kitti and odometry", source.format));
 }
 
-/// From poses of A to poses of B.
+/// Converts poses of A to poses of B.
 void move_to(std::vector<ReferencePose>& poses, const Eigen::Isometry3d& T_AB) {
   if (T_AB.matrix().isIdentity(0.0)) return;
   const Eigen::Quaterniond q_AB(T_AB.linear());
@@ -51,7 +55,7 @@ sim::Truth named(const std::string& where, const std::vector<ReferencePose>& pos
 
 Imported import_trajectory(const ReferenceSource& source) {
   std::vector<ReferencePose> poses = poses_of(source, {});
-  if (poses.empty()) throw BadInput(source.file.string() + ": holds no pose");
+  if (poses.empty()) throw BadInput(source.file.string() + ": contains no pose");
   Imported out;
   out.info.origin_ns = origin_of(poses.front().time_ns);
   for (ReferencePose& pose : poses) pose.time_ns -= out.info.origin_ns;
@@ -61,7 +65,7 @@ Imported import_trajectory(const ReferenceSource& source) {
 }
 
 const Eigen::Isometry3d& lidar_of_poses(const sim::Sensors& sensors, const std::string& where) {
-  if (sensors.lidars.empty()) throw BadInput(where + ": poses of a lidar, and the recording has none");
+  if (sensors.lidars.empty()) throw BadInput(where + ": the poses are those of a lidar, but the recording has none");
   return sensors.lidars.front().T_BL;
 }
 
@@ -69,6 +73,7 @@ void attach_poses(Imported& recording, std::vector<ReferencePose> poses, const E
                   const std::string& where) {
   const sim::Sensors& sensors = recording.sensors;
   for (ReferencePose& pose : poses) pose.time_ns -= recording.info.origin_ns;
+  std::string remark = check_reference(poses, T_BA, sensors, where);
   move_to(poses, T_BA.inverse(Eigen::Isometry));
   sim::Truth truth = named(where, poses, span_of(sensors).second);
   for (const sim::ImuRecord& imu : sensors.imus) {
@@ -79,12 +84,13 @@ void attach_poses(Imported& recording, std::vector<ReferencePose> poses, const E
   for (const sim::LidarRecord& lidar : sensors.lidars) truth.lidars.push_back({lidar.name, lidar.T_BL, {}, {}});
   for (const sim::SeriesRecord& series : sensors.series) truth.series.push_back({series.name, series.T_BX, {}});
   recording.reference = std::move(truth);
+  recording.notes.push_back(std::move(remark));
 }
 
 void attach_reference(Imported& recording, const ReferenceSource& source) {
   const sim::Sensors& sensors = recording.sensors;
   if (sensors.lidars.empty() && source.format == "kitti")
-    throw BadInput(source.file.string() + ": a KITTI file has a pose per sweep, and the recording has no lidar");
+    throw BadInput(source.file.string() + ": a KITTI file has one pose per sweep, but the recording has no lidar");
   std::vector<std::int64_t> sweeps_ns;
   if (!sensors.lidars.empty()) sweeps_ns = sensors.lidars.front().sweep_start_ns;
   for (std::int64_t& time : sweeps_ns) time += recording.info.origin_ns;

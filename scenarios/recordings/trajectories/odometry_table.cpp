@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <array>
 #include <fstream>
@@ -17,10 +19,10 @@ namespace tumble::scenarios {
 namespace {
 
 constexpr const char* kFirst = "header.stamp.sec";
-/// A header of all columns that drivers write has some 2 kB.
+/// A header with all columns of drivers has about 2 kB.
 constexpr std::size_t kHeaderMax_bytes = 64 * 1024;
 
-/// The columns that are read, in this order.
+/// The columns to read, in this order.
 constexpr std::array<const char*, 9> kOdometryColumns = {
     kFirst,
     "header.stamp.nanosec",
@@ -33,8 +35,8 @@ constexpr std::array<const char*, 9> kOdometryColumns = {
     "pose.pose.orientation.w",
 };
 
-/// Empty where no regular file is. Of a longer line one byte more than a header may have: a file without line ends is
-/// not read whole for it.
+/// Returns the first line; empty if the file is not a regular file. Reads at most one byte more than the limit, because
+/// a file may have no line ends.
 std::string odometry_header(const std::filesystem::path& file) {
   std::error_code error;
   if (!std::filesystem::is_regular_file(file, error)) return "";
@@ -57,15 +59,15 @@ std::vector<std::string> names_in(const std::string& header) {
   return names;
 }
 
-/// Where each of kOdometryColumns stands.
+/// Returns the position of each of kOdometryColumns.
 std::array<std::size_t, kOdometryColumns.size()> places_in(const std::filesystem::path& file,
                                                            const std::vector<std::string>& names) {
   std::array<std::size_t, kOdometryColumns.size()> places{};
   for (std::size_t k = 0; k < kOdometryColumns.size(); ++k) {
     const auto count = std::count(names.begin(), names.end(), kOdometryColumns[k]);
     if (count != 1) {
-      throw BadInput(file.string() + ":1: column " + kOdometryColumns[k] + " stands " + std::to_string(count) +
-                     " times in the header, must once");
+      throw BadInput(fmt::format("{}:1: column {} occurs {} times in the header; it must occur once", file.string(),
+                                 kOdometryColumns[k], count));
     }
     places[k] = static_cast<std::size_t>(std::find(names.begin(), names.end(), kOdometryColumns[k]) - names.begin());
   }
@@ -82,7 +84,7 @@ std::vector<ReferencePose> read_odometry_poses(const std::filesystem::path& file
   require_regular_file(file);
   const std::string header = odometry_header(file);
   if (header.size() > kHeaderMax_bytes) {
-    throw BadInput(file.string() + ":1: the header has more than " + std::to_string(kHeaderMax_bytes) + " bytes");
+    throw BadInput(fmt::format("{}:1: the header has more than {} bytes", file.string(), kHeaderMax_bytes));
   }
   const std::vector<std::string> names = names_in(header);
   const auto places = places_in(file, names);
@@ -94,7 +96,7 @@ std::vector<ReferencePose> read_odometry_poses(const std::filesystem::path& file
     };
     const std::int64_t seconds = table.integer(row, places[0]), rest_ns = table.integer(row, places[1]);
     if (seconds < 0 || seconds > kSecondsMax || rest_ns < 0 || rest_ns >= kSecond_ns)
-      fail("the stamp " + std::to_string(seconds) + " s " + std::to_string(rest_ns) + " ns is none");
+      fail(fmt::format("the time stamp {} s {} ns is invalid", seconds, rest_ns));
     ReferencePose pose;
     pose.time_ns = seconds * kSecond_ns + rest_ns;
     for (int i = 0; i < 3; ++i) pose.p_WA_m[i] = table.number(row, places[static_cast<std::size_t>(2 + i)]);
@@ -104,7 +106,7 @@ std::vector<ReferencePose> read_odometry_poses(const std::filesystem::path& file
     poses.push_back(pose);
   }
   if (poses.size() < 2)
-    throw BadInput(file.string() + ": holds " + std::to_string(poses.size()) + " poses, needs 2 at least");
+    throw BadInput(fmt::format("{}: has {} poses; it needs at least 2", file.string(), poses.size()));
   return poses;
 }
 

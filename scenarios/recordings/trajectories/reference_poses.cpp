@@ -17,7 +17,7 @@ namespace tumble::scenarios {
 
 namespace {
 
-/// KITTI's matrices are written with seven digits.
+/// KITTI's matrices have seven digits.
 constexpr double kRotationTolerance = 1e-3;
 
 [[noreturn]] void fail(const Table& table, const Table::Row& row, const std::string& what) {
@@ -26,7 +26,7 @@ constexpr double kRotationTolerance = 1e-3;
 
 double finite(const Table& table, const Table::Row& row, std::size_t column) {
   const double value = table.number(row, column);
-  if (!std::isfinite(value)) fail(table, row, "column " + std::to_string(column) + " is not finite");
+  if (!std::isfinite(value)) fail(table, row, fmt::format("column {} is not finite", column));
   return value;
 }
 
@@ -47,8 +47,8 @@ Eigen::Matrix<double, 3, 4> kitti_matrix(const Table& table, const Table::Row& r
   const double departure = (R.transpose() * R - Eigen::Matrix3d::Identity()).cwiseAbs().maxCoeff();
   if (!(departure <= kRotationTolerance) || R.determinant() < 0.0) {
     fail(table, row,
-         "the first three columns are off a rotation by " + std::to_string(departure) + ", must be within " +
-             std::to_string(kRotationTolerance));
+         fmt::format("the first three columns differ from a rotation by {}; this must be at most {}",
+                     std::to_string(departure), kRotationTolerance));
   }
   return T;
 }
@@ -57,17 +57,18 @@ Eigen::Matrix<double, 3, 4> kitti_matrix(const Table& table, const Table::Row& r
 
 std::string problem_of(ReferencePose& pose, const ReferencePose* before) {
   if (!pose.p_WA_m.allFinite() || !pose.q_WA.coeffs().allFinite()) return "the pose is not finite";
-  constexpr double kFurthest_m = 1e9;  // beyond any place on Earth, by whatever origin it is counted
+  constexpr double kFurthest_m = 1e9;  // beyond any Earth-centred coordinate
   if (const double far_m = pose.p_WA_m.cwiseAbs().maxCoeff(); far_m > kFurthest_m)
-    return fmt::format("a position of {:.3g} m, must be within {:.0g} m of the origin", far_m, kFurthest_m);
+    return fmt::format("the position is {:.3g} m from the origin; it must be within {:.0g} m", far_m, kFurthest_m);
   const double norm = pose.q_WA.norm();
   if (!(std::abs(norm - 1.0) <= kReferenceNormTolerance))
-    return "quaternion of norm " + std::to_string(norm) + ", must be 1 within a percent";
-  // what is of unit length to the last bits stays as it is
+    return fmt::format("the quaternion's norm is {:f}; it must be 1 within 1 %", norm);
+  // keep quaternions that are normalised to rounding
   if (std::abs(norm - 1.0) > 1e-12) pose.q_WA.normalize();
   if (before == nullptr || pose.time_ns > before->time_ns) return "";
-  return "stamp " + std::to_string(pose.time_ns) + " ns does not rise, the one before is " +
-         std::to_string(before->time_ns) + " ns; a file of poses is sorted when asked for";
+  return fmt::format(
+      "the time stamp {} ns does not increase; the previous one is {} ns. Sort the file of poses by time", pose.time_ns,
+      before->time_ns);
 }
 
 std::string pose_format(const std::filesystem::path& file) {
@@ -80,9 +81,10 @@ std::string pose_format(const std::filesystem::path& file) {
   const auto count = std::distance(std::istream_iterator<std::string>(words), std::istream_iterator<std::string>());
   if (count == 8) return "tum";
   if (count == 12) return "kitti";
-  throw BadInput(file.string() + ": its first line has " + std::to_string(count) +
-                 " numbers, must be 8 (TUM: t x y z qx qy qz qw) or 12 (KITTI: rows of a matrix); a table of odometry "
-                 "begins with header.stamp.sec");
+  throw BadInput(
+      fmt::format("{}: its first line has {} numbers; it must have 8 (TUM: t x y z qx qy qz qw) or 12 (KITTI: rows of "
+                  "a matrix). An odometry table begins with header.stamp.sec",
+                  file.string(), count));
 }
 
 std::vector<ReferencePose> read_tum_poses(const std::filesystem::path& file, bool sorted) {
@@ -101,7 +103,7 @@ std::vector<ReferencePose> read_tum_poses(const std::filesystem::path& file, boo
     poses.erase(std::unique(poses.begin(), poses.end(), same), poses.end());
   }
   if (poses.size() < 2)
-    throw BadInput(file.string() + ": holds " + std::to_string(poses.size()) + " poses, needs 2 at least");
+    throw BadInput(fmt::format("{}: has {} poses; it needs at least 2", file.string(), poses.size()));
   return poses;
 }
 
@@ -115,8 +117,8 @@ std::vector<ReferencePose> read_kitti_poses(const std::filesystem::path& file,
                                             const std::vector<std::int64_t>& times_ns) {
   const Table table = Table::read(file, ' ', "", 12);
   if (table.rows.size() != times_ns.size()) {
-    throw BadInput(file.string() + ": holds " + std::to_string(table.rows.size()) + " poses, there are " +
-                   std::to_string(times_ns.size()) + " times for them; must be equal");
+    throw BadInput(fmt::format("{}: has {} poses, but there are {} times; both numbers must be equal", file.string(),
+                               table.rows.size(), times_ns.size()));
   }
   std::vector<ReferencePose> poses;
   for (std::size_t k = 0; k < times_ns.size(); ++k) {

@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -16,7 +18,7 @@ namespace {
 constexpr std::int64_t kStepMin_ns = 100000, kStepUsual_ns = 1000000;
 constexpr std::int64_t kSamplesMax = 2000000;
 constexpr std::int64_t kLongestReference_ns = 86400ll * 1000000000;
-/// Reach of the differences: as of the trials of BROAD, so that noise at rest stays below the bounds of rest.
+/// Half span of the differences, as for BROAD, so that noise at rest stays below the thresholds for rest.
 constexpr std::int64_t kReach_ns = 70000000;
 
 std::vector<std::int64_t> times_of(const std::vector<ReferencePose>& poses) {
@@ -25,7 +27,7 @@ std::vector<std::int64_t> times_of(const std::vector<ReferencePose>& poses) {
   return times;
 }
 
-/// The step of a grid from time 0 that all poses lie on, or the usual one.
+/// Returns the step of a regular grid from time 0 that contains all poses, else the default.
 std::int64_t grid_step(const std::vector<std::int64_t>& times, std::int64_t end_ns) {
   std::int64_t step = std::numeric_limits<std::int64_t>::max();
   for (std::size_t k = 1; k < times.size(); ++k) step = std::min(step, times[k] - times[k - 1]);
@@ -36,12 +38,12 @@ std::int64_t grid_step(const std::vector<std::int64_t>& times, std::int64_t end_
   return usual_steps * kStepUsual_ns;
 }
 
-/// The pose at an instant between two that are near enough to each other; unknown elsewhere.
+/// Interpolates between two poses that are close enough in time; unknown elsewhere.
 class Interpolation {
  public:
   Interpolation(const std::vector<ReferencePose>& poses, std::int64_t gap_ns) : poses_(poses), gap_ns_(gap_ns) {}
 
-  /// Instants must not fall.
+  /// Times must not decrease.
   ReferencePose at(std::int64_t time_ns) {
     while (next_ < poses_.size() && poses_[next_].time_ns < time_ns) ++next_;
     ReferencePose out{time_ns, Eigen::Vector3d::Constant(kNaN), {}};
@@ -72,15 +74,15 @@ Eigen::Vector3d rotation_vector(const Eigen::Quaterniond& q) {
 }
 
 sim::Truth reference_truth(const std::vector<ReferencePose>& poses, std::int64_t end_ns) {
-  if (poses.empty()) throw BadInput("the reference holds no pose");
+  if (poses.empty()) throw BadInput("the reference has no poses");
   const std::int64_t last_ns = std::min(end_ns, poses.back().time_ns);
   if (last_ns < 0 || poses.front().time_ns > end_ns) {
-    throw BadInput("the reference reaches from " + std::to_string(poses.front().time_ns) + " to " +
-                   std::to_string(poses.back().time_ns) + " ns of the recording, which lasts " +
-                   std::to_string(end_ns) + " ns: another clock?");
+    throw BadInput(fmt::format(
+        "the reference covers {} to {} ns of the recording, which lasts {} ns; check that both use the same clock",
+        poses.front().time_ns, poses.back().time_ns, end_ns));
   }
   if (last_ns > kLongestReference_ns) {
-    throw BadInput("the reference lasts " + std::to_string(last_ns) + " ns, must be at most a day");
+    throw BadInput(fmt::format("the reference lasts {} ns; it must be at most one day", last_ns));
   }
   const std::vector<std::int64_t> times = times_of(poses);
   sim::Truth truth;
@@ -93,7 +95,7 @@ sim::Truth reference_truth(const std::vector<ReferencePose>& poses, std::int64_t
   }
   const auto known = [](const Eigen::Quaterniond& q) { return q.coeffs().allFinite(); };
   if (std::none_of(truth.q_WB.begin(), truth.q_WB.end(), known)) {
-    throw BadInput("the reference has poses too far apart to know any of the recording by");
+    throw BadInput("the poses of the reference are too far apart in time for any comparison");
   }
   differentiate(truth, static_cast<std::size_t>(std::max<std::int64_t>(kReach_ns / truth.period_ns, 1)));
   return truth;

@@ -50,10 +50,10 @@ TEST(Complications, TheErrorsOfTheRigsSensorsAreThere) {
   for (const Complication& each : complications(fixed("hill_consumer"))) names.insert(each.name);
   for (const Complication& each : complications(fixed("hill"))) names.insert(each.name);
   for (const char* name :
-       {"world: rocks", "world: trunks", "world: relief", "robot: centre of mass off its place", "motion: spin forward",
+       {"world: rocks", "world: trunks", "world: relief", "robot: offset of the centre of mass", "motion: forward spin",
         "sensors.imu: rail of the gyro", "sensors.imu: tilt, scale and offset of the rails", "sensors.imu: white noise",
-        "sensors.imu: bias", "sensors.imu: delay and clock", "sensors.imu_reference: all of its errors",
-        "sensors.lidar: noise of ranges", "sensors.lidar: errors of its mounting"})
+        "sensors.imu: bias", "sensors.imu: delay and clock error", "sensors.imu_reference: all errors of this sensor",
+        "sensors.lidar: range noise", "sensors.lidar: mounting errors"})
     EXPECT_TRUE(names.contains(name)) << name;
 }
 

@@ -64,7 +64,9 @@ TEST(Draw, RefusesADeviceOfAnotherKind) {
   std::vector<DataSheet> sheets(2, parse_data_sheet(kSheet, "mti30.yaml", fixture::registry()));
   sheets[1].sensor_kind = "spinning_lidar";
   const std::string message = fixture::complaint([&] { draw_given(scenario, sheets, 1); });
-  EXPECT_EQ(message, "hill.yaml:11: sensors.imu_reference: device 'mti30' is of kind 'spinning_lidar', not 'imu'");
+  EXPECT_EQ(
+      message,
+      "hill.yaml:11: sensors.imu_reference: device 'mti30' is of kind 'spinning_lidar'; it must be of kind 'imu'");
 }
 
 /// A data root in a folder of its own, gone afterwards.
@@ -145,9 +147,11 @@ TEST_F(DrawReal, WhatOnlyShowsWhenDrawnIsNamed) {
   EXPECT_EQ(draw_complaint("{type: rig}", "{type: rig}", 5), "");
   EXPECT_THAT(draw_complaint("device: rs16", "device: rs17", 5),
               HasSubstr("slope.yaml:9: sensors.lidar: unknown device 'rs17'; did you mean 'rs16'?"));
-  EXPECT_THAT(draw_complaint("device: rs16", "device: mti30", 5), HasSubstr("is of kind 'imu', not 'spinning_lidar'"));
-  EXPECT_THAT(draw_complaint("[0, 0.003]", "[0, 1e6]", 5), HasSubstr("slope.yaml: with seed 5: "));
-  EXPECT_THAT(draw_complaint("name: slope", "name: slop", 5), HasSubstr("name is 'slop', must be the file's, 'slope'"));
+  EXPECT_THAT(draw_complaint("device: rs16", "device: mti30", 5),
+              HasSubstr("is of kind 'imu'; it must be of kind 'spinning_lidar'"));
+  EXPECT_THAT(draw_complaint("[0, 0.003]", "[0, 1e6]", 5), HasSubstr("slope.yaml: draw with seed 5: "));
+  EXPECT_THAT(draw_complaint("name: slope", "name: slop", 5),
+              HasSubstr("name is 'slop'; it must be the name of the file, 'slope'"));
 }
 
 }  // namespace

@@ -58,13 +58,13 @@ INSTANTIATE_TEST_SUITE_P(
         Wrong{"doc: a rig is pushed down a hill\n", "", "hill.yaml:1: ", "key 'doc' is missing"},
         Wrong{"doc: a rig", "name: twice\ndoc: a rig", "hill.yaml:2: ", "key 'name' is given twice"},
         Wrong{"force_n: 450.5", "force_n: 450.5\n  force_n: 2", "hill.yaml:9: motion: ", "given twice"},
-        Wrong{"450.5", "450,5", "hill.yaml:8: motion.force_n: ", "must be a number, is '450,5'"},
+        Wrong{"450.5", "450,5", "hill.yaml:8: motion.force_n: ", "must be a number; it is '450,5'"},
         Wrong{"450.5", "450.5 N", "hill.yaml:8: motion.force_n: ", "must be a number"},
         Wrong{"450.5", "\"450.5\"", "hill.yaml:8: motion.force_n: ", "is the text"},
         Wrong{"450.5", ".nan", "hill.yaml:8: motion.force_n: ", "must be a number"},
         Wrong{"450.5", "nan", "hill.yaml:8: motion.force_n: ", "must be finite"},
         Wrong{"450.5", ".inf", "hill.yaml:8: motion.force_n: ", "must be a number"},
-        Wrong{"450.5", "1e999", "hill.yaml:8: motion.force_n: ", "does not fit"},
+        Wrong{"450.5", "1e999", "hill.yaml:8: motion.force_n: ", "too large"},
         Wrong{"450.5", "", "hill.yaml:8: motion.force_n: ", "must be a number or one of"},
         Wrong{"450.5", "6000", "hill.yaml:8: motion.force_n: ", "is 6000 N, must be within [0, 5000]"},
         Wrong{"[0.5, 0.7]", "[0.7, 0.5]", "hill.yaml:4: world.slope_rad: ", "low 0.7 is above high 0.5"},
@@ -76,8 +76,9 @@ INSTANTIATE_TEST_SUITE_P(
         Wrong{"uniform", "unifrom", "hill.yaml:4: world.slope_rad.unifrom: ", "did you mean 'uniform'?"},
         Wrong{"{uniform: [0.5, 0.7]}", "{uniform: [0.5, 0.7], choice: [1]}",
               "hill.yaml:4: world.slope_rad: ", "exactly one"},
-        Wrong{"{uniform: [0.5, 0.7]}", "{choice: []}", "hill.yaml:4: world.slope_rad: ", "choice is empty"},
-        Wrong{"{uniform: [0.5, 0.7]}", "{log_uniform: [0, 0.7]}", "hill.yaml:4: world.slope_rad: ", "above 0"},
+        Wrong{"{uniform: [0.5, 0.7]}", "{choice: []}",
+              "hill.yaml:4: world.slope_rad: ", "choice needs at least one value"},
+        Wrong{"{uniform: [0.5, 0.7]}", "{log_uniform: [0, 0.7]}", "hill.yaml:4: world.slope_rad: ", "greater than 0"},
         Wrong{"{uniform: [0.5, 0.7]}", "[0.5, 0.7]", "hill.yaml:4: world.slope_rad: ", "must be a number or one of"},
         Wrong{"[8, 0.5, 6, 10]", "[8, -0.5]", "hill.yaml:5: robot.mass_kg: ", "sigma -0.5 is below 0"},
         Wrong{"[8, 0.5, 6, 10]", "[8, 0.5, 10, 6]", "hill.yaml:5: robot.mass_kg: ", "low 10 is above high 6"},
@@ -86,7 +87,7 @@ INSTANTIATE_TEST_SUITE_P(
         Wrong{"[8, 0.5, 6, 10]", "[8, 0.5, 6]", "hill.yaml:5: robot.mass_kg: ", "normal needs"},
         Wrong{"[8, 0.5, 6, 10]", "[25, 0.5]", "hill.yaml:5: robot.mass_kg: ", "can reach 25 kg"},
         Wrong{"site: vn100", "sight: vn100", "hill.yaml:11: sensors[1]: ", "key 'site' is missing"},
-        Wrong{"name: imu_reference", "name: imu", "hill.yaml:11: sensors[1]: ", "stands already in line 10"},
+        Wrong{"name: imu_reference", "name: imu", "hill.yaml:11: sensors[1]: ", "exists already in line 10"},
         Wrong{"name: imu_reference", "name: IMU 2", "hill.yaml:11: sensors[1].name: ", "lower-case"},
         Wrong{"kind: imu, device: mti30, site: vn100", "kind: imo, device: mti30, site: vn100",
               "hill.yaml:11: sensors[1].kind: ", "did you mean 'imu'?"},
@@ -94,7 +95,7 @@ INSTANTIATE_TEST_SUITE_P(
               "hill.yaml:10: sensors[0].output_rate: ", "did you mean 'output_rate_hz'?"},
         Wrong{"x_m:", "q_m:", "hill.yaml:10: sensors[0].mount_error.q_m: ", "did you mean 'x_m'?"},
         Wrong{"duration_s: 11", "duration_s: 0", "hill.yaml:3: duration_s: ", "must be within"},
-        Wrong{"duration_s: 11", "duration_s: [11", "hill.yaml:", "not YAML"},
+        Wrong{"duration_s: 11", "duration_s: [11", "hill.yaml:", "not valid YAML"},
         Wrong{"world: {type: hill, slope_rad: {uniform: [0.5, 0.7]}}", "world: hill",
               "hill.yaml:4: world: ", "must be a map"}));
 
@@ -106,7 +107,7 @@ TEST(ScenarioText, RefusesWhatIsNotOneMap) {
   EXPECT_THAT(complaint_of(with(kScenario, "name: hill", long_name.c_str())),
               testing::AllOf(StartsWith("hill.yaml:1: name: "), HasSubstr("has 5000 characters, must be at most 100")));
   EXPECT_THAT(complaint_of(kScenario + "---\nname: b\n"), HasSubstr("more than one document"));
-  EXPECT_THAT(complaint_of("? [a, b]\n: 1\n"), HasSubstr("must be text, is a list"));
+  EXPECT_THAT(complaint_of("? [a, b]\n: 1\n"), HasSubstr("must be text; it is a list"));
   EXPECT_THAT(complaint_of(with(kScenario, "sensors:", "sensors: []\nx:")), HasSubstr("unknown key 'x'"));
   EXPECT_NE(complaint_of(std::string(100000, '[')), "");
 }

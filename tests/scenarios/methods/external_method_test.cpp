@@ -141,29 +141,29 @@ TEST_F(ExternalMethod, AProgramThatIsNotThereIsNamed) {
 }
 
 TEST_F(ExternalMethod, WhatItLeavesIsRefusedWithItsPlace) {
-  EXPECT_THAT(refused(describe("rate", "true # {output}")), HasSubstr("did not leave it"));
-  EXPECT_THAT(refused(describe("slam", "true # {output}")), HasSubstr("did not leave it"));
+  EXPECT_THAT(refused(describe("rate", "true # {output}")), HasSubstr("the command did not write this file"));
+  EXPECT_THAT(refused(describe("slam", "true # {output}")), HasSubstr("the command did not write this file"));
   EXPECT_THAT(refused(describe("rate", "echo nonsense > {output}")), HasSubstr("rates.csv:1"));
   EXPECT_THAT(refused(describe("rate", kRawByAwk + "; mv {output} a; ln -s a {output}")),
-              HasSubstr("is no regular file"));
+              HasSubstr("is not a regular file"));
   EXPECT_THAT(refused(describe("rate", kRawByAwk + "; sed -i '$d' {output}")), HasSubstr("one per sample"));
   EXPECT_THAT(refused(describe("rate", kRawByAwk + "; sed -i '7s/^/1/' {output}")), HasSubstr("rates.csv:7"));
   EXPECT_THAT(refused(describe("slam", "printf '0.1 1 2 3 0 0 0 1\\n0.1 1' > {output}")), HasSubstr("poses.tum:2"));
   EXPECT_THAT(refused(describe("slam", "printf '0.2 1 2 3 0 0 0 1\\n0.1 1 2 3 0 0 0 1\\n' > {output}")),
-              HasSubstr("must rise"));
+              HasSubstr("must increase"));
 }
 
 TEST_F(ExternalMethod, WhatItLeavesIsBoundedBeforeItIsRead) {
   EXPECT_THAT(refused(describe("slam", "truncate -s 100000000000 {output}")),
-              HasSubstr("poses.tum: 100000000000 bytes, must be at most"));
+              HasSubstr("poses.tum: has 100000000000 bytes; it may have at most"));
   EXPECT_THAT(refused(describe("rate", "truncate -s 100000000000 {output}")), HasSubstr("rates.csv: 100000000000"));
   EXPECT_THAT(refused(describe("position", "mkdir {output}; truncate -s 100000000000 {output}/estimate.json",
                                "output: estimate\n")),
               HasSubstr("estimate.json: 100000000000"));
   const std::string pose = "printf '0.1 1 2 3 0 0 0 1\\n' > {output}; ";
   EXPECT_THAT(refused(describe("slam", pose + "truncate -s 100000000000 {map}")), HasSubstr("map.ply: 100000000000"));
-  EXPECT_THAT(refused(describe("slam", "mkfifo {output}")), HasSubstr("no regular file"));
-  EXPECT_THAT(refused(describe("slam", "ln -s /dev/zero {output}")), HasSubstr("no regular file"));
+  EXPECT_THAT(refused(describe("slam", "mkfifo {output}")), HasSubstr("not a regular file"));
+  EXPECT_THAT(refused(describe("slam", "ln -s /dev/zero {output}")), HasSubstr("not a regular file"));
 }
 
 TEST_F(ExternalMethod, AMapIsAnyPlyWithPlaces) {
@@ -179,7 +179,7 @@ TEST_F(ExternalMethod, AMapIsAnyPlyWithPlaces) {
       pose + head + "property float z\\nproperty float sigma\\nend_header\\n1 2 3 0.5\\n4 5 6 0.25\\n' > {map}"));
   EXPECT_EQ(more.map.at(1).sigma_m, 0.25f);
   EXPECT_THAT(refused(describe("slam", pose + head + "end_header\\n1 2\\n4 5\\n' > {map}")),
-              HasSubstr("must have x, y and z"));
+              HasSubstr("columns x, y and z are needed"));
   EXPECT_THAT(refused(describe("slam", pose + head + "property float z\\nend_header\\n1 2 3\\n4 nan 6\\n' > {map}")),
               HasSubstr("map"));
 }
@@ -194,7 +194,7 @@ TEST_F(ExternalMethod, NonsenseIsRefusedWithLineValueAndBound) {
   EXPECT_THAT(left("0.2 0 0 0 0 0 0 1e200", "attitude"), HasSubstr("poses.tum:3: quaternion of norm 1e+200"));
   EXPECT_THAT(left("0.2 1e300 0 0 0 0 0 1"),
               HasSubstr("poses.tum:3: position (1e+300, 0, 0) m, must be finite and within 1e+07 m"));
-  EXPECT_THAT(left("1000000 0 0 0 0 0 0 1"), HasSubstr("poses.tum:3: stamp 1000000 s, must be within -10 to"));
+  EXPECT_THAT(left("1000000 0 0 0 0 0 0 1"), HasSubstr("poses.tum:3: stamp 1000000 s; it must be within -10 to"));
   EXPECT_THAT(left("1000000 0 0 0 0 0 0 1", "attitude"), HasSubstr("poses.tum:3: stamp 1000000 s"));
   EXPECT_THAT(refused(describe("position", "printf '%s\\n' '-1000000000 0 0 0 0 0 0 1' > {output}")),
               HasSubstr("poses.tum:1: stamp -1e+09 s"));
@@ -210,9 +210,9 @@ TEST_F(ExternalMethod, StampsInAnotherUnitAreNamedWithTheFirstThatIsOutside) {
   };
   EXPECT_GT(run(in("0")).poses.size(), 100u);
   EXPECT_THAT(refused(in("9")), ::testing::AllOf(HasSubstr("poses.tum:1: stamp"),
-                                                 HasSubstr("must be in seconds and looks like nanoseconds")));
-  EXPECT_THAT(refused(in("6", "position")), HasSubstr("looks like microseconds"));
-  EXPECT_THAT(refused(in("3", "attitude")), HasSubstr("looks like milliseconds"));
+                                                 HasSubstr("must be in seconds; the values look like nanoseconds")));
+  EXPECT_THAT(refused(in("6", "position")), HasSubstr("the values look like microseconds"));
+  EXPECT_THAT(refused(in("3", "attitude")), HasSubstr("the values look like milliseconds"));
   EXPECT_THAT(refused(in("-3")), HasSubstr("must be in seconds"));
 }
 
@@ -232,9 +232,9 @@ TEST_F(ExternalMethod, WhatIsNoCovarianceIsRefused) {
     return describe("rate", kRawByAwk + "; sed -i -e 's/$/," + covariance +
                                 "/' -e '1s/,[^a-z].*$/,cxx,cxy,cxz,cyy,cyz,czz/' {output}");
   };
-  EXPECT_THAT(refused(with("1,0,0,-2,0,1")), HasSubstr("rates.csv:2: a variance of -2, must be at least 0"));
+  EXPECT_THAT(refused(with("1,0,0,-2,0,1")), HasSubstr("rates.csv:2: variance -2; it must be at least 0"));
   EXPECT_THAT(refused(with("1,3,0,4,0,1")),
-              HasSubstr("a covariance of 3 beside variances of 1 and 4, must be within 2"));
+              HasSubstr("covariance 3 between variances 1 and 4; its magnitude must be at most 2"));
   EXPECT_EQ(run(with("1,2,0,4,0,1")).rates[0].covariance_rad2_s2(0, 1), 2.0);
 }
 

@@ -174,7 +174,7 @@ TEST_F(PythonMethod, WhatItReturnsIsRefusedWithPlaceValueAndBound) {
   EXPECT_THAT(wrong("rate", "imu.gyro + 1e7"), HasSubstr("rate[0]: rate"));
   EXPECT_THAT(refused(function("rate", "os.ftruncate(int(sys.argv[5]), 10**11); os._exit(0)")),
               HasSubstr("100000000000 bytes, must be at most"));
-  EXPECT_THAT(refused(function("rate", "os._exit(0)")), HasSubstr("left no answer"));
+  EXPECT_THAT(refused(function("rate", "os._exit(0)")), HasSubstr("without an answer"));
   EXPECT_THAT(refused(function("rate", "os.write(int(sys.argv[5]), b'x' * 100); os._exit(0)")), HasSubstr("damaged"));
   EXPECT_THAT(refused(function("rate", "pass", "function: rote\n")), HasSubstr("no function 'rote'"));
 }
@@ -206,9 +206,9 @@ TEST_F(PythonMethod, TimesInAnotherUnitAreNamed) {
     return function("slam", "s = np.unique(recording.imus[0].time_ns" + times + "); return s" + all);
   };
   EXPECT_THAT(refused(of(" // 1000")),
-              AllOf(HasSubstr("pose "), HasSubstr("must be in nanoseconds and looks like microseconds")));
-  EXPECT_THAT(refused(of(" // 1000000")), HasSubstr("looks like milliseconds"));
-  EXPECT_THAT(refused(of("[:10] // 10**5")), AllOf(HasSubstr("must be in nanoseconds"), Not(HasSubstr("looks like"))));
+              AllOf(HasSubstr("pose "), HasSubstr("must be in nanoseconds; the values look like microseconds")));
+  EXPECT_THAT(refused(of(" // 1000000")), HasSubstr("the values look like milliseconds"));
+  EXPECT_THAT(refused(of("[:10] // 10**5")), AllOf(HasSubstr("must be in nanoseconds"), Not(HasSubstr("look like"))));
   EXPECT_THAT(refused(of(" * 1000")), AllOf(HasSubstr("stamp"), HasSubstr("s")));
   EXPECT_EQ(run(of("[:9] // 1000")).poses.size(), 9u);
   EXPECT_GT(run(of("[5:50]")).poses.size(), 40u);
@@ -221,7 +221,7 @@ TEST_F(PythonMethod, DescriptionsAndInterpretersAreCheckedBeforeAnythingRuns) {
               HasSubstr("has no numpy"));
   EXPECT_THAT(refused(function("rate", "pass", "interpreter: [no_such_python]\n")), HasSubstr("no_such_python"));
   write("gone.yaml", "name: gone\nkind: rate\npython: gone.py\n");
-  EXPECT_THAT(refused(folder_ / "gone.yaml"), HasSubstr("is no file"));
+  EXPECT_THAT(refused(folder_ / "gone.yaml"), HasSubstr("is not a file"));
   write("both.yaml", "name: both\nkind: rate\ncommand: [true, '{output}']\nfunction: rate\n");
   EXPECT_THAT(refused(folder_ / "both.yaml"), HasSubstr("function"));
 }

@@ -88,7 +88,7 @@ TEST_F(RigCalibrationFile, ComplaintsNameTheKey) {
   EXPECT_NE(complaint("lever_arm_m", "lever_arm").find("lever_arm_m: missing"), std::string::npos);
   EXPECT_NE(complaint("\"inertia\"", "\"spare\": 1, \"inertia\"").find("spare: unknown key"), std::string::npos);
   EXPECT_NE(complaint("10.4", "-10.4").find("gyro_rail_rad_s"), std::string::npos);
-  EXPECT_NE(complaint("10.4", "10.4, 3").find("needs 3 numbers"), std::string::npos);
+  EXPECT_NE(complaint("10.4", "10.4, 3").find("needs exactly 3 numbers"), std::string::npos);
   EXPECT_NE(complaint("2e-07", "1.0").find("covariance"), std::string::npos);
   EXPECT_NE(complaint("{", "").find("not a JSON object"), std::string::npos);
   EXPECT_NE(complaint("-10.25", "10.25").find("gyro_planes_rad_s"), std::string::npos);

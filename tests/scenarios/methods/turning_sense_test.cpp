@@ -66,8 +66,8 @@ TEST_P(TurningSense, WhatIsAsStatedIsNotComplainedOf) {
 }
 
 TEST_P(TurningSense, WFirstAndInverseAreNamed) {
-  EXPECT_THAT(complaint(with_w_first), HasSubstr("if the quaternions had w first (x y z w is asked)"));
-  EXPECT_THAT(complaint(inverse), HasSubstr("if the quaternions were of the world in the sensor"));
+  EXPECT_THAT(complaint(with_w_first), HasSubstr("if the quaternions had w first (expected order: x y z w)"));
+  EXPECT_THAT(complaint(inverse), HasSubstr("if the quaternions described the world in sensor axes"));
 }
 
 TEST_P(TurningSense, WhatIsOnlyWrongIsNotComplainedOf) {
@@ -86,8 +86,8 @@ INSTANTIATE_TEST_SUITE_P(Frames, TurningSense, ::testing::Values(Frame::imu, Fra
 TEST(TurningSense, AnotherFrameIsNamed) {
   const sim::Sensors rig = sensors();
   const Estimate lidar = attitudes(rig.lidars.front().T_BL.linear(), Frame::imu, as_is);
-  EXPECT_THAT(turning_complaint(lidar, rig), HasSubstr("in the frame imu do not turn as the gyro says"));
-  EXPECT_THAT(turning_complaint(lidar, rig), HasSubstr("if the poses were of the frame lidar"));
+  EXPECT_THAT(turning_complaint(lidar, rig), HasSubstr("in frame imu do not rotate as the gyro does"));
+  EXPECT_THAT(turning_complaint(lidar, rig), HasSubstr("if the poses belonged to the frame lidar"));
 }
 
 TEST(TurningSense, PosesAreHeldToItToo) {

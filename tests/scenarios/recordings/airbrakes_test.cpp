@@ -42,8 +42,8 @@ TEST_F(Airbrakes, ReadsDegreesAndG) {
   EXPECT_EQ(imu.accel_m_s2[0], Eigen::Vector3d(0.0, 0.0, 9.80665));
   EXPECT_NEAR(imu.magnetic_field_t.at(2).z(), -40e-6, 1e-15);
   EXPECT_FALSE(imported.reference);
-  EXPECT_THAT(imported.notes, ElementsAre("1 gaps of more than 1 s: the longest segment is kept, samples 1 to 3 of 4",
-                                          "1 rows repeat a stamp: left out"));
+  EXPECT_THAT(imported.notes, ElementsAre("1 gaps of more than 1 s; the longest segment is kept: samples 1 to 3 of 4",
+                                          "1 rows repeat a time stamp; they are left out"));
   EXPECT_THAT(imported.info.attribution, HasSubstr("MIT"));
   EXPECT_TRUE(is_airbrakes(folder_ / "flight.csv"));
   write_recording(folder_ / "a.h5", imported.info, imported.sensors, nullptr);
@@ -53,17 +53,17 @@ TEST_F(Airbrakes, BadInputHasFileLineValueAndBound) {
   const std::string good = kHeader + row("1") + row("2");
   EXPECT_EQ(complaint_of(good), "");
   EXPECT_THAT(complaint_of(good.substr(0, good.size() - 1)), HasSubstr("csv:3: the last line has no line end"));
-  EXPECT_THAT(complaint_of(good + row("1.5")), HasSubstr("csv:4: stamp does not rise"));
+  EXPECT_THAT(complaint_of(good + row("1.5")), HasSubstr("csv:4: the time stamp does not increase"));
   EXPECT_THAT(complaint_of(good + row("3", "nan")), HasSubstr("csv:4: column raw_angular_rate is not finite"));
   EXPECT_THAT(complaint_of(good + row("3", "x")), HasSubstr("csv:4: column raw_angular_rate must be a number"));
   EXPECT_THAT(complaint_of(good + row("-3")), HasSubstr("csv:4: timestamp_seconds is -3, must be within 0"));
-  EXPECT_THAT(complaint_of(good + "S,3\n"), HasSubstr("csv:4: has 2 columns, the header 11"));
+  EXPECT_THAT(complaint_of(good + "S,3\n"), HasSubstr("csv:4: has 2 columns, but the header has 11"));
   std::string missing = good;
   missing.replace(missing.find("raw_angular_rate_y"), 18, "raw_angular_rate_q");
   EXPECT_THAT(complaint_of(missing), HasSubstr("column is missing: raw_angular_rate_y_deg_per_s"));
   std::string doubled = good;
   doubled.replace(doubled.find("raw_angular_rate_y"), 18, "raw_angular_rate_x");
-  EXPECT_THAT(complaint_of(doubled), HasSubstr("two columns are called raw_angular_rate_x_deg_per_s"));
+  EXPECT_THAT(complaint_of(doubled), HasSubstr("two columns have the name raw_angular_rate_x_deg_per_s"));
 }
 
 double peak_rad_s(const Imported& flight) {
@@ -78,8 +78,8 @@ TEST_F(Airbrakes, ReadsTheStandIn) {
   EXPECT_EQ(flight.sensors.imus[0].time_ns.size(), 2000u) << "ten rows repeat a stamp, seven come long before";
   EXPECT_NEAR(peak_rad_s(flight), 38.9, 0.1);
   EXPECT_THAT(flight.notes,
-              ElementsAre("1 gaps of more than 1 s: the longest segment is kept, samples 7 to 2006 of 2007",
-                          "10 rows repeat a stamp: left out"));
+              ElementsAre("1 gaps of more than 1 s; the longest segment is kept: samples 7 to 2006 of 2007",
+                          "10 rows repeat a time stamp; they are left out"));
 }
 
 /// The published flights, where they are at hand; the suite is there with them alone.

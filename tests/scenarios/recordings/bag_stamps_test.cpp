@@ -67,13 +67,13 @@ TEST_P(Stamps, HeadersCountAndTheirDistanceToTheRecordsIsSaid) {
   EXPECT_EQ(read.sensors.imus[0].time_ns.front() + read.info.origin_ns, kOrigin_ns + 5 * kMs_ns);
   EXPECT_EQ(read.sensors.lidars[0].sweep_start_ns.front() + read.info.origin_ns, kOrigin_ns);
   EXPECT_THAT(read.notes, Contains(AllOf(HasSubstr("/points: the bag recorded its messages 0.1 s to 0.1 s after"),
-                                         HasSubstr("taken are the headers'"))));
+                                         HasSubstr("this import uses the stamps of the headers"))));
   EXPECT_THAT(read.notes, Not(Contains(HasSubstr("/imu: the bag recorded")))) << "nothing is said of what agrees";
 }
 
 TEST_P(Stamps, AnotherClockIsACaution) {
   EXPECT_THAT(written(since_boot, since_boot).notes,
-              Contains(AllOf(HasSubstr("/imu: caution: the bag recorded"), HasSubstr("another clock?"))));
+              Contains(AllOf(HasSubstr("/imu: caution: the bag recorded"), HasSubstr("the clocks may differ"))));
   const auto ahead = [](std::int64_t record_ns) { return record_ns + 20 * kMs_ns; };
   EXPECT_THAT(written(ahead, sweep_before).notes,
               Contains(HasSubstr("/imu: caution: the bag recorded its messages -0.02 s")));
@@ -81,13 +81,14 @@ TEST_P(Stamps, AnotherClockIsACaution) {
     return kOrigin_ns - 700 * kMs_ns + 10 * (record_ns - kOrigin_ns) / 3;
   };
   EXPECT_THAT(written(drifting, sweep_before).notes,
-              Contains(AllOf(HasSubstr("/imu: caution: the bag recorded"), HasSubstr("do the clocks drift?"))));
+              Contains(AllOf(HasSubstr("/imu: caution: the bag recorded"), HasSubstr("one of the clocks may drift"))));
   EXPECT_THAT(written(same, same).notes, Not(Contains(HasSubstr("caution"))));
 }
 
 // a driver may stamp a sweep when it is over, and count the times of its points from its start
 TEST_P(Stamps, PointsBeyondTheirRecordAreACaution) {
-  const auto said = AllOf(HasSubstr("/points: caution: the last points of a sweep"), HasSubstr("('--stamps record'"));
+  const auto said =
+      AllOf(HasSubstr("/points: caution: the last points of a sweep"), HasSubstr("(set '--stamps record'"));
   offsets_ = 600;  // over most of a sweep
   EXPECT_THAT(written(same, same).notes, Contains(said));
   EXPECT_THAT(written(same, sweep_before).notes, Not(Contains(said)));
@@ -95,23 +96,24 @@ TEST_P(Stamps, PointsBeyondTheirRecordAreACaution) {
 }
 
 TEST_P(Stamps, ClocksThatDoNotMeetAreRefusedWithTheWayOut) {
-  EXPECT_THAT(complaint_of(same, long_ago),
-              AllOf(HasSubstr("the clocks of 'points' and 'imu' do not meet"), HasSubstr("('--stamps record' takes")));
+  EXPECT_THAT(complaint_of(same, long_ago), AllOf(HasSubstr("the time ranges of 'points' and 'imu' do not overlap"),
+                                                  HasSubstr("set '--stamps record'")));
 }
 
 TEST_P(Stamps, APlaceThatNobodyStatesIsSaid) {
   const std::vector<std::string> notes = written(same, sweep_before).notes;
-  EXPECT_THAT(notes, Contains(HasSubstr("/imu: neither /tf_static nor --lever-arm says where it is")));
-  EXPECT_THAT(notes, Contains(HasSubstr("/points: neither /tf_static nor --T-body-lidar says where it is")));
+  EXPECT_THAT(notes, Contains(HasSubstr("/imu: neither /tf_static nor --lever-arm gives its pose on the body")));
+  EXPECT_THAT(notes, Contains(HasSubstr("/points: neither /tf_static nor --T-body-lidar gives its pose on the body")));
 }
 
 TEST_P(Stamps, BrokenHeadersAreRefusedWithTheWayOut) {
-  EXPECT_THAT(complaint_of(zero, sweep_before),
-              AllOf(HasSubstr("message 1 of /imu: stamp does not rise: the header's is 0, as the one before"),
-                    HasSubstr("the record's rises by 0.005 s ('--stamps record' takes those)")));
-  EXPECT_THAT(complaint_of(constant, sweep_before), HasSubstr("the header's stands still"));
-  EXPECT_THAT(complaint_of(back, sweep_before), HasSubstr("the header's goes back by 0.005 s"));
-  EXPECT_THAT(complaint_of(same, constant), HasSubstr("message 1 of /points: stamp does not rise"));
+  EXPECT_THAT(
+      complaint_of(zero, sweep_before),
+      AllOf(HasSubstr("message 1 of /imu: the time stamp does not increase: the header's is 0, like the previous one"),
+            HasSubstr("the record's increases by 0.005 s; set '--stamps record' to use the record stamps")));
+  EXPECT_THAT(complaint_of(constant, sweep_before), HasSubstr("the header's does not change"));
+  EXPECT_THAT(complaint_of(back, sweep_before), HasSubstr("the header's decreases by 0.005 s"));
+  EXPECT_THAT(complaint_of(same, constant), HasSubstr("message 1 of /points: the time stamp does not increase"));
 }
 
 TEST_P(Stamps, RecordsAreTakenInstead) {
@@ -123,8 +125,9 @@ TEST_P(Stamps, RecordsAreTakenInstead) {
     ASSERT_EQ(read.sensors.lidars[0].sweep_start_ns.size(), 3u);
     EXPECT_EQ(read.sensors.lidars[0].sweep_start_ns.back() + read.info.origin_ns, kOrigin_ns + 200 * kMs_ns)
         << "recorded when it was over";
-    EXPECT_THAT(read.notes, Contains(AllOf(HasSubstr("/points: "), HasSubstr("taken are the records'"),
-                                           HasSubstr("a sweep is taken to start 0.100000 s before it was recorded"))));
+    EXPECT_THAT(read.notes,
+                Contains(AllOf(HasSubstr("/points: "), HasSubstr("this import uses the stamps of the records"),
+                               HasSubstr("assumption: each sweep starts 0.100000 s before its record stamp"))));
   }
 }
 

@@ -110,7 +110,7 @@ TEST_P(Bag, TopicsAreChosenByName) {
 TEST_P(Bag, AnotherUnitIsSaid) {
   for (Eigen::Vector3d& force : recording_.sensors.imus[0].accel_m_s2) force /= 9.80665;
   write();
-  EXPECT_THAT(complaint_of(), HasSubstr("topic /imu: read in m/s^2 the median specific force is"));
+  EXPECT_THAT(complaint_of(), HasSubstr("topic /imu: read in m/s^2, the median specific force is"));
 }
 
 // some drivers do not keep to sensor_msgs/Imu
@@ -120,10 +120,11 @@ TEST_P(Bag, ForceInGIsReadSoAndSaid) {
   write();
   const Imported imported = read();
   EXPECT_TRUE(imported.sensors.imus.at(0).accel_m_s2.front().isApprox(9.80665 * Eigen::Vector3d(0.6, 0.0, -0.8)));
-  EXPECT_THAT(imported.notes, testing::Contains(testing::AllOf(HasSubstr("/imu: caution: by its definition"),
-                                                               HasSubstr("('--accel-unit m/s^2'"))));
+  EXPECT_THAT(imported.notes,
+              testing::Contains(testing::AllOf(HasSubstr("/imu: caution: the message definition requires m/s^2"),
+                                               HasSubstr("(set '--accel-unit m/s^2'"))));
   reading_.accel_unit = AccelUnit::m_s2;
-  EXPECT_THAT(complaint_of(), HasSubstr("is the file in g? ('--accel-unit g' takes it so)"));
+  EXPECT_THAT(complaint_of(), HasSubstr("The file may be in g (set '--accel-unit g')"));
 }
 
 // whoever takes the first IMU of a bag must get the primary one, also where another one's first reading was earlier
@@ -197,24 +198,24 @@ TEST_P(Bag, RatesInDegreesAreNoticedByGravity) {
   turning(1.0, 1.0);
   EXPECT_THAT(read().notes, testing::Contains(HasSubstr("units and axes agree")));
   turning(57.29578, 1.0);
-  EXPECT_THAT(complaint_of(), HasSubstr("are the rates in deg/s?"));
+  EXPECT_THAT(complaint_of(), HasSubstr("The rates may be in deg/s"));
   reading_.gyro_unit = GyroUnit::deg_s;
   const Imported in_degrees = read();
   EXPECT_THAT(in_degrees.notes, testing::Contains(HasSubstr("units and axes agree")));
   EXPECT_TRUE(in_degrees.sensors.imus[0].gyro_rad_s[0].isApprox(Eigen::Vector3d(1.0, 0.0, 0.0), 1e-7));
   turning(1.0, 1.0);
-  EXPECT_THAT(complaint_of(), HasSubstr("read in deg/s, gravity turns in the accelerometer"));
-  EXPECT_THAT(complaint_of(), HasSubstr("are the rates in rad/s?"));
+  EXPECT_THAT(complaint_of(), HasSubstr("read in deg/s, gravity's rotation in the accelerometer is"));
+  EXPECT_THAT(complaint_of(), HasSubstr("The rates may be in rad/s"));
   reading_.gyro_unit = GyroUnit::rad_s;
   turning(1.0, -1.0);
-  EXPECT_THAT(read().notes, testing::Contains(HasSubstr("caution: gravity turns")));
+  EXPECT_THAT(read().notes, testing::Contains(HasSubstr("caution: gravity's rotation")));
 }
 
 TEST_P(Bag, AnImuThatIsNoneIsSaidWithTheWayOut) {
   for (Eigen::Vector3d& force : recording_.sensors.imus[1].accel_m_s2) force.setZero();  // a gyro alone
   write();
-  EXPECT_THAT(complaint_of(),
-              testing::AllOf(HasSubstr("topic /imu_reference:"), HasSubstr("(--imu-topic takes those")));
+  EXPECT_THAT(complaint_of(), testing::AllOf(HasSubstr("topic /imu_reference:"),
+                                             HasSubstr("(--imu-topic selects which topics are read")));
   reading_.imu_topics = {"/imu"};
   EXPECT_EQ(complaint_of(), "");
 }

@@ -6,6 +6,7 @@
 #include <sys/stat.h>
 
 #include <algorithm>
+#include <array>
 #include <bit>
 #include <cmath>
 #include <cstring>
@@ -15,6 +16,7 @@
 namespace tumble::scenarios {
 namespace {
 
+using testing::AllOf;
 using testing::ElementsAre;
 using testing::HasSubstr;
 
@@ -58,16 +60,16 @@ const std::string kPcd =
 TEST_F(CloudFile, WordsOfAnAsciiPcdAreNumbers) {
   EXPECT_EQ((*read("a.pcd", kPcd + "ascii\n1 +2 3e-1\n\nnan nan nan\r\n").find("y"))[0], 2.0);
   EXPECT_THAT(complaint_of("a.pcd", kPcd + "ascii\n1 2 3\n0,488 2,15 1,03\n"),
-              HasSubstr("a.pcd:11: word 1 is no number (decimals are written with a point)"));
-  EXPECT_THAT(complaint_of("a.pcd", kPcd + "ascii\n1 2 3\nnever was one\n"), HasSubstr("is no number"));
+              HasSubstr("a.pcd:11: word 1 is not a number (use a decimal point)"));
+  EXPECT_THAT(complaint_of("a.pcd", kPcd + "ascii\n1 2 3\nnever was one\n"), HasSubstr("is not a number"));
   EXPECT_THAT(complaint_of("a.pcd", kPcd + "ascii\n1 2 3\n1 2 3 4\n"), HasSubstr("4 numbers, must be 3"));
 }
 
 TEST_F(CloudFile, WordsOfAnAsciiPlyAreNumbers) {
   EXPECT_THAT(complaint_of("a.ply", kAsciiPly + "1 2 3.5 200 0.25\n0,488 2 3 0 0.5\n"),
-              HasSubstr("a.ply:12: word 1 is no number (decimals are written with a point)"));
+              HasSubstr("a.ply:12: word 1 is not a number (use a decimal point)"));
   EXPECT_THAT(complaint_of("a.ply", kAsciiPly + "1 2 3.5 200 0.25\n1 never 3 0 0.5\n"),
-              HasSubstr("a.ply:12: word 2 is no number"));
+              HasSubstr("a.ply:12: word 2 is not a number (use a decimal point)"));
   EXPECT_THAT(complaint_of("a.ply", kAsciiPly + "1 2 3.5 200 0.25\n1 2 3 0\n"),
               HasSubstr("a.ply:12: 4 numbers, must be 5"));
 }
@@ -89,7 +91,7 @@ TEST_F(CloudFile, SizesOfACompressedPcdAreHeldAgainstTheFile) {
     return complaint_of("a.pcd",
                         kPcd + "binary_compressed\n" + bytes(compressed) + bytes(plain) + std::string(20, 'x'));
   };
-  EXPECT_THAT(with(20, 0), HasSubstr("states 0 bytes of points behind the compression, must be 24"));
+  EXPECT_THAT(with(20, 0), HasSubstr("states 0 bytes of uncompressed points; this must be 24"));
   EXPECT_THAT(with(20, 4000000000u), HasSubstr("must be 24"));
   EXPECT_THAT(with(0, 24), HasSubstr("states 0 bytes of compressed points"));
   EXPECT_THAT(with(21, 24), HasSubstr("but 20 follow"));
@@ -121,7 +123,80 @@ TEST_F(CloudFile, KittiBin) {
   const Cloud cloud = read("a.bin", bytes(1.0f) + bytes(2.0f) + bytes(3.0f) + bytes(0.5f));
   ASSERT_EQ(cloud.points, 1u);
   EXPECT_EQ((*cloud.find("intensity"))[0], 0.5);
-  EXPECT_THAT(complaint_of("a.bin", "123456789012345"), HasSubstr("a.bin: has 15 bytes, must be a multiple of 16"));
+  EXPECT_THAT(complaint_of("a.bin", "123456789012345"),
+              HasSubstr("a.bin: has 15 bytes; the size must be a multiple of 16 (float32 x y z intensity), so the file "
+                        "may be truncated"));
+}
+
+/// A sweep of 16 rings, ring by ring, as the columns x y z intensity ring time 0: the first `columns` of them.
+template <class Number>
+std::string sweep_of(std::size_t columns) {
+  std::string out;
+  for (int ring = 0; ring < 16; ++ring) {
+    for (int k = 0; k < 40; ++k) {
+      const double azimuth = 0.157 * k, elevation = 0.035 * (ring - 7.5), range = 5.0 + 3.0 * std::sin(2.0 * azimuth);
+      const std::array<double, 7> point = {range * std::cos(azimuth),
+                                           range * std::sin(azimuth),
+                                           range * elevation,
+                                           (k * 7 + ring * 5) % 100 / 100.0,
+                                           1.0 * ring,
+                                           0.0025 * k,
+                                           0.0};
+      for (std::size_t i = 0; i < columns; ++i) out += bytes(static_cast<Number>(point[i]));
+    }
+  }
+  return out;
+}
+
+TEST_F(CloudFile, KittiBinOfOtherColumnsIsRefused) {
+  EXPECT_EQ(read("a.bin", sweep_of<float>(4)).points, 640u);
+  for (const std::size_t columns : {3u, 5u, 6u, 7u}) {
+    EXPECT_THAT(complaint_of("a.bin", sweep_of<float>(columns)),
+                AllOf(HasSubstr("a.bin: its numbers lie as " + std::to_string(columns) +
+                                " columns of float32, not as 4 (x y z intensity)"),
+                      HasSubstr("--bin-columns names the columns in order")));
+  }
+  for (const std::size_t columns : {4u, 5u, 6u}) {
+    EXPECT_THAT(
+        complaint_of("a.bin", sweep_of<double>(columns)),
+        AllOf(HasSubstr("% of its numbers, read as float32, are beyond 1e+07 or below 1e-20, at most 1 % may be"),
+              HasSubstr("they lie as " + std::to_string(columns) + " columns of float64")));
+  }
+  // a point more, and the size is no multiple of 16 either
+  EXPECT_THAT(complaint_of("a.bin", sweep_of<float>(5) + sweep_of<float>(5).substr(0, 20)),
+              AllOf(HasSubstr("has 12820 bytes, must be a multiple of 16"), HasSubstr("5 columns of float32")));
+}
+
+TEST_F(CloudFile, ColumnsOfABinFileMayBeNamed) {
+  const auto named = [&](const std::string& content, const std::string& columns) {
+    fixture::put(folder_ / "a.bin", content);
+    return read_cloud(folder_ / "a.bin", columns);
+  };
+  const Cloud plain = read("a.bin", sweep_of<float>(4));
+  for (const auto& [content, columns] : {std::pair{sweep_of<float>(5), "x,y,z,intensity,ring"},
+                                         {sweep_of<float>(6), "x,y,z,intensity,_,t"},
+                                         {sweep_of<double>(4), "x:f8,y:f8,z:f8,intensity:f8"},
+                                         {sweep_of<double>(5), "x:f8,y:f8,z:f8,intensity:f8,ring:f8"}}) {
+    const Cloud cloud = named(content, columns);
+    ASSERT_EQ(cloud.points, 640u) << columns;
+    EXPECT_NEAR((*cloud.find("z"))[639], (*plain.find("z"))[639], 1e-6) << columns;
+    const std::vector<double>* const rings = cloud.find("ring");
+    EXPECT_TRUE(rings == nullptr || rings->back() == 15.0) << columns;
+  }
+  // integers among them, as some drivers store rings and times
+  const Cloud mixed =
+      named(bytes(1.0f) + bytes(2.0f) + bytes(3.0f) + bytes(std::uint32_t{70000}) + bytes(std::uint16_t{9}),
+            "x,y,z,t:u4,ring:u2");
+  EXPECT_EQ((*mixed.find("t"))[0], 70000.0);
+  EXPECT_EQ((*mixed.find("ring"))[0], 9.0);
+  const auto complaint = [&](const char* columns) {
+    return fixture::complaint([&] { named(sweep_of<float>(5), columns); });
+  };
+  EXPECT_THAT(complaint("x,y,z,intensity"), "") << "as stated, whatever it looks like";
+  EXPECT_THAT(complaint("x,y,intensity"), HasSubstr("'x,y,intensity' lacks z"));
+  EXPECT_THAT(complaint("x,y,z,x"), HasSubstr("name 'x' is empty or stands twice"));
+  EXPECT_THAT(complaint("x,y,z:f2"), HasSubstr("type 'f2', must be f4, f8"));
+  EXPECT_THAT(complaint("x:f8,y:f8,z:f8"), HasSubstr("has 12800 bytes, must be a multiple of 24"));
 }
 
 TEST_F(CloudFile, NoPointsAreNoError) {
@@ -134,20 +209,22 @@ TEST_F(CloudFile, WhatAHeaderPromisesIsHeldAgainstTheFile) {
   const auto ply = [&](const std::string& count) {
     return "ply\nformat binary_little_endian 1.0\nelement vertex " + count + tail;
   };
-  EXPECT_THAT(complaint_of("a.ply", ply("2") + std::string(23, 'x')),
-              HasSubstr("a.ply:7: promises 2 points of 12 bytes at least, but 23 bytes follow: truncated?"));
+  EXPECT_THAT(
+      complaint_of("a.ply", ply("2") + std::string(23, 'x')),
+      HasSubstr("a.ply:7: states 2 points of at least 12 bytes, but only 23 bytes follow; the file may be truncated"));
   EXPECT_EQ(complaint_of("a.ply", ply("2") + std::string(24, 'x')), "");
   EXPECT_THAT(complaint_of("a.ply", ply("4000000000")),
-              HasSubstr("a.ply:7: promises 4000000000 points, at most 67108864"));
+              HasSubstr("a.ply:7: states 4000000000 points; at most 67108864"));
   EXPECT_THAT(complaint_of("a.ply", ply("99999999999999999999")), HasSubstr("a.ply:3: count of vertex is"));
-  EXPECT_THAT(complaint_of("a.ply", ply("-1")), HasSubstr("a.ply:3: count of vertex is '-1', no whole number"));
+  EXPECT_THAT(complaint_of("a.ply", ply("-1")),
+              HasSubstr("a.ply:3: count of vertex is '-1'; it must be a whole number"));
   EXPECT_THAT(complaint_of("a.ply", kAsciiPly + "1 2 3\n"), HasSubstr("truncated?"));
   const auto pcd = [](const std::string& width, const std::string& data) {
     return "FIELDS x y z\nSIZE 4 4 4\nTYPE F F F\nCOUNT 1 1 1\nWIDTH " + width + "\nHEIGHT 1\nPOINTS " + width +
            "\nDATA " + data + "\n";
   };
   EXPECT_THAT(complaint_of("a.pcd", pcd("3", "binary") + std::string(35, 'x')),
-              HasSubstr("a.pcd:8: promises 3 points of 12 bytes at least, but 35 bytes follow"));
+              HasSubstr("a.pcd:8: states 3 points of at least 12 bytes, but only 35 bytes follow"));
   EXPECT_THAT(complaint_of("a.pcd", pcd("60000000", "binary_compressed") + std::string(100, 'x')),
               HasSubstr("a.pcd:8"));
   EXPECT_THAT(complaint_of("a.pcd", pcd("5000000000", "binary")), HasSubstr("WIDTH is 5000000000, must be at most"));
@@ -170,14 +247,14 @@ TEST_F(CloudFile, DamageIsOneClearLine) {
   EXPECT_THAT(complaint_of("a.ply", ""), HasSubstr("a.ply:0: the header does not end"));
   EXPECT_THAT(complaint_of("a.ply", "plyy\n"), HasSubstr("a.ply:1: does not begin with 'ply'"));
   EXPECT_THAT(complaint_of("a.ply", "ply\nformat ascii 1.0\nelement vertex 1\n"),
-              HasSubstr("does not end: truncated?"));
-  EXPECT_THAT(complaint_of("a.ply", "ply\nformat ascii 1.0\nend_header\n"), HasSubstr("there are no points"));
+              HasSubstr("does not end; the file may be truncated"));
+  EXPECT_THAT(complaint_of("a.ply", "ply\nformat ascii 1.0\nend_header\n"), HasSubstr("the file has no points"));
   EXPECT_THAT(complaint_of("a.ply", "ply\nelement vertex 1\nproperty quad x\nend_header\n"),
               HasSubstr("a.ply:3: unknown type"));
   EXPECT_THAT(complaint_of("a.ply", "ply\nelement vertex 1\nproperty list uchar int x\nend_header\n"),
               HasSubstr("list"));
   EXPECT_THAT(complaint_of("a.ply", "ply\n" + std::string(70000, 'c') + "\n"), HasSubstr("longer than 65536 bytes"));
-  EXPECT_THAT(complaint_of("a.pcd", "FIELDS x\nDATA ascii\n"), HasSubstr("no line SIZE"));
+  EXPECT_THAT(complaint_of("a.pcd", "FIELDS x\nDATA ascii\n"), HasSubstr("there is no line SIZE"));
   EXPECT_THAT(complaint_of("a.pcd", "FIELDS x y\nSIZE 4\nTYPE F F\nWIDTH 1\nHEIGHT 1\nDATA ascii\n"),
               HasSubstr("SIZE has 1 words"));
 }

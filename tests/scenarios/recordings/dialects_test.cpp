@@ -185,22 +185,23 @@ TEST_P(Dialects, WhatThePeerCannotDoWithoutIsRefused) {
   recording.sensors.imus.clear();
   recording.truth.imus.clear();
   EXPECT_EQ(complaint_of(recording),
-            lidar_alone ? "" : "the recording holds no reading of an IMU, which " + peer + " reads");
+            lidar_alone ? "" : "the recording has no IMU reading; " + peer + " cannot read such a recording");
   std::filesystem::remove_all(folder_ / "refused");
   recording = unordered();
   recording.sensors.lidars[0].point_times = sim::PointTimes::unknown;
   recording.sensors.lidars[0].offset_ns.assign(recording.sensors.lidars[0].offset_ns.size(), 0);
   EXPECT_EQ(complaint_of(recording),
-            lidar_alone ? "" : "the points of 'lidar' have no times of their own, which " + peer + " reads");
+            lidar_alone ? "" : "the points of 'lidar' have no time stamps; " + peer + " cannot read such a recording");
   std::filesystem::remove_all(folder_ / "refused");
   recording = unordered();
   recording.sensors.lidars[0].range_m[7] = std::nanf("");
-  EXPECT_THAT(complaint_of(recording), HasSubstr("point 7 of 'lidar' is not finite in place, range or intensity"));
+  EXPECT_THAT(complaint_of(recording),
+              HasSubstr("point 7 of 'lidar' has a position, range or intensity that is not finite"));
   EXPECT_FALSE(std::filesystem::exists(folder_ / "refused"));
   recording = unordered();
   recording.sensors.lidars.clear();
   recording.truth.lidars.clear();
-  EXPECT_EQ(complaint_of(recording), "the recording holds no return of a lidar, which " + peer + " reads");
+  EXPECT_EQ(complaint_of(recording), "the recording has no lidar return; " + peer + " cannot read such a recording");
   EXPECT_FALSE(std::filesystem::exists(folder_ / "refused"));
 }
 
@@ -222,7 +223,7 @@ TEST_P(Dialects, AnEmptySweepIsThereOnlyForThosePeersThatTakeIt) {
   EXPECT_EQ(manifest()["lidar"]["sweeps"], clouds.size());
   EXPECT_EQ(std::count_if(clouds.begin(), clouds.end(), [](const auto& cloud) { return cloud.width == 0; }),
             takes ? 2 : 0);
-  const std::string note = "2 sweeps without a point left out: " + peer + " cannot take an empty cloud";
+  const std::string note = "2 sweeps without points are left out: " + peer + " cannot read an empty cloud";
   EXPECT_THAT(notes, testing::Conditional(takes, testing::IsEmpty(), testing::ElementsAre(note)));
   EXPECT_EQ(fixture::bytes_of(out() / "manifest.json").find(note) != std::string::npos, !takes);
 }
@@ -305,12 +306,12 @@ TEST_F(Configuration, ALivoxComesAsItsDriversMessage) {
     EXPECT_EQ(sweeps[1].points.size(), 50u);
   }
   EXPECT_THAT(fixture::complaint([&] { yaml("lio-sam", "params.yaml", recording); }),
-              HasSubstr("the lidar 'mid100' does not scan in rings, which lio-sam reads"));
+              HasSubstr("the lidar 'mid100' does not scan in rings; lio-sam cannot read such a recording"));
 }
 
 TEST_F(Configuration, AnUnknownPeerIsRefusedWithTheNearest) {
   EXPECT_THAT(fixture::complaint([&] { yaml("fast_lio", "", recording_); }),
-              HasSubstr("unknown peer 'fast_lio'; did you mean 'fast-lio'?"));
+              HasSubstr("unknown export target 'fast_lio'; did you mean 'fast-lio'?"));
   EXPECT_EQ(peer_dialects().size(), std::size(kWanted)) << "each has its line in the table above";
 }
 

@@ -125,7 +125,7 @@ TEST_P(Frames, AStatedPlaceHoldsAndAContradictionShowsBoth) {
   EXPECT_EQ(held.sensors.lidars[0].T_BL.translation(), Eigen::Vector3d(0.5, 0.25, 0.125));
   EXPECT_THAT(held.notes,
               Contains(testing::AllOf(HasSubstr("/lidar/points: caution: /tf_static places it in 'body' at"),
-                                      HasSubstr("but given was (0.5 "))));
+                                      HasSubstr("but the given pose is (0.5 "))));
   // the same place said twice is no contradiction
   stated.sweeps.device.T_BL = recording_.sensors.lidars[0].T_BL;
   EXPECT_THAT(GetParam().read(path_, stated).notes, testing::Not(Contains(HasSubstr("caution: /tf_static"))));
@@ -148,7 +148,7 @@ TEST_P(Frames, CloudsInTheWorldAreNoSensors) {
   EXPECT_THAT(numbers, testing::ElementsAre(1, 2, 3, 0.5f, 4, 5, 6, 0.25f));
   const Imported imported = GetParam().read(path_, {});
   EXPECT_EQ(imported.sensors.lidars.size(), 1u);
-  EXPECT_THAT(imported.notes, Contains(HasSubstr("/mine/points: its points lie in 'world'")));
+  EXPECT_THAT(imported.notes, Contains(HasSubstr("/mine/points: its points are in frame 'world'")));
 }
 
 ros::TransformStamped hung(const std::string& child, const std::string& parent, const Eigen::Vector3d& p,
@@ -206,9 +206,9 @@ TEST_P(Frames, SensorsWithoutABodyStandBesideEachOther) {
   EXPECT_TRUE(imus[0].T_BI.isApprox(Eigen::Isometry3d::Identity()));
   EXPECT_LT((imus[1].T_BI.translation() - Eigen::Vector3d(0, -0.5, 0)).norm(), 1e-12);
   EXPECT_TRUE(imus[1].T_BI.linear().isApprox(turn.toRotationMatrix().transpose(), 1e-12));
-  EXPECT_THAT(found.notes, Contains(HasSubstr("/right: placed beside /left by /tf_static")));
+  EXPECT_THAT(found.notes, Contains(HasSubstr("/right: placed next to /left by /tf_static")));
   EXPECT_THAT(found.notes, Contains(HasSubstr("/elsewhere: neither /tf_static nor --lever-arm")));
-  EXPECT_THAT(found.notes, Contains(HasSubstr("'left' is the primary IMU, as its topic stands first")));
+  EXPECT_THAT(found.notes, Contains(HasSubstr("'left' is the primary IMU because its topic comes first")));
   // where the first is given, the second stands beside it
   BagReading given;
   given.imu_topics = {"/left", "/right"};
@@ -234,15 +234,16 @@ TEST_P(Frames, APoseOfAnotherFrameIsMovedToTheBody) {
     reading.reference_topic = "/of_" + child;
     reading.reference_of = whose;
     const Imported found = GetParam().read(path_, reading);
-    EXPECT_THAT(found.notes, said[0] == 0 ? testing::Not(Contains(HasSubstr("by their messages")))
+    EXPECT_THAT(found.notes, said[0] == 0 ? testing::Not(Contains(HasSubstr("by the messages")))
                                           : testing::Matcher<std::vector<std::string>>(Contains(HasSubstr(said))));
     return found.reference->p_WB_m.at(0);
   };
-  EXPECT_EQ(start("mast", ReferenceOf::named, "/of_mast: poses of 'mast' by their messages: moved from there"),
-            Eigen::Vector3d(7, 7.5, 7));
+  EXPECT_EQ(
+      start("mast", ReferenceOf::named, "/of_mast: by the messages, poses of 'mast'; converted to poses of the body"),
+      Eigen::Vector3d(7, 7.5, 7));
   EXPECT_EQ(start("mast", ReferenceOf::body, ""), Eigen::Vector3d(7, 8, 9));
   EXPECT_EQ(start("base_link", ReferenceOf::named, ""), Eigen::Vector3d(7, 8, 9));
-  EXPECT_EQ(start("unknown", ReferenceOf::named, "which nothing places on the body"), Eigen::Vector3d(7, 8, 9));
+  EXPECT_EQ(start("unknown", ReferenceOf::named, "which has no known pose on the body"), Eigen::Vector3d(7, 8, 9));
 }
 
 TEST_P(Frames, AMessageThatIsThereTwiceIsTakenOnce) {
@@ -251,7 +252,8 @@ TEST_P(Frames, AMessageThatIsThereTwiceIsTakenOnce) {
   bag->finish();
   const Imported found = GetParam().read(path_, {});
   EXPECT_EQ(found.sensors.imus.at(0).time_ns.size(), 5u);
-  EXPECT_THAT(found.notes, Contains(HasSubstr("there twice, stamp and content, and were taken once: 5")));
+  EXPECT_THAT(found.notes,
+              Contains(HasSubstr("number of duplicate messages (same stamp and content) that were read once: 5")));
 }
 
 TEST_P(Frames, WhatNoSensorAsksForMayMakeNoSense) {
@@ -261,27 +263,29 @@ TEST_P(Frames, WhatNoSensorAsksForMayMakeNoSense) {
   const Imported found = GetParam().read(path_, {});
   EXPECT_EQ(found.sensors.imus.at(0).T_BI.translation(), Eigen::Vector3d(0.5, 0, 0));
   for (const char* said :
-       {"the transform of 'map' in 'utm': its place must be within 1 km: not used",
-        "'camera': the frame hangs on itself: not used", "'lamp' in 'body': its quaternion has norm"})
+       {"the transform of 'map' in 'utm': its translation must be at most 1 km; it is ignored",
+        "'camera': the frame is its own parent; it is ignored", "'lamp' in 'body': its quaternion has norm"})
     EXPECT_THAT(found.notes, Contains(HasSubstr(said)));
 }
 
 TEST_P(Frames, AFrameOnTwoOthersIsTold) {
   write_frames(*GetParam().writer(path_), {hung("imu", "body", {0.5, 0, 0}), hung("imu", "other", {0.1, 0, 0})});
-  EXPECT_THAT(GetParam().read(path_, {}).notes, Contains(HasSubstr("'imu' hangs on 'body' and, later, on 'other'")));
+  EXPECT_THAT(GetParam().read(path_, {}).notes,
+              Contains(HasSubstr("'imu' has the parent 'body' and later the parent 'other'")));
   std::filesystem::remove_all(path_);
   write_frames(*GetParam().writer(path_), {hung("imu", "body", {0.5, 0, 0}), hung("imu", "body", {0.1, 0, 0})});
-  EXPECT_THAT(GetParam().read(path_, {}).notes, testing::Not(Contains(HasSubstr("hangs on")))) << "said anew";
+  EXPECT_THAT(GetParam().read(path_, {}).notes, testing::Not(Contains(HasSubstr("has the parent")))) << "said anew";
 }
 
 TEST_P(Frames, ThatMakeNoSenseAreRefused) {
   constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
   const std::pair<std::vector<ros::TransformStamped>, const char*> cases[] = {
       {{hung("imu", "mast", {0, 0, 0}), hung("mast", "imu", {0, 0, 0}), hung("x", "body", {0, 0, 0})},
-       "hang on each other in a ring"},
-      {{hung("imu", "mast", {0, 0, 0}), hung("mast", "imu", {0, 0, 0})}, "hang on each other in a ring"},  // no body
-      {{hung("imu", "body", {kNan, 0, 0})}, "the transform of 'imu' in 'body': its place must be within 1 km"},
-      {{hung("imu", "body", {0, 2000, 0})}, "its place must be within 1 km"},
+       "and its parent frames form a loop"},
+      {{hung("imu", "mast", {0, 0, 0}), hung("mast", "imu", {0, 0, 0})},
+       "and its parent frames form a loop"},  // no body
+      {{hung("imu", "body", {kNan, 0, 0})}, "the transform of 'imu' in 'body': its translation must be at most 1 km"},
+      {{hung("imu", "body", {0, 2000, 0})}, "its translation must be at most 1 km"},
       {{hung("imu", "body", {0, 0, 0}, Eigen::Quaterniond(0, 0, 0, 0))}, "its quaternion has norm 0.000000, must be 1"},
       {{hung("imu", "body", {0, 0, 0}, Eigen::Quaterniond(kNan, 0, 0, 0))}, "its quaternion has norm nan"}};
   for (const auto& [frames, complaint] : cases) {

@@ -94,7 +94,7 @@ TEST_F(Lz4Bag, DamageIsOneLine) {
   EXPECT_THAT(fixture::complaint([&] { import_ros1_bag(folder_ / "more.bag", {}); }), HasSubstr("its LZ4 frame"));
   copy_ros1_bag(folder_ / "plain.bag", folder_ / "fewer.bag", states(1));
   EXPECT_THAT(fixture::complaint([&] { import_ros1_bag(folder_ / "fewer.bag", {}); }),
-              HasSubstr("bytes, the chunk states"));
+              HasSubstr("bytes, but the chunk states"));
 }
 
 // a bag is refused, or read: it never ends the program, whatever byte of it is gone or changed
@@ -176,7 +176,8 @@ TEST_F(HostileBag, TopicsWithoutMessagesAreLeftOutUnlessNamed) {
     database.exec(std::string("DELETE FROM messages WHERE topic_id = (SELECT id FROM topics WHERE name = '") + topic +
                   "')");
     const Imported imported = import_ros2_bag(bag, {});
-    EXPECT_THAT(imported.notes, testing::Contains(topic + std::string(": is declared and has no message: left out")));
+    EXPECT_THAT(imported.notes,
+                testing::Contains(topic + std::string(": the topic is declared but has no messages; it is left out")));
     EXPECT_EQ(imported.sensors.lidars.size(), topic == std::string("/imu") ? 1u : 0u);
     BagReading named;
     (topic == std::string("/imu") ? named.imu_topics : named.lidar_topics) = {topic};
@@ -206,14 +207,14 @@ TEST_F(HostileBag, AMessageThatPromisesTooMuchAllocatesNothing) {
     query.reset();
     update.exec();
     EXPECT_THAT(fixture::complaint([&] { import_ros2_bag(bag, {}); }),
-                field_count ? HasSubstr("message 0 of /lidar/points: promises 4294967280 entries of 13 bytes")
+                field_count ? HasSubstr("message 0 of /lidar/points: states 4294967280 entries of 13 bytes")
                             : HasSubstr("message 0 of /lidar/points: 1 x 4294967280 points of 26 bytes do not fit"));
   }
 }
 
 TEST_F(HostileBag, WhatIsNoBagIsSaid) {
   fixture::put(folder_ / "a.bag", "hello");
-  EXPECT_THAT(fixture::complaint([&] { import_ros1_bag(folder_ / "a.bag", {}); }), HasSubstr("no ROS 1 bag"));
+  EXPECT_THAT(fixture::complaint([&] { import_ros1_bag(folder_ / "a.bag", {}); }), HasSubstr("not a ROS 1 bag"));
   EXPECT_THAT(fixture::complaint([&] { import_ros1_bag(folder_ / "none.bag", {}); }), HasSubstr("no such file"));
   EXPECT_THAT(fixture::complaint([&] { export_ros1_bag(fixture::small_sensors(), {}, folder_ / "none" / "a.bag"); }),
               HasSubstr("cannot be written"));

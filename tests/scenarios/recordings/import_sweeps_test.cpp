@@ -89,7 +89,7 @@ TEST_F(ImportSweeps, PointsFarBeyondTheSheetAreRefused) {
   put("2.ply", sweep());
   source_.steady_ns = 100000000;
   source_.reading.range_max_m = 1.0;  // of points 3.7 m away
-  EXPECT_THAT(complaint_of(), HasSubstr("6 of 6 points lie farther than 2 m, twice the range of the data sheet"));
+  EXPECT_THAT(complaint_of(), HasSubstr("6 of 6 points are farther than 2 m, twice the range of the data sheet"));
   source_.reading.range_max_m = 2.0;
   EXPECT_EQ(import().position_L_m.size(), 6u);
 }
@@ -104,7 +104,7 @@ TEST_F(ImportSweeps, PointsInMillimetresAreRefusedWithoutASheetToo) {
   replaced("1 2 3\n", "1000 2000 3000\n");
   put("1.ply", text);
   put("2.ply", text);
-  EXPECT_THAT(complaint_of(), HasSubstr("6 of 6 points lie farther than 1000 m, twice what any lidar of a robot sees"));
+  EXPECT_THAT(complaint_of(), HasSubstr("6 of 6 points are farther than 1000 m, twice the range of any robot lidar"));
   replaced("1000 2000 3000\n", "100 200 300\n");  // far, and no more
   put("1.ply", text);
   put("2.ply", text);
@@ -118,7 +118,7 @@ TEST_F(ImportSweeps, AViewpointIsTold) {
   source_.format = "pcd";
   source_.steady_ns = 100000000;
   import();
-  EXPECT_THAT(imported_.notes, testing::Contains(testing::AllOf(HasSubstr("1 sweeps state a VIEWPOINT"),
+  EXPECT_THAT(imported_.notes, testing::Contains(testing::AllOf(HasSubstr("1 sweeps have a VIEWPOINT"),
                                                                 HasSubstr("2.pcd: 5 0 0 1 0 0 0"))));
 }
 
@@ -205,38 +205,39 @@ TEST_F(ImportSweeps, MissesAreLeftOutAndIntensityIsScaled) {
   EXPECT_THAT(lidar.range_m, ElementsAre(3.0f, 5.0f, testing::_, testing::_, testing::_));
   EXPECT_THAT(lidar.intensity, ElementsAre(0.2f, 1.0f, 0.0f, 0.0f, 0.0f));
   EXPECT_THAT(lidar.ring, ElementsAre(3, 15, 0, 0, 0));
-  EXPECT_THAT(imported_.notes, testing::Contains(HasSubstr("2 points are misses")));
+  EXPECT_THAT(imported_.notes, testing::Contains(HasSubstr("2 points are missing returns")));
   EXPECT_THAT(imported_.notes, testing::Contains(HasSubstr("3 points have no intensity")));
-  EXPECT_THAT(imported_.notes, testing::Contains("fields that are not read: normal_x"));
+  EXPECT_THAT(imported_.notes, testing::Contains("ignored fields: normal_x"));
 }
 
 TEST_F(ImportSweeps, HostileInputIsOneClearLine) {
-  EXPECT_THAT(complaint_of(), HasSubstr("holds no file that ends in .ply"));
+  EXPECT_THAT(complaint_of(), HasSubstr("contains no file that ends in .ply"));
   put("1.ply", sweep());
   put("2.ply", sweep());
-  EXPECT_THAT(complaint_of(), HasSubstr("1.ply: neither the sweep nor its points have a time"));
+  EXPECT_THAT(complaint_of(), HasSubstr("1.ply: neither the sweep nor its points have a time stamp"));
   put("times.txt", "1.0\n");
-  EXPECT_THAT(complaint_of(), HasSubstr("times.txt: holds 1 stamps, there are 2 sweeps"));
+  EXPECT_THAT(complaint_of(), HasSubstr("times.txt: holds 1 time stamps, but there are 2 sweeps"));
   put("times.txt", "# s\n1.1\n1.0\n");
   EXPECT_THAT(complaint_of(),
-              HasSubstr("times.txt:3: stamp 1000000000 ns does not rise, the one before is 1100000000"));
+              HasSubstr("times.txt:3: the time stamp 1000000000 ns does not increase; the previous one is 1100000000"));
   put("times.txt", "1.0\n1.1x\n");
   EXPECT_THAT(complaint_of(), HasSubstr("times.txt:2: '1.1x' is not a number"));
   put("times.txt", "1.0\n1.1\n");
   ASSERT_EQ(complaint_of(), "");
   put("2.ply", sweep("float time", {"0.01", "nan", "0.09"}));
   put("1.ply", sweep("float time", {"0.01", "0.05", "0.09"}));
-  EXPECT_THAT(complaint_of(), HasSubstr("2.ply: point 1: time is nan"));
+  EXPECT_THAT(complaint_of(), HasSubstr("2.ply: point 1: the time is nan"));
   put("2.ply", sweep("float time", {"0.01", "0.05", "0.5"}));
   source_.reading.time_unit = "s";
-  EXPECT_THAT(complaint_of(), HasSubstr("2.ply: point 2 is 500000000 ns after the sweep's start, must be at most"));
+  EXPECT_THAT(complaint_of(),
+              HasSubstr("2.ply: point 2 is 500000000 ns after the start of the sweep; this must be at most"));
   put("2.ply", sweep());
-  EXPECT_THAT(complaint_of(), HasSubstr("2.ply: no field 'time', which other sweeps have"));
+  EXPECT_THAT(complaint_of(), HasSubstr("2.ply: there is no field 'time', which other sweeps have"));
   put("2.ply", sweep("float ring", {"1", "2.5", "3"}));
   put("1.ply", sweep());
   EXPECT_THAT(complaint_of(), HasSubstr("2.ply: point 1: ring is 2.5"));
   put("2.ply", "ply\nformat ascii 1.0\nelement vertex 1\nproperty float x\nproperty float y\nend_header\n1 2\n");
-  EXPECT_THAT(complaint_of(), HasSubstr("2.ply: no field 'z' (there are: x y)"));
+  EXPECT_THAT(complaint_of(), HasSubstr("2.ply: there is no field 'z' (existing fields: x y)"));
   put("2.ply", sweep("float x", {"nan", "nan", "nan"}));
   put("rear_1.ply", sweep());
   EXPECT_THAT(complaint_of(), HasSubstr("files of several lidars, '' and 'rear'"));
@@ -245,12 +246,12 @@ TEST_F(ImportSweeps, HostileInputIsOneClearLine) {
 TEST_F(ImportSweeps, AUnitThatCannotBeToldIsAskedFor) {
   put("times.txt", "1.0\n1.1\n");
   for (const char* name : {"1.ply", "2.ply"}) put(name, sweep("float time", {"0.00001", "0.00002", "0.00005"}));
-  EXPECT_THAT(complaint_of(), HasSubstr("1.ply: the field 'time' spans"));
-  EXPECT_THAT(complaint_of(), HasSubstr("2 to 150 % of the sweep period of 100 ms; say its unit"));
+  EXPECT_THAT(complaint_of(), HasSubstr("1.ply: the field 'time' has a range of"));
+  EXPECT_THAT(complaint_of(), HasSubstr("2 to 150 % of the sweep period of 100 ms; give the unit"));
   source_.reading.time_unit = "s";
   EXPECT_EQ(complaint_of(), "");
   source_.reading.time_unit = "minutes";
-  EXPECT_THAT(complaint_of(), HasSubstr("the unit of times is 'minutes', must be s, ms, us or ns"));
+  EXPECT_THAT(complaint_of(), HasSubstr("the unit of point times is 'minutes', must be s, ms, us or ns"));
   source_.reading = {};
   source_.reading.time_field = "tiem";
   EXPECT_THAT(complaint_of(), HasSubstr("no field 'tiem'; did you mean 'time'?"));
@@ -262,15 +263,15 @@ TEST_F(ImportSweeps, AUnitThatTheNumbersContradictIsRefusedWithBoth) {
   for (int k = 0; k < 120; ++k) us.push_back(std::to_string(10000 + 500 * k));
   for (const char* name : {"1.ply", "2.ply"}) put(name, sweep("float time", us));
   import();
-  EXPECT_THAT(imported_.notes, testing::Contains("times of points: field 'time', in us from the stamp of the sweep"));
+  EXPECT_THAT(imported_.notes, testing::Contains("point times: field 'time', in us after the sweep's time stamp"));
   source_.reading.time_unit = "ns";
   EXPECT_THAT(complaint_of(),
-              HasSubstr("1.ply: the field 'time' is stated to be in ns and spans 59500 in a sweep: in ns "
-                        "that is 0.0595 % of the sweep period, in us that is 59.5 % of the sweep period"));
+              HasSubstr("1.ply: the field 'time' has the stated unit ns and a range of 59500 in a sweep: in ns "
+                        "this is 0.0595 % of the sweep period, in us this is 59.5 % of the sweep period"));
   // the field's name states it too
   source_.reading.time_unit = "";
   for (const char* name : {"1.ply", "2.ply"}) put(name, sweep("float t_ms", us));
-  EXPECT_THAT(complaint_of(), HasSubstr("the field 't_ms' is stated to be in ms and spans 59500"));
+  EXPECT_THAT(complaint_of(), HasSubstr("the field 't_ms' has the stated unit ms and a range of 59500"));
   // a few points may lie close together in any unit
   us.resize(90);
   for (const char* name : {"1.ply", "2.ply"}) put(name, sweep("float t_ns", us));
@@ -280,7 +281,7 @@ TEST_F(ImportSweeps, AUnitThatTheNumbersContradictIsRefusedWithBoth) {
 TEST_F(ImportSweeps, NoPointAtAllIsRefused) {
   for (const char* name : {"1.ply", "2.ply"}) put(name, sweep("", {}));
   source_.steady_ns = 100000000;
-  EXPECT_THAT(complaint_of(), HasSubstr("no sweep holds a point"));
+  EXPECT_THAT(complaint_of(), HasSubstr("no sweep has a point"));
 }
 
 TEST_F(ImportSweeps, AnImuInTheSameClockJoinsAndInAnotherDoesNot) {
@@ -299,7 +300,8 @@ TEST_F(ImportSweeps, AnImuInTheSameClockJoinsAndInAnotherDoesNot) {
   EXPECT_EQ(both.sensors.lidars[0].sweep_start_ns, recording.sensors.lidars[0].sweep_start_ns);
   Imported elsewhere = import_imu_csv(folder_ / "imu_reference.csv", given);
   elsewhere.info.origin_ns += 3600000000000;
-  EXPECT_THAT(fixture::complaint([&] { attach_imus(both, std::move(elsewhere)); }), HasSubstr("another clock?"));
+  EXPECT_THAT(fixture::complaint([&] { attach_imus(both, std::move(elsewhere)); }),
+              HasSubstr("check that both use the same clock"));
 }
 
 }  // namespace

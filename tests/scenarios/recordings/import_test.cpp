@@ -63,7 +63,7 @@ TEST_F(ImportCsv, ReadsTheColumnsOfTheLayout) {
   EXPECT_EQ(imu.gyro_rad_s[1], Eigen::Vector3d(0.25, -1e-3, 3.0));
   EXPECT_EQ(imu.accel_m_s2[2], Eigen::Vector3d(9.5, 0.0, -0.5));
   EXPECT_THAT(imu.clip_flags, ElementsAre(0, 0, 0));
-  EXPECT_THAT(imported.info.attribution, HasSubstr("run_1_xsens.csv, first stamp 1632000000990000000 ns"));
+  EXPECT_THAT(imported.info.attribution, HasSubstr("run_1_xsens.csv, first time stamp 1632000000990000000 ns"));
   write_recording(folder_ / "a.h5", imported.info, imported.sensors, nullptr);
   EXPECT_EQ(read_sensors(folder_ / "a.h5").imus[0].time_ns, imu.time_ns);
 }
@@ -127,20 +127,20 @@ TEST_F(ImportCsv, FindsColumnsByNameAndReadsStampsToTheNanosecond) {
   EXPECT_THAT(imu.time_ns, ElementsAre(0, 231600000 - 223639727));
   EXPECT_EQ(imu.gyro_rad_s[1], Eigen::Vector3d(0.1, 0.2, 0.4));
   EXPECT_EQ(imu.accel_m_s2[0], 9.80665 * Eigen::Vector3d(-0.5, 0.0, 1.0));
-  EXPECT_THAT(imported.info.attribution, HasSubstr("first stamp 1617333602223639727 ns"));
+  EXPECT_THAT(imported.info.attribution, HasSubstr("first time stamp 1617333602223639727 ns"));
 }
 
 TEST_F(ImportCsv, AnotherUnitOrAMissingColumnIsSaid) {
   const std::string rows =
       "1.5,0.1,0.2,0.3,7,1617333602.223639727,-0.5,0,1\n1.6,0.1,0.2,0.4,8,1617333602.24,-0.5,0,1\n";
   EXPECT_THAT(complaint_of(kNamed + rows),
-              HasSubstr("median specific force is 1.118034 m/s^2, must be within 3 and 30"));
+              HasSubstr("median specific force is 1.118034 m/s^2; it must be within 3 and 30"));
   std::string without = kNamed;
   without.replace(without.find("velocity/y"), 10, "velocity_y");
-  EXPECT_THAT(complaint_of(without + rows), HasSubstr("csv:1: columns are missing: angular_velocity/y"));
+  EXPECT_THAT(complaint_of(without + rows), HasSubstr("csv:1: missing columns: angular_velocity/y"));
   std::string twice = kNamed;
   twice.replace(twice.find("__time"), 6, "/b/header/stamp");
-  EXPECT_THAT(complaint_of(twice + rows), HasSubstr("csv:1: two columns are called header/stamp"));
+  EXPECT_THAT(complaint_of(twice + rows), HasSubstr("csv:1: two columns have the name header/stamp"));
   for (const char* stamp : {"", ".5", "-1.5", "1.5e3", "1.0123456789", "12345678901.5"}) {
     EXPECT_THAT(complaint_of(kNamed + "1.5,0.1,0.2,0.3,7," + stamp + ",-0.5,0,9\n"),
                 HasSubstr("csv:2: column 5 must be seconds"))
@@ -205,14 +205,14 @@ TEST_F(ImportOwnCsv, DoubledUnknownAndMissingColumnsAreRefused) {
     return other.replace(other.find(from), from.size(), to);
   };
   EXPECT_EQ(complaint_of(text_), "");
-  EXPECT_THAT(complaint_of(renamed("wy_rad_s", "wx_rad_s")), HasSubstr("csv:1: two columns are called wx_rad_s"));
+  EXPECT_THAT(complaint_of(renamed("wy_rad_s", "wx_rad_s")), HasSubstr("csv:1: two columns have the name wx_rad_s"));
   EXPECT_THAT(complaint_of(renamed("wy_rad_s", "wy_deg_s")), HasSubstr("csv:1: unknown column 'wy_deg_s'"));
   EXPECT_THAT(complaint_of(renamed("wy_rad_s", "wy_rads")), HasSubstr("did you mean 'wy_rad_s'"));
   EXPECT_THAT(complaint_of(reordered(text_, {0, 1, 2, 3, 8, 9, 10, 12, 13})),
-              HasSubstr("csv:1: columns are missing: fz_m_s2"));
+              HasSubstr("csv:1: missing columns: fz_m_s2"));
   fixture::put(folder_ / "a.csv", text_);
   EXPECT_THAT(fixture::complaint([&] { import_imu_csv(folder_ / "a.csv", {}, AccelUnit::g); }),
-              HasSubstr("its names say rad/s and m/s^2"));
+              HasSubstr("the column names state rad/s and m/s^2"));
 }
 
 TEST_F(ImportOwnCsv, AFileWithoutHeaderKeepsItsFirstSample) {
@@ -238,16 +238,16 @@ TEST_F(ImportCsv, UnitsOfTheGyroAreHeldAgainstGravity) {
   const Imported good = import_imu_csv(folder_ / "a.csv", {});
   ASSERT_EQ(good.notes.size(), 1u);
   EXPECT_THAT(good.notes[0], HasSubstr("units and axes agree"));
-  EXPECT_THAT(complaint_of(turning(57.29578, 1.0)), HasSubstr("are the rates in deg/s?"));
+  EXPECT_THAT(complaint_of(turning(57.29578, 1.0)), HasSubstr("The rates may be in deg/s"));
   fixture::put(folder_ / "deg.csv", turning(57.29578, 1.0));
   const Imported degrees = import_imu_csv(folder_ / "deg.csv", {}, AccelUnit::m_s2, GyroUnit::deg_s);
   EXPECT_NEAR(degrees.sensors.imus[0].gyro_rad_s[0].x(), 1.0, 1e-5);
   EXPECT_THAT(fixture::complaint([&] { import_imu_csv(folder_ / "a.csv", {}, AccelUnit::m_s2, GyroUnit::deg_s); }),
-              HasSubstr("are the rates in rad/s?"));
+              HasSubstr("The rates may be in rad/s"));
   fixture::put(folder_ / "sign.csv", turning(1.0, -1.0));
-  EXPECT_THAT(import_imu_csv(folder_ / "sign.csv", {}).notes.at(0), HasSubstr("caution: gravity turns"));
+  EXPECT_THAT(import_imu_csv(folder_ / "sign.csv", {}).notes.at(0), HasSubstr("caution: gravity's rotation"));
   EXPECT_THAT(import(kHeader + line("1,0") + line("1,10000000")).notes,
-              testing::Contains(HasSubstr("rates taken in rad/s, senses and axes as they are")));
+              testing::Contains(HasSubstr("rates are read in rad/s, with unchanged signs and axes")));
 }
 
 TEST_F(ImportCsv, AGapDoesNotChangeThePeriod) {
@@ -257,7 +257,7 @@ TEST_F(ImportCsv, AGapDoesNotChangeThePeriod) {
   EXPECT_THAT(import(text).notes, testing::Not(testing::Contains(HasSubstr("gap"))));
   const Imported silent = import(text + line("5,0") + line("86405,0"));
   EXPECT_THAT(silent.notes,
-              testing::Contains(HasSubstr("2 gaps beyond a second, the longest 8.64e+04 s before reading 6")));
+              testing::Contains(HasSubstr("2 gaps of more than 1 s; the longest lasts 8.64e+04 s before reading 6")));
 }
 
 TEST_F(ImportCsv, WindowsLineEndsAreRead) {
@@ -271,25 +271,25 @@ TEST_F(ImportCsv, BadInputHasFileAndLine) {
   const std::string good = kHeader + line("1,0") + line("1,10000000");
   EXPECT_EQ(complaint_of(good), "");
   EXPECT_THAT(complaint_of(""), HasSubstr("is empty"));
-  EXPECT_THAT(complaint_of(kHeader), HasSubstr("holds 0 samples"));
-  EXPECT_THAT(complaint_of(kHeader + line("1,0")), HasSubstr("holds 1 samples"));
-  EXPECT_THAT(complaint_of(good + line("1,10000000")), HasSubstr("csv:4: stamp does not rise"));
-  EXPECT_THAT(complaint_of(good + line("1,5000000")), HasSubstr("csv:4: stamp does not rise"));
+  EXPECT_THAT(complaint_of(kHeader), HasSubstr("has 0 samples"));
+  EXPECT_THAT(complaint_of(kHeader + line("1,0")), HasSubstr("has 1 samples"));
+  EXPECT_THAT(complaint_of(good + line("1,10000000")), HasSubstr("csv:4: the time stamp does not increase"));
+  EXPECT_THAT(complaint_of(good + line("1,5000000")), HasSubstr("csv:4: the time stamp does not increase"));
   EXPECT_THAT(complaint_of(good + line("1,20000000", "nan")), HasSubstr("csv:4: column 8 is not finite"));
-  EXPECT_THAT(complaint_of(good + line("1,20000000", "")), HasSubstr("csv:4: column 8 must be a number, is ''"));
+  EXPECT_THAT(complaint_of(good + line("1,20000000", "")), HasSubstr("csv:4: column 8 must be a number; it is ''"));
   EXPECT_THAT(complaint_of(good + line("1,20000000", "0.5x")),
-              HasSubstr("csv:4: column 8 must be a number, is '0.5x'"));
+              HasSubstr("csv:4: column 8 must be a number; it is '0.5x'"));
   EXPECT_THAT(complaint_of(good + line("1.5,0")), HasSubstr("csv:4: column 0 must be a whole number"));
   EXPECT_THAT(complaint_of(good + line("1,1000000000")),
-              HasSubstr("csv:4: column 1 must be a whole number from 0 to 999999999, is '1000000000'"));
+              HasSubstr("csv:4: column 1 must be a whole number from 0 to 999999999; it is '1000000000'"));
   EXPECT_THAT(complaint_of(good + line("1,20000000", "1e7")),
-              HasSubstr("csv:4: a reading is of size 1e+07 rad/s or m/s^2, must be at most 1e+06"));
+              HasSubstr("csv:4: a reading has the magnitude 1e+07 rad/s or m/s^2, must be at most 1e+06"));
   EXPECT_THAT(complaint_of(good + line("1e30,0")), HasSubstr("csv:4: column 0 must be a whole number"));
   EXPECT_EQ(complaint_of(good + "\n \r\n"), "") << "nothing follows";
   EXPECT_THAT(complaint_of(good + "\n" + line("1,20000000")), HasSubstr("csv:4: has 1 columns"));
   EXPECT_THAT(complaint_of(good + line("1,20000000").substr(0, 60) + "\n"), HasSubstr("csv:4: has"));
-  EXPECT_THAT(complaint_of("a,b\n1,2\n"), HasSubstr("csv:1: names no column that is known"));
-  EXPECT_THAT(complaint_of("1,2\n"), HasSubstr("csv:1: has 2 columns and no header, needs 15"));
+  EXPECT_THAT(complaint_of("a,b\n1,2\n"), HasSubstr("csv:1: contains no known column name"));
+  EXPECT_THAT(complaint_of("1,2\n"), HasSubstr("csv:1: has 2 columns and no header; it needs 15"));
   EXPECT_THAT(complaint_of(good.substr(0, good.size() - 1)), HasSubstr("csv:3: the last line has no line end"))
       << "a last number may be cut in its middle";
   EXPECT_THAT(fixture::complaint([&] { import_imu_csv(folder_ / "none.csv", {}); }),
@@ -301,13 +301,13 @@ TEST_F(ImportCsv, BytesThatAreNoLinesOfTextAreCalledSo) {
   const std::string good = kHeader + line("1,0") + line("1,10000000");
   std::string wide = "\xFF\xFE";
   for (const char c : good) wide += {c, '\0'};
-  EXPECT_THAT(complaint_of(wide), HasSubstr("csv: is text in UTF-16, must be in UTF-8"));
+  EXPECT_THAT(complaint_of(wide), HasSubstr("csv: the text is in UTF-16; it must be in UTF-8"));
   std::string spoiled = good;
   spoiled[good.size() - 40] = '\0';
-  EXPECT_THAT(complaint_of(spoiled), HasSubstr("csv:3: holds a byte 0"));
+  EXPECT_THAT(complaint_of(spoiled), HasSubstr("csv:3: contains a zero byte"));
   std::string returns = good;
   std::replace(returns.begin(), returns.end(), '\n', '\r');
-  EXPECT_THAT(complaint_of(returns), HasSubstr("csv: its lines end in a carriage return alone"));
+  EXPECT_THAT(complaint_of(returns), HasSubstr("csv: its lines end in a carriage return only"));
 }
 
 // to open it for reading waits for who writes to it

@@ -51,7 +51,7 @@ TEST(ImuNotes, WhatFrozeIsSaid) {
                 for (std::size_t k = 600; k < 2000; ++k)
                   imu.gyro_rad_s[k] = imu.gyro_rad_s[600], imu.accel_m_s2[k] = imu.accel_m_s2[600];
               }),
-              HasSubstr("caution: gyro or accelerometer repeats one reading to the last digit for 14 s"));
+              HasSubstr("caution: gyro or accelerometer repeats exactly the same reading for 14 s"));
 }
 
 TEST(ImuNotes, AxesThatGravityContradictsAreNamed) {
@@ -59,18 +59,18 @@ TEST(ImuNotes, AxesThatGravityContradictsAreNamed) {
   EXPECT_THAT(note_of([](sim::ImuRecord& imu) {
                 for (Eigen::Vector3d& f : imu.accel_m_s2) f = Eigen::Vector3d(f.y(), f.z(), f.x());
               }),
-              HasSubstr("as if the accelerometer's x, y, z were (y, z, x) of the gyro"));
+              HasSubstr("as if the accelerometer's axes x, y, z were the axes (y, z, x) of the gyro"));
   EXPECT_THAT(note_of([](sim::ImuRecord& imu) {
                 for (Eigen::Vector3d& f : imu.accel_m_s2) f.z() = -f.z();
               }),
-              HasSubstr("caution: gravity does not turn in the accelerometer as the gyro says"));
+              HasSubstr("caution: gravity in the accelerometer rotates as if"));
 }
 
 TEST(ImuNotes, ForcesThatAreNotGravitysAreSaid) {
   EXPECT_THAT(note_of([](sim::ImuRecord& imu) {
                 for (Eigen::Vector3d& f : imu.accel_m_s2) f *= 0.5;
               }),
-              HasSubstr("caution: the readings contradict each other or gravity"));
+              HasSubstr("caution: the readings are inconsistent with each other or with gravity"));
 }
 
 TEST(ImuNotes, EachImuIsNamed) {

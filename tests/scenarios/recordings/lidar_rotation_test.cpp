@@ -116,7 +116,7 @@ std::string with_gyro(const Eigen::Matrix3d& matrix, GyroUnit unit = GyroUnit::r
 
 TEST(LidarRotation, WhatAgreesSaysSo) {
   EXPECT_THAT(with_gyro(Eigen::Matrix3d::Identity()),
-              AllOf(HasSubstr("over 60 pairs of sweeps"), HasSubstr("units, senses and axes agree")));
+              AllOf(HasSubstr("over 60 pairs of sweeps"), HasSubstr("units, signs and axes agree")));
 }
 
 TEST(LidarRotation, DegreesAreRefusedWithTheOptionThatTakesThem) {
@@ -125,8 +125,8 @@ TEST(LidarRotation, DegreesAreRefusedWithTheOptionThatTakesThem) {
     with_gyro(-degrees);
     FAIL() << "degrees per second were taken for radians";
   } catch (const BadInput& error) {
-    EXPECT_THAT(error.what(), AllOf(HasSubstr("bag: 'imu'"), HasSubstr("0.0175 times as the gyro says"),
-                                    HasSubstr("'--gyro-unit deg/s' takes them so")));
+    EXPECT_THAT(error.what(), AllOf(HasSubstr("bag: 'imu'"), HasSubstr("0.0175 times the gyro's rotation"),
+                                    HasSubstr("set '--gyro-unit deg/s'")));
   }
   EXPECT_THROW(with_gyro(Eigen::Matrix3d::Identity() / kDegrees, GyroUnit::deg_s), BadInput);
   EXPECT_THAT(with_gyro(degrees, GyroUnit::deg_s), HasSubstr("caution: read in deg/s"));
@@ -145,13 +145,13 @@ TEST(LidarRotation, AMountingThatIsTurnedIsGivenAsARotation) {
   const std::string text = text_of([](sim::ImuRecord&, sim::LidarRecord& lidar) {
     lidar.T_BL.linear() = Eigen::AngleAxisd(0.7, Eigen::Vector3d::UnitY()).toRotationMatrix();
   });
-  EXPECT_THAT(text, AllOf(HasSubstr("caution"), HasSubstr("0.343"), HasSubstr("0.939"), HasSubstr("the mounting?")));
+  EXPECT_THAT(text, AllOf(HasSubstr("caution"), HasSubstr("0.343"), HasSubstr("0.939"), HasSubstr("and the mounting")));
   // told by both: nothing to say
   EXPECT_THAT(text_of([](sim::ImuRecord& imu, sim::LidarRecord& lidar) {
                 imu.T_BI.linear() = lidar.T_BL.linear() =
                     Eigen::AngleAxisd(0.7, Eigen::Vector3d::UnitY()).toRotationMatrix();
               }),
-              HasSubstr("units, senses and axes agree"));
+              HasSubstr("units, signs and axes agree"));
 }
 
 TEST(LidarRotation, AnotherClockIsTold) {
@@ -161,7 +161,7 @@ TEST(LidarRotation, AnotherClockIsTold) {
     });
   };
   EXPECT_THAT(shifted(200'000'000), AllOf(HasSubstr("caution"), HasSubstr("0.2 s later"), HasSubstr("axes agree")));
-  EXPECT_THAT(shifted(-200'000'000), HasSubstr("0.2 s before"));
+  EXPECT_THAT(shifted(-200'000'000), HasSubstr("0.2 s earlier"));
   EXPECT_THAT(shifted(10'000'000), testing::Not(HasSubstr("caution")));
 }
 
@@ -188,7 +188,7 @@ TEST(LidarRotation, SweepsOfARoomTellTheGyro) {
   recording.sensors.lidars.push_back(lidar_in_room(36));
   EXPECT_GE(seen_rotations(recording.sensors.lidars.front(), nullptr).size(), 20U);
   EXPECT_THAT(lidar_rotation_notes("bag", recording, GyroUnit::rad_s),
-              ElementsAre(AllOf(HasSubstr("imu: the lidar turns as the gyro says"), HasSubstr("axes agree"))));
+              ElementsAre(AllOf(HasSubstr("imu: the lidar's rotation equals the gyro's"), HasSubstr("axes agree"))));
   for (Eigen::Vector3d& rate : recording.sensors.imus.front().gyro_rad_s) rate.z() = -rate.z();
   EXPECT_THAT(lidar_rotation_notes("bag", recording, GyroUnit::rad_s), ElementsAre(HasSubstr("(x, y, -z)")));
   recording.sensors.imus.clear();

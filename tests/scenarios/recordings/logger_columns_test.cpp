@@ -82,8 +82,8 @@ TEST_F(LoggerTable, SemicolonsTabulatorsAndOtherColumnsAreRead) {
   for (const char by : {',', ';', '\t'}) {
     const Imported imported = import(separated(by));
     expect_the_readings(imported);
-    EXPECT_THAT(imported.notes, Contains("columns left out: mag_x, temp"));
-    EXPECT_THAT(imported.notes, Not(Contains(HasSubstr("by their steps"))));
+    EXPECT_THAT(imported.notes, Contains("ignored columns: mag_x, temp"));
+    EXPECT_THAT(imported.notes, Not(Contains(HasSubstr("from the size of their steps"))));
   }
 }
 
@@ -93,7 +93,7 @@ TEST_F(LoggerTable, TheUnitOfTimesIsTakenFromTheirSteps) {
     expect_the_readings(imported);
     return imported.notes;
   };
-  EXPECT_THAT(notes_of(kSeconds), Contains("times are taken for s by their steps"));
+  EXPECT_THAT(notes_of(kSeconds), Contains("times are read in s, from the size of their steps"));
   EXPECT_THAT(notes_of({"1700000000000", "1700000000005", "1700000000010"}), Contains(HasSubstr("for ms by")));
   EXPECT_THAT(notes_of({"0", "5000", "10000"}), Contains(HasSubstr("for us by")));
   EXPECT_THAT(notes_of({"1700000000000000000", "1700000000005000000", "1700000000010000000"}),
@@ -102,7 +102,7 @@ TEST_F(LoggerTable, TheUnitOfTimesIsTakenFromTheirSteps) {
   EXPECT_THAT(notes_of({"0.005", "0.010000000000000002", "0.014999999999999999"}), Contains(HasSubstr("for s by")));
   // half a second, or half a millisecond
   EXPECT_THAT(complaint_of(table("time,gx,gy,gz,ax,ay,az", {"0", "0.5", "1"}, kRow)),
-              AllOf(HasSubstr("log.csv: the times step by 0.5"), HasSubstr("name the column with its unit")));
+              AllOf(HasSubstr("log.csv: the time step is 0.5"), HasSubstr("Add the unit to the column name")));
   // control: with its name the same is read
   EXPECT_EQ(complaint_of(table("time_s,gx,gy,gz,ax,ay,az", {"0", "0.5", "1"}, kRow)), "");
 }
@@ -118,29 +118,29 @@ TEST_F(LoggerTable, StatedUnitsAreBelieved) {
                 kSeconds, kRow)),
             "");
   EXPECT_THAT(complaint_of(table("t,gx,gy,gz,ax [m/s^2],ay [m/s^2],az [m/s^2]", kSeconds, kRow), AccelUnit::g),
-              HasSubstr("log.csv:1: its names say"));
+              HasSubstr("log.csv:1: the column names state"));
   EXPECT_THAT(complaint_of(table("t,gx,gy,gz,ax [m/s^2],ay [m/s^2],az [g]", kSeconds, kRow)),
-              HasSubstr("axes of the accel are in several units"));
+              HasSubstr("the axes of the accel have different units"));
   EXPECT_THAT(complaint_of(table("t,gx,gy,gz,ax [N],ay [N],az [N]", kSeconds, kRow)),
-              HasSubstr("log.csv:1: column 'ax [N]' is in a unit that is not known"));
+              HasSubstr("log.csv:1: column 'ax [N]' has an unknown unit"));
 }
 
 // decimal commas in a table of commas: its first lines tell that before their times do
 TEST_F(LoggerTable, LinesOfAnotherWidthAreSaidBeforeTheirTimes) {
   EXPECT_THAT(complaint_of(table("time,gyro_x,gyro_y,gyro_z,acc_x,acc_y,acc_z", {"12,5", "12,505", "12,51"},
                                  ",0,1,0,2,0,3,-0,5,0,0,9,8")),
-              HasSubstr("csv:2: has 14 columns, the first line 7; must be equal"));
+              HasSubstr("csv:2: has 14 columns, but the first line has 7; must be equal"));
 }
 
 TEST_F(LoggerTable, WhatIsMissingOrThereTwiceIsSaid) {
   EXPECT_THAT(complaint_of(table("t,gx,gy,gz,ax,ay,temp", kSeconds, kRow)),
-              HasSubstr("log.csv:1: columns are missing: accel_z"));
-  EXPECT_THAT(complaint_of(table("n,gx,gy,gz,ax,ay,az", kSeconds, kRow)), HasSubstr("columns are missing: time"));
+              HasSubstr("log.csv:1: missing columns: accel_z"));
+  EXPECT_THAT(complaint_of(table("n,gx,gy,gz,ax,ay,az", kSeconds, kRow)), HasSubstr("missing columns: time"));
   EXPECT_THAT(complaint_of(table("t,gx,gy,gz,ax,ay,az,acc_x", kSeconds, kRow + ",1")),
               HasSubstr("two columns are the accel's x: 'ax' and 'acc_x'"));
   EXPECT_THAT(complaint_of(table("t,time,gx,gy,gz,ax,ay,az", {"1,1", "2,2"}, kRow)),
-              HasSubstr("two columns are a time: 't' and 'time'"));
-  EXPECT_THAT(complaint_of(table("t,a,b", kSeconds, ",1,2")), HasSubstr("names no column that is known"));
+              HasSubstr("two columns are time stamps: 't' and 'time'"));
+  EXPECT_THAT(complaint_of(table("t,a,b", kSeconds, ",1,2")), HasSubstr("contains no known column name"));
 }
 
 TEST_F(LoggerTable, TimesThatAreNoneHaveTheirPlace) {
@@ -150,7 +150,7 @@ TEST_F(LoggerTable, TimesThatAreNoneHaveTheirPlace) {
         << time;
   }
   EXPECT_THAT(complaint_of(table("time_s,gx,gy,gz,ax,ay,az", {"0", "0.1", "0.05"}, kRow)),
-              HasSubstr("log.csv:4: stamp does not rise"));
+              HasSubstr("log.csv:4: the time stamp does not increase"));
 }
 
 }  // namespace

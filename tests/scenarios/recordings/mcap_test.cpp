@@ -86,7 +86,7 @@ TEST_F(Mcap, MessagesOfRos1AreReadToo) {
 
 TEST_F(Mcap, OtherEncodingsAreNamed) {
   shape_.channel.message_encoding = "json";
-  EXPECT_THAT(complaint_of(shape_), HasSubstr("holds no topic of type sensor_msgs/Imu"));
+  EXPECT_THAT(complaint_of(shape_), HasSubstr("has no topic of type sensor_msgs/Imu"));
   fixture::put(file(), fixture::mcap_bytes(shape_));
   BagReading reading;
   reading.imu_topics = {"/imu"};
@@ -141,29 +141,29 @@ const Lie kLies[] = {
     {"ChecksumOfTheSummary", [](McapShape& s) { s.footer = [](mcap::Footer& f) { ++f.summary_crc; }; },
      "the checksum of the summary is "},
     {"PlaceOfTheSummary", [](McapShape& s) { s.footer = [](mcap::Footer& f) { f.summary_start = 1ull << 60; }; },
-     "the summary would begin at byte 1152921504606846976"},
+     "the stated start of the summary is byte 1152921504606846976"},
     {"PlaceOfTheOffsets",
      [](McapShape& s) {
        s.crcs = false;
        s.footer = [](mcap::Footer& f) { f.summary_offset_start = 9; };
      },
-     "the offsets of the summary would begin at byte 9"},
+     "the stated start of the summary offsets is byte 9"},
     {"GroupOfTheSummary",
      [](McapShape& s) {
        s.crcs = false;
        s.footer = [](mcap::Footer& f) { f.summary_offset_start = f.summary_start; };
      },
-     "has no place here"},
+     "is not allowed here"},
     {"PlaceOfAMessage", [](McapShape& s) { s.index = [](mcap::MessageIndex& i) { i.entries[3].second += 1; }; },
-     "the index of the chunk names 20 messages of channel 1, not the 20 that are there"},
+     "the chunk index names 20 messages of channel 1, but the chunk has 20: the file is damaged"},
     {"TimeOfAMessage", [](McapShape& s) { s.index = [](mcap::MessageIndex& i) { i.entries[3].first += 1; }; },
-     "the index of the chunk names"},
+     "the chunk index names"},
     {"MessageLeftOutOfTheIndex", [](McapShape& s) { s.index = [](mcap::MessageIndex& i) { i.entries.pop_back(); }; },
-     "the index of the chunk names 19 messages of channel 1, not the 20"},
+     "the chunk index names 19 messages of channel 1, but the chunk has 20"},
     {"ChannelOfAnIndex", [](McapShape& s) { s.index = [](mcap::MessageIndex& i) { i.channel_id = 9; }; },
-     "is the index of channel 9, should be of 1"},
+     "is the index of channel 9, but should be that of channel 1"},
     {"ChunkLeftOutOfTheIndex", [](McapShape& s) { s.chunk_index = [](auto& all) { all.pop_back(); }; },
-     "states 2 chunks and indexes 1"},
+     "states 2 chunks but indexes 1"},
     {"ChunkTwiceInTheIndex", [](McapShape& s) { s.chunk_index = [](auto& all) { all[1] = all[0]; }; },
      "indexes a chunk of "},
     {"ChunkBeyondTheEnd",
@@ -173,19 +173,19 @@ const Lie kLies[] = {
      "indexes a chunk of 18446744073709551615 bytes"},
     {"PlaceOfAChunk",
      [](McapShape& s) { s.chunk_index = [](auto& all) { --all[0].chunk_length, ++all[0].chunk_start_offset; }; },
-     "is no chunk"},
+     "is not a chunk"},
     {"TimesOfAChunk", [](McapShape& s) { s.chunk_index = [](auto& all) { --all[0].message_end_time; }; },
-     "the chunk is not what its index says"},
+     "the chunk differs from its index"},
     {"PlaceOfAnIndex", [](McapShape& s) { s.chunk_index = [](auto& all) { all[0].message_index_offsets[1] = 8; }; },
-     "behind which it does not lie"},
+     "but does not follow that chunk"},
     {"PlaceWithinAnIndex",
      [](McapShape& s) { s.chunk_index = [](auto& all) { all[0].message_index_offsets[1] += 1; }; }, "damaged"},
     {"MessageOutsideOfItsChunk", [](McapShape& s) { s.chunk = [](mcap::Chunk& c) { ++c.message_start_time; }; },
      "a message at 1000000000 ns in a chunk from 1000000001"},
     {"NumberOfMessages", [](McapShape& s) { s.counts = [](mcap::Statistics& c) { ++c.channel_message_counts[1]; }; },
-     "channel 1 holds 50 messages, the summary states 51"},
+     "channel 1 holds 50 messages, but the summary states 51"},
     {"NameOfAPacking", [](McapShape& s) { s.compression = "brotli"; },
-     "a chunk of compression 'brotli': none, lz4 or zstd are read"},
+     "a chunk of compression 'brotli' is not supported; supported: none, lz4 and zstd"},
     {"SizeOfAPlainChunk", [](McapShape& s) { s.chunk = [](mcap::Chunk& c) { ++c.uncompressed_size; }; },
      "a plain chunk of "},
     {"SizeOfAnLz4Chunk",
@@ -193,7 +193,7 @@ const Lie kLies[] = {
        s.compression = "lz4";
        s.chunk = [](mcap::Chunk& c) { ++c.uncompressed_size; };
      },
-     "bytes, the chunk states"},
+     "bytes, but the chunk states"},
     {"BombOfLz4",
      [](McapShape& s) {
        s.compression = "lz4";
@@ -206,29 +206,30 @@ const Lie kLies[] = {
        s.chunk_records = [](std::string& records) { records.append(50'000'000, '\0'); };
        s.chunk = [](mcap::Chunk& c) { c.uncompressed_size = 1000; };
      },
-     "holds more than the 1000 bytes that the chunk states"},
+     "is longer than the 1000 bytes that the chunk states"},
     {"ChunkBeyondTheBound", [](McapShape& s) { s.chunk = [](mcap::Chunk& c) { c.uncompressed_size = 1ull << 40; }; },
-     "a chunk of 1099511627776 bytes, at most 256 MiB are read"},
+     "a chunk of 1099511627776 bytes; at most 256 MiB can be read"},
     {"LengthOfTheRecords", [](McapShape& s) { s.chunk = [](mcap::Chunk& c) { c.records_size = ~0ull; }; },
-     "a chunk that promises 18446744073709551615 bytes"},
+     "a chunk that states 18446744073709551615 bytes"},
     {"LengthOfARecord", [](McapShape& s) { s.chunk_records = [](std::string& records) { records[8] = '\x7f'; }; },
      "damaged or truncated"},
     {"KindZero", [](McapShape& s) { s.chunk_records = [](std::string& r) { r += std::string(20, '\0'); }; },
      "a record of kind 0"},
-    {"SchemaOfAChannel", [](McapShape& s) { s.channel.schema_id = 7; }, "channel 1 is of schema 7: there is none"},
-    {"NumberOfASchema", [](McapShape& s) { s.schema.id = 0; }, "a schema with the number 0"},
+    {"SchemaOfAChannel", [](McapShape& s) { s.channel.schema_id = 7; },
+     "channel 1 refers to schema 7, which does not exist"},
+    {"NumberOfASchema", [](McapShape& s) { s.schema.id = 0; }, "a schema has the number 0"},
     {"ChannelStatedTwice",
      [](McapShape& s) {
        mcap::Channel other = s.channel;
        other.topic = "/other";
        s.chunk_records = [other](std::string& records) { records += mcap::to_bytes(other); };
      },
-     "channel 1 is stated twice, differently"},
+     "channel 1 is defined twice with different content"},
     {"MessageWithoutItsFields",
      [](McapShape& s) {
        s.chunk_records = [](std::string& r) { r += std::string("\x05\x02\0\0\0\0\0\0\0\x01\0", 11); };
      },
-     "a record of kind 5 promises 4 bytes where 0 are left"},
+     "a record of kind 5 needs 4 bytes, but only 0 are left"},
 };
 
 INSTANTIATE_TEST_SUITE_P(, McapLie, testing::ValuesIn(kLies),
@@ -276,8 +277,8 @@ TEST_F(Mcap, AnyCutOfOursIsRefused) {
   const std::string whole = fixture::bytes_of(file());
   for (std::size_t size = 0; size < whole.size(); size += size < 100 || size + 100 > whole.size() ? 1 : 97)
     ASSERT_THAT(complaint_of(whole.substr(0, size)), HasSubstr("a.mcap: at byte ")) << size;
-  EXPECT_THAT(complaint_of(whole.substr(0, whole.size() / 2)), HasSubstr("'mcap recover' makes it whole"));
-  EXPECT_THAT(complaint_of("hello"), HasSubstr("does not begin with the magic of MCAP 0: no MCAP file"));
+  EXPECT_THAT(complaint_of(whole.substr(0, whole.size() / 2)), HasSubstr("repair it with 'mcap recover'"));
+  EXPECT_THAT(complaint_of("hello"), HasSubstr("does not begin with the magic bytes of MCAP 0: not an MCAP file"));
   EXPECT_THAT(fixture::complaint([&] { import_mcap(folder_ / "none.mcap", {}); }), HasSubstr("no such file"));
 }
 

@@ -71,7 +71,8 @@ TEST_P(Norlab, AStatedLengthOfASweepThatTheFilesContradictIsSaid) {
     const Imported out = import_sweeps(source);
     EXPECT_EQ(out.sensors.lidars.at(0).sweep_period_ns, stated_ns);
     const bool found = std::any_of(out.notes.begin(), out.notes.end(), [](const std::string& note) {
-      return note.find("is stated to last") != std::string::npos && note.find("span up to") != std::string::npos;
+      return note.find("the stated period of a sweep is") != std::string::npos &&
+             note.find("span up to") != std::string::npos;
     });
     EXPECT_EQ(found, said) << stated_ns;
   }
@@ -158,16 +159,16 @@ TEST_F(Vtk, WhatIsNoneIsRefusedWithItsLine) {
     const bool whole_without_scalars = size >= head_.size() + points_.size() - 1 && complaint.empty();
     EXPECT_TRUE(whole_without_scalars || complaint.find("a.vtk:") != std::string::npos) << size << complaint;
   }
-  EXPECT_THAT(complaint_of("ply\n"), HasSubstr("a.vtk:2: begins as no VTK file does"));
-  EXPECT_THAT(complaint_of("# vtk DataFile Version 3.0\nx\nBINARY\n"), HasSubstr("a.vtk:3: is binary"));
-  EXPECT_THAT(complaint_of(head_ + "POINTS 2 float\n1 2 3\n4 5,5 6\n"), HasSubstr("a.vtk:7: '5,5' is no number"));
-  EXPECT_THAT(complaint_of(head_ + "POINTS 4000000000 float\n1 2 3\n"),
-              HasSubstr("a.vtk:5: promises 4000000000 points"));
-  EXPECT_THAT(complaint_of(head_ + "POINTS 9 float\n1 2 3\n"), HasSubstr("a.vtk:5: promises 9 times 3 numbers, but 7"));
-  EXPECT_THAT(complaint_of(head_ + points_ + points_), HasSubstr("a.vtk:8: POINTS stands twice"));
-  EXPECT_THAT(complaint_of(head_ + points_ + "POINT_DATA 3\n"), HasSubstr("POINT_DATA of 3 points, POINTS has 2"));
-  EXPECT_THAT(complaint_of(head_ + points_ + "POLYGONS 1 4\n"), HasSubstr("section 'POLYGONS' is not read there"));
-  EXPECT_THAT(complaint_of(head_), HasSubstr("holds no POINTS"));
+  EXPECT_THAT(complaint_of("ply\n"), HasSubstr("a.vtk:2: does not begin as a VTK file"));
+  EXPECT_THAT(complaint_of("# vtk DataFile Version 3.0\nx\nBINARY\n"), HasSubstr("a.vtk:3: is a binary file"));
+  EXPECT_THAT(complaint_of(head_ + "POINTS 2 float\n1 2 3\n4 5,5 6\n"), HasSubstr("a.vtk:7: '5,5' is not a number"));
+  EXPECT_THAT(complaint_of(head_ + "POINTS 4000000000 float\n1 2 3\n"), HasSubstr("a.vtk:5: states 4000000000 points"));
+  EXPECT_THAT(complaint_of(head_ + "POINTS 9 float\n1 2 3\n"), HasSubstr("a.vtk:5: states 9 times 3 numbers, but 7"));
+  EXPECT_THAT(complaint_of(head_ + points_ + points_), HasSubstr("a.vtk:8: POINTS occurs twice"));
+  EXPECT_THAT(complaint_of(head_ + points_ + "POINT_DATA 3\n"), HasSubstr("POINT_DATA has 3 points, but POINTS has 2"));
+  EXPECT_THAT(complaint_of(head_ + points_ + "POLYGONS 1 4\n"),
+              HasSubstr("section 'POLYGONS' is not supported at this position"));
+  EXPECT_THAT(complaint_of(head_), HasSubstr("has no POINTS section"));
 }
 
 class OdometryTable : public fixture::Folder {
@@ -193,16 +194,16 @@ TEST_F(OdometryTable, BadLinesAreRefusedWithTheirPlace) {
   const std::string good = head_ + "10,0,1,2,3,0,0,0,1\n10,500000000,1,2,3,0,0,0.6,0.8\n";
   EXPECT_EQ(complaint_of(good), "");
   EXPECT_THAT(complaint_of(good + "10,500000000,1,2,3,0,0,0,1\n"),
-              HasSubstr("a.csv:4: stamp 10500000000 ns does not rise"));
+              HasSubstr("a.csv:4: the time stamp 10500000000 ns does not increase"));
   EXPECT_THAT(complaint_of(good + "11,1000000000,1,2,3,0,0,0,1\n"),
-              HasSubstr("a.csv:4: the stamp 11 s 1000000000 ns is none"));
-  EXPECT_THAT(complaint_of(good + "11,0,1,2,3,0,0,0.6,0.9\n"), HasSubstr("a.csv:4: quaternion of norm"));
+              HasSubstr("a.csv:4: the time stamp 11 s 1000000000 ns is invalid"));
+  EXPECT_THAT(complaint_of(good + "11,0,1,2,3,0,0,0.6,0.9\n"), HasSubstr("a.csv:4: the quaternion's norm is"));
   EXPECT_THAT(complaint_of(good + "11,0,nan,2,3,0,0,0,1\n"), HasSubstr("a.csv:4: the pose is not finite"));
   EXPECT_THAT(complaint_of(good + "11,0,1\n"), HasSubstr("a.csv:4: 3 columns, must be 9"));
   std::string doubled = good;
   doubled.replace(doubled.find("position.y"), 10, "position.x");
-  EXPECT_THAT(complaint_of(doubled), HasSubstr("a.csv:1: column pose.pose.position.x stands 2 times in the header"));
-  EXPECT_THAT(complaint_of(head_ + "10,0,1,2,3,0,0,0,1\n"), HasSubstr("holds 1 poses, needs 2"));
+  EXPECT_THAT(complaint_of(doubled), HasSubstr("a.csv:1: column pose.pose.position.x occurs 2 times in the header"));
+  EXPECT_THAT(complaint_of(head_ + "10,0,1,2,3,0,0,0,1\n"), HasSubstr("has 1 poses; it needs at least 2"));
 }
 
 // as `evo_traj --save_as_tum` and `--save_as_kitti` write them, with numpy's "%.18e"

@@ -108,7 +108,7 @@ TEST_F(PackedBag, ABombIsRefused) {
   const std::string frame = packed_by_zstd(std::string(1u << 26, '\0'));
   pack_file();
   fixture::put(bag_ / "bag_0.db3.zstd", frame + frame);
-  EXPECT_THAT(complaint(), HasSubstr("bytes come out of it"));
+  EXPECT_THAT(complaint(), HasSubstr("the unpacked bag has more than"));
 }
 
 TEST_F(PackedBag, MessagesAreUnpacked) {
@@ -116,12 +116,12 @@ TEST_F(PackedBag, MessagesAreUnpacked) {
   state("message", "bag_0.db3");
   expect_all_is_there(import_ros2_bag(bag_, {}));
   pack_messages([](std::string_view packed) { return std::string(packed.substr(0, packed.size() / 2)); });
-  EXPECT_THAT(complaint(), HasSubstr("bag: message 0 of /tf_static: its Zstandard frame is truncated"));
+  EXPECT_THAT(complaint(), HasSubstr("bag: message 0 of /tf_static: its Zstandard frame ends before"));
   const std::string bomb = packed_by_zstd(std::string(72u << 20, '\0'));
   pack_messages([&](std::string_view) { return bomb; });
-  EXPECT_THAT(complaint(), HasSubstr("message 0 of /tf_static: is no Zstandard frame that states a size"));
+  EXPECT_THAT(complaint(), HasSubstr("message 0 of /tf_static: is not a Zstandard frame with a stated size"));
   pack_messages([](std::string_view) { return std::string("plain"); });
-  EXPECT_THAT(complaint(), HasSubstr("message 0 of /tf_static: is no Zstandard frame that states a size"));
+  EXPECT_THAT(complaint(), HasSubstr("message 0 of /tf_static: is not a Zstandard frame with a stated size"));
 }
 
 TEST_F(PackedBag, OtherWaysOfPackingAreNamed) {

@@ -39,14 +39,15 @@ TEST(RecordingCheck, NamesWhatContradicts) {
   };
   const double nan = std::nan("");
   const std::vector<Case> cases = {
-      {[](auto& s) { s.imus[1].gyro_rad_s.pop_back(); }, "sensors/imus/1: gyro_I_rad_s has 69 rows, time_ns has 70"},
+      {[](auto& s) { s.imus[1].gyro_rad_s.pop_back(); },
+       "sensors/imus/1: gyro_I_rad_s has 69 rows, but time_ns has 70"},
       {[](auto& s) { s.imus[1].accel_m_s2.clear(); }, "accel_I_m_s2 has 0 rows"},
       {[](auto& s) { s.imus[1].clip_flags.push_back(0); }, "clip_flags has 71 rows"},
       {[](auto& s) { s.imus[1].magnetic_field_t.pop_back(); }, "magnetic_field_I_t has 69 rows, must have 70 or none"},
       {[nan](auto& s) { s.imus[0].earth_field_W_t.x() = nan; }, "sensors/imus/0: earth_field_W_t is not finite"},
       {[](auto& s) { s.imus[0].period_ns = 0; }, "sensors/imus/0: period_ns is 0"},
       {[](auto& s) { s.imus[0].time_ns[0] = std::numeric_limits<std::int64_t>::min(); },
-       "sensors/imus/0: time_ns is -9223372036854775808 in row 0, must be within 1e17 ns"},
+       "sensors/imus/0: time_ns is -9223372036854775808 in row 0; it must be within 1e17 ns"},
       {[](auto& s) { s.imus[1].time_ns.back() = 1700000000000000000; }, "time_ns is 1700000000000000000 in row 69"},
       {[](auto& s) { s.imus[0].name = "a\xff\xfe"; }, "sensors/imus/0: name is not plain text in UTF-8"},
       {[](auto& s) { s.imus[0].device = "\x1b[31m"; }, "device is not plain text"},
@@ -65,27 +66,30 @@ TEST(RecordingCheck, NamesWhatContradicts) {
       {[](auto& s) {
          s.lidars[0].sweep_first = {0, 100, 50, 150};
        },
-       "sweep_first falls"},
-      {[](auto& s) { s.lidars[0].sweep_first.back() = 149; }, "must go from 0 to the number of points, 150"},
-      {[](auto& s) { s.lidars[0].sweep_first.front() = 1; }, "must go from 0"},
+       "sweep_first decreases"},
+      {[](auto& s) { s.lidars[0].sweep_first.back() = 149; }, "must increase from 0 to the number of points, 150"},
+      {[](auto& s) { s.lidars[0].sweep_first.front() = 1; }, "must increase from 0"},
       {[](auto& s) { s.lidars[0].point_times = sim::PointTimes::unknown; },
-       "offset_ns is 3125 at point 1, must be 0 where points have no times"},
-      {[](auto& s) { s.lidars[0].point_times = static_cast<sim::PointTimes>(3); }, "point_times is none of"},
-      {[](auto& s) { s.lidars[0].sweep_start_ns[1] = 0; }, "sweep_start_ns does not rise"},
+       "offset_ns is 3125 at point 1; it must be 0 if points have no time stamps"},
+      {[](auto& s) { s.lidars[0].point_times = static_cast<sim::PointTimes>(3); }, "point_times is not one of"},
+      {[](auto& s) { s.lidars[0].sweep_start_ns[1] = 0; }, "sweep_start_ns does not increase"},
       {[](auto& s) { s.series[0].time_ns.pop_back(); },
        "sensors/series/0: quantities/0: values has 5 rows, time_ns has 4"},
       {[](auto& s) { s.series[0].quantities[1].values.pop_back(); }, "quantities/1: values has 4 rows"},
       {[nan](auto& s) { s.series[0].quantities[1].noise = nan; }, "quantities/1: noise is nan"},
-      {[](auto& s) { s.series[0].quantities[1].name = "a,b"; }, "quantities/1: name must be letters, digits and _"},
-      {[](auto& s) { s.series[0].quantities[1].name = ""; }, "name must be letters, digits and _, at least one"},
+      {[](auto& s) { s.series[0].quantities[1].name = "a,b"; },
+       "quantities/1: the name must consist of letters, digits and _, at least one"},
+      {[](auto& s) { s.series[0].quantities[1].name = ""; },
+       "the name must consist of letters, digits and _, at least one"},
       {[](auto& s) { s.series[0].quantities[1].unit = "\x1b"; }, "unit is not plain text"},
-      {[](auto& s) { s.series[0].quantities[1].name = "pressure_pa"; }, "quantities/1: name is another's too"},
+      {[](auto& s) { s.series[0].quantities[1].name = "pressure_pa"; }, "quantities/1: the name is used twice"},
       {[](auto& s) {
          s.series[0].constants.push_back({"ground_pressure_pa", 1.0});
        },
-       "sensors/series/0: constants/1: name is another's too"},
-      {[](auto& s) { s.series[0].constants[0].name = "a b"; }, "constants/0: name must be letters, digits and _"},
-      {[nan](auto& s) { s.series[0].constants[0].value = nan; }, "constants/0: value is not finite"},
+       "sensors/series/0: constants/1: the name is used twice"},
+      {[](auto& s) { s.series[0].constants[0].name = "a b"; },
+       "constants/0: the name must consist of letters, digits and _, at least one"},
+      {[nan](auto& s) { s.series[0].constants[0].value = nan; }, "constants/0: the value is not finite"},
       {[](auto& s) { s.series[0].kind = "\xff"; }, "sensors/series/0: kind is not plain text"},
       {[](auto& s) { s.series[0].period_ns = 0; }, "sensors/series/0: period_ns is 0"},
       {[](auto& s) { s.series[0].T_BX.linear() *= -1.0; }, "T_BX is not a rotation"},
@@ -103,7 +107,7 @@ TEST(RecordingCheck, NamesWhatContradictsInTheTruth) {
     const char* problem;
   };
   const std::vector<Case> cases = {
-      {[](auto& t) { t.q_WB.pop_back(); }, "truth: q_WB has 39 rows, p_WB_m has 40"},
+      {[](auto& t) { t.q_WB.pop_back(); }, "truth: q_WB has 39 rows, but p_WB_m has 40"},
       {[](auto& t) { t.label.pop_back(); }, "label has 39 rows, must have 40 or none"},
       {[](auto& t) { t.f_B_m_s2.pop_back(); }, "f_B_m_s2 has 39 rows, must have 40 or none"},
       {[](auto& t) { t.q_WB[3].w() = std::numeric_limits<double>::quiet_NaN(); }, "q_WB is not of unit length"},
@@ -111,10 +115,10 @@ TEST(RecordingCheck, NamesWhatContradictsInTheTruth) {
       {[](auto& t) { t.q_WB[3].coeffs() *= 1.01; }, "q_WB is not of unit length"},
       {[](auto& t) { t.q_WB[3].coeffs().setZero(); }, "q_WB is not of unit length"},
       {[](auto& t) { t.label[3] = static_cast<sim::ContactLabel>(4); }, "label 4 is unknown"},
-      {[](auto& t) { t.contacts[3].time_ns = 0; }, "contacts/time_ns: falls"},
+      {[](auto& t) { t.contacts[3].time_ns = 0; }, "contacts/time_ns: decreases"},
       {[](auto& t) { t.contacts[3].surface_id = 2; }, "surface_id 2 has no name"},
       {[](auto& t) { t.lidars[0].surface_id[3] = -3; }, "truth/lidars/0: surface_id -3"},
-      {[](auto& t) { t.lidars[0].hit_W_m.pop_back(); }, "surface_id has 150 rows, hit_W_m has 149"},
+      {[](auto& t) { t.lidars[0].hit_W_m.pop_back(); }, "surface_id has 150 rows, but hit_W_m has 149"},
       {[](auto& t) { t.imus[1].magnetic_field_t.pop_back(); }, "truth/imus/1: magnetic_field_I_t has 69 rows"},
       {[](auto& t) { t.imus[1].gyro_elements.resize(2); }, "truth/imus/1: gyro_elements_I has 2 rows, must have 3"},
       {[](auto& t) { t.imus[1].accel_elements.resize(4); }, "truth/imus/1: accel_elements_I has 4 rows, must have 3"},
@@ -124,7 +128,8 @@ TEST(RecordingCheck, NamesWhatContradictsInTheTruth) {
        "truth/imus/0: accel_element_offset_m_s2 is not finite"},
       {[](auto& t) { t.imus[1].gyro_bias_rad_s.clear(); }, "truth/imus/1: gyro_bias_I_rad_s has 0 rows"},
       {[](auto& t) { t.series[0].T_BX.linear() *= 1.001; }, "truth/series/0: T_BX is not a rotation"},
-      {[](auto& t) { t.series[0].quantities[1].name = " "; }, "truth/series/0: quantities/1: name must be letters"},
+      {[](auto& t) { t.series[0].quantities[1].name = " "; },
+       "truth/series/0: quantities/1: the name must consist of letters, digits and _, at least one"},
       {[](auto& t) { t.p_BG_m.x() = std::numeric_limits<double>::infinity(); }, "p_BG_m is not finite"}};
   for (const Case& each : cases) {
     sim::Truth truth = fixture::recording().truth;

@@ -65,12 +65,12 @@ TEST(ReferenceTruth, EndsWithTheSensorsAndMustMeetThem) {
   const auto complaint = [](const std::vector<ReferencePose>& poses) {
     return fixture::complaint([&] { reference_truth(poses, 1000000000); });
   };
-  EXPECT_THAT(complaint(steady(2000000000, 50000000, 3)), HasSubstr("another clock?"));
-  EXPECT_THAT(complaint(steady(-2000000000, 50000000, 3)), HasSubstr("another clock?"));
-  EXPECT_THAT(complaint({}), HasSubstr("holds no pose"));
+  EXPECT_THAT(complaint(steady(2000000000, 50000000, 3)), HasSubstr("check that both use the same clock"));
+  EXPECT_THAT(complaint(steady(-2000000000, 50000000, 3)), HasSubstr("check that both use the same clock"));
+  EXPECT_THAT(complaint({}), HasSubstr("has no poses"));
   EXPECT_THAT(fixture::complaint(
                   [] { reference_truth(steady(0, 50000000000000, 3), std::numeric_limits<std::int64_t>::max()); }),
-              HasSubstr("at most a day"));
+              HasSubstr("at most one day"));
 }
 
 using Reference = fixture::Folder;
@@ -105,7 +105,7 @@ TEST_F(Reference, KittiWrittenByExportComesBack) {
   EXPECT_THAT(fixture::complaint([&] {
                 import_trajectory({folder_ / "truth.txt", "kitti", true, false, {}, 0});
               }),
-              HasSubstr("KITTI's format has no times: a file of stamps (--times)"));
+              HasSubstr("KITTI's format has no times; give a file of time stamps (--times)"));
 }
 
 TEST_F(Reference, BadLinesAreNamed) {
@@ -115,14 +115,16 @@ TEST_F(Reference, BadLinesAreNamed) {
   };
   const std::string good = "# t x y z q\n1.0 0 0 0 0 0 0 1\n1.5 1 0 0 0 0 0 1\n";
   EXPECT_EQ(complaint(good), "");
-  EXPECT_THAT(complaint(good + "1.5 1 0 0 0 0 0 1\n"), HasSubstr("a.txt:4: stamp 1500000000 ns does not rise"));
-  EXPECT_THAT(complaint(good + "1.2 1 0 0 0 0 0 1\n"), HasSubstr("a.txt:4: stamp 1200000000 ns does not rise"));
+  EXPECT_THAT(complaint(good + "1.5 1 0 0 0 0 0 1\n"),
+              HasSubstr("a.txt:4: the time stamp 1500000000 ns does not increase"));
+  EXPECT_THAT(complaint(good + "1.2 1 0 0 0 0 0 1\n"),
+              HasSubstr("a.txt:4: the time stamp 1200000000 ns does not increase"));
   EXPECT_THAT(complaint(good + "1.6 nan 0 0 0 0 0 1\n"), HasSubstr("a.txt:4: the pose is not finite"));
   EXPECT_THAT(complaint(good + "1.6 0 -1e308 0 0 0 0 1\n"),
-              HasSubstr("a.txt:4: a position of 1e+308 m, must be within 1e+09 m of the origin"));
-  EXPECT_THAT(complaint(good + "1.6 0 0 0 0 0 0 2\n"), HasSubstr("a.txt:4: quaternion of norm 2.0"));
+              HasSubstr("a.txt:4: the position is 1e+308 m from the origin; it must be within 1e+09 m"));
+  EXPECT_THAT(complaint(good + "1.6 0 0 0 0 0 0 2\n"), HasSubstr("a.txt:4: the quaternion's norm is 2.0"));
   EXPECT_THAT(complaint(good + "1.6 0 0 0 0 0 0\n"), HasSubstr("a.txt:4: 7 columns, must be 8"));
-  EXPECT_THAT(complaint("1.0 0 0 0 0 0 0 1\n"), HasSubstr("holds 1 poses, needs 2"));
+  EXPECT_THAT(complaint("1.0 0 0 0 0 0 0 1\n"), HasSubstr("has 1 poses; it needs at least 2"));
   fixture::put(folder_ / "a.txt", good + "1.2 5 0 0 0 0 0 1\n1.5 9 0 0 0 0 0 1\n");
   const auto sorted = read_tum_poses(folder_ / "a.txt", true);
   ASSERT_EQ(sorted.size(), 3u);
@@ -132,13 +134,13 @@ TEST_F(Reference, BadLinesAreNamed) {
   EXPECT_THAT(fixture::complaint([&] {
                 read_kitti_poses(folder_ / "k.txt", {0, 1});
               }),
-              HasSubstr("k.txt:2: the first three columns are off a rotation by 3.0"));
+              HasSubstr("k.txt:2: the first three columns differ from a rotation by 3.0"));
   EXPECT_THAT(fixture::complaint([&] {
                 read_kitti_poses(folder_ / "k.txt", {0, 1, 2});
               }),
-              HasSubstr("holds 2 poses, there are 3 times"));
+              HasSubstr("has 2 poses, but there are 3 times"));
   fixture::put(folder_ / "c.txt", "1 2 3\n");
-  EXPECT_THAT(fixture::complaint([&] { pose_format(folder_ / "c.txt"); }), HasSubstr("has 3 numbers, must be 8"));
+  EXPECT_THAT(fixture::complaint([&] { pose_format(folder_ / "c.txt"); }), HasSubstr("has 3 numbers; it must have 8"));
 }
 
 TEST_F(Reference, PosesOfTheLidarBecomePosesOfTheBody) {
@@ -168,7 +170,7 @@ TEST_F(Reference, PosesOfTheLidarBecomePosesOfTheBody) {
   EXPECT_THAT(fixture::complaint([&] {
                 attach_reference(imported, {folder_ / "two.txt", "kitti", false, false, {}, 0});
               }),
-              HasSubstr("holds 2 poses, there are 3 times"));
+              HasSubstr("has 2 poses, but there are 3 times"));
 }
 
 }  // namespace

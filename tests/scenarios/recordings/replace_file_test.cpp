@@ -81,9 +81,9 @@ TEST_F(ReplaceFile, ReadOnlyFolderIsRefused) {
 TEST_F(ReplaceFile, ADeviceAPipeAndASocketStay) {
   const std::filesystem::path pipe = folder_ / "pipe";
   ASSERT_EQ(mkfifo(pipe.c_str(), 0600), 0);
-  EXPECT_THAT(fixture::complaint([&] { replace_file(pipe, "x"); }), HasSubstr("no regular file"));
+  EXPECT_THAT(fixture::complaint([&] { replace_file(pipe, "x"); }), HasSubstr("not a regular file"));
   EXPECT_TRUE(std::filesystem::is_fifo(pipe));
-  EXPECT_THAT(fixture::complaint([&] { replace_file("/dev/null", "x"); }), HasSubstr("no regular file"));
+  EXPECT_THAT(fixture::complaint([&] { replace_file("/dev/null", "x"); }), HasSubstr("not a regular file"));
   EXPECT_TRUE(std::filesystem::is_character_file("/dev/null"));
   EXPECT_EQ(files(), 1u);
 }
@@ -126,7 +126,7 @@ TEST_F(ReplaceFile, AnInputIsKnownUnderAnyName) {
   const std::vector<std::filesystem::path> inputs = {"", folder_ / "none", folder_ / "in"};
   for (const char* name : {"in", "link", "hard", "../"}) {
     const std::filesystem::path output = name == std::string("../") ? folder_ / "." / "in" : folder_ / name;
-    EXPECT_THAT(fixture::complaint([&] { require_not_an_input(output, inputs); }), HasSubstr("both read and written"))
+    EXPECT_THAT(fixture::complaint([&] { require_not_an_input(output, inputs); }), HasSubstr("both input and output"))
         << output;
   }
   replace_file(folder_ / "other", "x");
@@ -145,7 +145,7 @@ TEST_F(ReplaceFile, AFileOfAFolderThatIsReadIsNotWrittenOver) {
     const std::vector<std::filesystem::path> inputs = {"", folder_ / "none", folder_ / input};
     for (const char* output : {"in/a", "link/a", "in/deep/b", "in/deep/../a", "to_a"}) {
       EXPECT_THAT(fixture::complaint([&] { require_not_an_input(folder_ / output, inputs); }),
-                  HasSubstr("which is read"))
+                  HasSubstr("is a file of the input"))
           << output;
     }
     EXPECT_NO_THROW(require_not_an_input(folder_ / "inside", inputs)) << "a name that begins alike";
@@ -166,7 +166,7 @@ TEST_F(ReplaceFile, AFolderIsFreshOrRefusedAndGoesWithoutBeingKept) {
     output.keep();
   }
   EXPECT_EQ(bytes_of(made / "whole"), "x");
-  EXPECT_THAT(fixture::complaint([&] { OutputFolder again(made); }), HasSubstr("holds files already"));
+  EXPECT_THAT(fixture::complaint([&] { OutputFolder again(made); }), HasSubstr("contains files already"));
   EXPECT_EQ(bytes_of(made / "whole"), "x");
   EXPECT_THAT(fixture::complaint([&] { OutputFolder file(made / "whole"); }), HasSubstr("cannot be written"));
   std::filesystem::create_directory(folder_ / "empty");

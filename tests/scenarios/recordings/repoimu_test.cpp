@@ -54,7 +54,7 @@ TEST_F(Repoimu, TakesTheFileAsItIs) {
   EXPECT_NEAR(imu.accel_m_s2[100].norm(), 9.80665, 1e-3);
   EXPECT_TRUE(imu.magnetic_field_t.empty());
   EXPECT_THAT(all_notes(imported), HasSubstr("units and axes agree"));
-  EXPECT_THAT(all_notes(imported), HasSubstr("--align-reference takes it out"));
+  EXPECT_THAT(all_notes(imported), HasSubstr("set --align-reference to remove it"));
   EXPECT_THAT(all_notes(imported), testing::Not(HasSubstr("sample and hold")));
   EXPECT_THAT(all_notes(imported), testing::Not(HasSubstr("at a rail"))) << "gravity at rest is no rail";
   // the reference as it stands in the file
@@ -115,7 +115,7 @@ TEST_F(Repoimu, SampleAndHoldIsRecognisedAndUndone) {
   EXPECT_NEAR(static_cast<double>(imu.time_ns.size()), 2000.0, 3.0);
   EXPECT_THAT(all_notes(imported),
               HasSubstr("sample and hold: 44.5 % of the gyro's and 72.2 % of the accelerometer's"));
-  EXPECT_NEAR(static_cast<double>(imu.period_ns), 20e6, 0.5e6) << "the gyro's own beat";
+  EXPECT_NEAR(static_cast<double>(imu.period_ns), 20e6, 0.5e6) << "get the sample times of the gyro";
   // the beat is the sensor's, although readings come up to a step of the log late
   double error = 0.0, held_error = 0.0;
   std::size_t count = 0;
@@ -130,7 +130,7 @@ TEST_F(Repoimu, SampleAndHoldIsRecognisedAndUndone) {
   }
   ASSERT_GT(count, 1000u);
   EXPECT_LT(error, 0.5 * held_error) << "negative control: the log as it is errs by " << held_error;
-  EXPECT_THAT(all_notes(imported), HasSubstr("interpolated between its own readings"));
+  EXPECT_THAT(all_notes(imported), HasSubstr("interpolated between its distinct readings"));
 }
 
 TEST_F(Repoimu, GlitchesOfTheReferenceAreLeftOutWithACount) {
@@ -138,7 +138,7 @@ TEST_F(Repoimu, GlitchesOfTheReferenceAreLeftOutWithACount) {
   wand.flips_s = {3.0, 12.0, 25.5};
   std::string text = repoimu_text(wand);
   const Imported imported = import(text);
-  EXPECT_THAT(all_notes(imported), HasSubstr("in and between 6 leaps of up to 3"));
+  EXPECT_THAT(all_notes(imported), HasSubstr("within or between 6 jumps of up to 3"));
   double fastest = 0.0;
   std::size_t unknown = 0;
   for (const Eigen::Vector3d& w : imported.reference->imus.at(0).rate_rad_s) {
@@ -183,11 +183,11 @@ TEST_F(Repoimu, WhatPublishedFilesHoldIsRead) {
   std::string comma = text;
   const std::size_t at = comma.find("1.2300;") + 7;  // the quaternion's w
   comma[comma.find('.', at)] = ',';
-  EXPECT_THAT(all_notes(import(comma)), HasSubstr("1 numbers with a decimal comma"));
+  EXPECT_THAT(all_notes(import(comma)), HasSubstr("1 numbers have a decimal comma"));
   std::string average = text;
   const std::size_t w = average.find("\n5.0000;") + 8;
   average.replace(w, average.find(';', w) - w, "0.2");
-  EXPECT_THAT(all_notes(import(average)), HasSubstr("1 off unit length"));
+  EXPECT_THAT(all_notes(import(average)), HasSubstr("1 with a quaternion norm off by more than 1 %"));
   std::string pendulum = text;
   pendulum.replace(0, std::string(fixture::kRepoimuHeader).size(),
                    "Time;Vicon Orientation;;;;IMU Acceleration;;;IMU Gyroscope;;;IMU Magnetometer;;\n"
@@ -223,24 +223,24 @@ TEST_F(Repoimu, BadInputHasFileLineValueAndBound) {
   const std::string good = header + row("0.01") + row("0.02") + row("0.03");
   EXPECT_EQ(complaint_of(good), "");
   EXPECT_THAT(complaint_of(""), HasSubstr("is empty"));
-  EXPECT_THAT(complaint_of(header), HasSubstr("holds 0 samples"));
+  EXPECT_THAT(complaint_of(header), HasSubstr("has 0 samples"));
   EXPECT_THAT(complaint_of(good.substr(0, good.size() - 1)), HasSubstr("csv:5: the last line has no line end"));
   EXPECT_THAT(complaint_of(good + "0.04;1;0;0\n"), HasSubstr("csv:6: has 4 columns, must have 14"));
   EXPECT_THAT(complaint_of(good + row("0.04", "1", "nan")), HasSubstr("csv:6: column IMU Gyroscope is not finite"));
   EXPECT_THAT(complaint_of(good + row("0.04", "1", "")),
-              HasSubstr("csv:6: column IMU Gyroscope must be a number, is ''"));
-  EXPECT_THAT(complaint_of(good + row("0.04", "1", "1.000,5")), HasSubstr("must be a number, is '1.000,5'"));
-  EXPECT_THAT(complaint_of(good + row("0.02")), HasSubstr("csv:6: Time goes back: 0.02 s after 0.03 s"));
-  EXPECT_THAT(complaint_of(good + row("0.0405") + row("0.0405")), HasSubstr("Time does not rise"));
+              HasSubstr("csv:6: column IMU Gyroscope must be a number; it is ''"));
+  EXPECT_THAT(complaint_of(good + row("0.04", "1", "1.000,5")), HasSubstr("must be a number; it is '1.000,5'"));
+  EXPECT_THAT(complaint_of(good + row("0.02")), HasSubstr("csv:6: Time decreases: 0.02 s after 0.03 s"));
+  EXPECT_THAT(complaint_of(good + row("0.0405") + row("0.0405")), HasSubstr("Time does not increase"));
   EXPECT_THAT(complaint_of(good + row("-1")), HasSubstr("csv:6: Time is -1 s, must be within 0 and"));
   EXPECT_THAT(complaint_of(header + row("0.01", "0.7") + row("0.02", "0.7")),
-              HasSubstr("csv:3: the quaternion's norm is 0.7000, must be 1 within a percent; so are 2 of 2"));
+              HasSubstr("csv:3: the quaternion's norm is 0.7000; it must be 1 within 1 %. This is so for 2 of 2"));
   std::string missing = good;
   missing.replace(missing.find("IMU Gyroscope"), 13, "IMU Compasses");
-  EXPECT_THAT(complaint_of(missing), HasSubstr("csv:2: columns are missing: 'IMU Gyroscope/X' 'IMU Gyroscope/Y'"));
+  EXPECT_THAT(complaint_of(missing), HasSubstr("csv:2: missing columns: 'IMU Gyroscope/X' 'IMU Gyroscope/Y'"));
   std::string doubled = good;
   doubled.replace(doubled.find(";W;X;Y;Z;"), 9, ";W;X;Y;Y;");
-  EXPECT_THAT(complaint_of(doubled), HasSubstr("two columns are called Vicon Orientation/Y"));
+  EXPECT_THAT(complaint_of(doubled), HasSubstr("two columns have the name Vicon Orientation/Y"));
   std::string unknown = good;
   unknown.replace(unknown.find(";X;Y;Z;\n"), 8, ";X;Y;Z;T\n");
   EXPECT_THAT(complaint_of(unknown), HasSubstr("unknown column"));
@@ -260,14 +260,14 @@ TEST_F(Repoimu, RatesInDegreesAreNoticedByGravity) {
     for (std::size_t i = 0; i < f.size(); ++i) text += (i > 0 ? ";" : "") + f[i];
     text += "\n";
   }
-  EXPECT_THAT(complaint_of(text), HasSubstr("are the rates in deg/s?"));
+  EXPECT_THAT(complaint_of(text), HasSubstr("The rates may be in deg/s"));
 }
 
 TEST_F(Repoimu, ReadsTheStandIn) {
   const Imported wand = import_repoimu(test::written(test::data_folders("repoimu").front()) / test::kStandInWand, true);
   EXPECT_EQ(wand.sensors.imus[0].time_ns.size(), 12000u);
   EXPECT_THAT(all_notes(wand), HasSubstr("units and axes agree"));
-  EXPECT_THAT(all_notes(wand), HasSubstr("leaps of up to"));
+  EXPECT_THAT(all_notes(wand), HasSubstr("jumps of up to"));
   // the reference's rate is the gyro's wherever that one tells it
   std::vector<double> errors;
   const sim::ImuRecord& imu = wand.sensors.imus[0];
@@ -297,8 +297,8 @@ TEST_P(RepoimuPublished, AreRead) {
   EXPECT_THAT(all_notes(pendulum),
               HasSubstr("sample and hold: 44.5 % of the gyro's and 71.8 % of the accelerometer's"));
   EXPECT_THAT(all_notes(pendulum), HasSubstr("+x within 2 % of 19.52 m/s^2")) << "2 g";
-  EXPECT_THAT(all_notes(pendulum), HasSubstr("leaps of up to"));
-  EXPECT_THAT(all_notes(pendulum), HasSubstr("1 numbers with a decimal comma"));
+  EXPECT_THAT(all_notes(pendulum), HasSubstr("jumps of up to"));
+  EXPECT_THAT(all_notes(pendulum), HasSubstr("1 numbers have a decimal comma"));
   for (const Eigen::Vector3d& w : pendulum.reference->imus.at(0).rate_rad_s) {
     if (w.allFinite()) {
       ASSERT_LT(w.norm(), 25.0) << "no leap is left";

@@ -187,7 +187,8 @@ TEST_F(RoundTrip, ARealRecordingHasNoTruth) {
   write_recording(path, {}, recording.sensors, nullptr);
   EXPECT_FALSE(read_info(path).has_truth);
   EXPECT_EQ(read_info(path).digest, digest(read_sensors(path), nullptr));
-  EXPECT_EQ(fixture::complaint([&] { read_truth(path); }), path.string() + ": holds no truth (a real recording?)");
+  EXPECT_EQ(fixture::complaint([&] { read_truth(path); }),
+            path.string() + ": has no truth; it may be a real recording");
 }
 
 TEST_F(RoundTrip, EmptyAndOddContentIsKept) {

@@ -97,7 +97,7 @@ TEST_F(StoredPoints, AreHeldAgainstTheirSweeps) {
 
 TEST_F(StoredPoints, NeedAFolder) {
   EXPECT_THAT(fixture::complaint([&] { read(folder_ / "none"); }),
-              HasSubstr("none: no scratch file can be made there: No such file"));
+              HasSubstr("none: cannot create a temporary file in this folder: No such file"));
 }
 
 /// Ends the process with 0 when BadInput says so, and nothing is left but what was there.

@@ -88,7 +88,7 @@ TEST_F(WrongFile, AbsentForeignOrFolder) {
 
 TEST_F(WrongFile, AnotherVersion) {
   put_attribute("/", "format_version", H5T_NATIVE_INT64, std::int64_t{2});
-  EXPECT_EQ(info_complaint(), path_.string() + ": /format_version: is 2, this build reads 1");
+  EXPECT_EQ(info_complaint(), path_.string() + ": /format_version: is 2; this build reads version 1");
   EXPECT_THAT(fixture::complaint([&] { read_sensors(path_); }), HasSubstr("this build reads 1"));
   EXPECT_THAT(fixture::complaint([&] { read_truth(path_); }), HasSubstr("this build reads 1"));
 }
@@ -137,30 +137,30 @@ TEST_F(WrongFile, UnsignedTimes) {
 
 TEST_F(WrongFile, ADatasetThatWasNeverWrittenIsNotZeros) {
   replace("sensors/imus/0/gyro_I_rad_s", H5T_NATIVE_DOUBLE, {70, 3});
-  EXPECT_THAT(sensors_complaint(), HasSubstr("claims 70 rows, but the file does not hold them"));
+  EXPECT_THAT(sensors_complaint(), HasSubstr("states 70 rows, but the file is shorter"));
 }
 
 TEST_F(WrongFile, AHugeClaimAsksForNoMemory) {
   replace("sensors/lidars/0/range_m", H5T_NATIVE_FLOAT, {hsize_t{1} << 60});
-  EXPECT_THAT(sensors_complaint(), HasSubstr("but the file does not hold them"));
+  EXPECT_THAT(sensors_complaint(), HasSubstr("but the file is shorter"));
 }
 
 TEST_F(WrongFile, DifferingLengths) {
   const std::vector<std::uint8_t> flags(69, 0);
   replace("sensors/imus/0/clip_flags", H5T_NATIVE_UINT8, {69}, flags.data());
-  EXPECT_EQ(sensors_complaint(), path_.string() + ": sensors/imus/0: clip_flags has 69 rows, time_ns has 70");
+  EXPECT_EQ(sensors_complaint(), path_.string() + ": sensors/imus/0: clip_flags has 69 rows, but time_ns has 70");
 }
 
 TEST_F(WrongFile, FallingSweepFirst) {
   const std::array<std::uint64_t, 4> first = {0, 100, 50, 150};
   replace("sensors/lidars/0/sweep_first", H5T_NATIVE_UINT64, {4}, first.data());
-  EXPECT_EQ(sensors_complaint(), path_.string() + ": sensors/lidars/0: sweep_first falls");
+  EXPECT_EQ(sensors_complaint(), path_.string() + ": sensors/lidars/0: sweep_first decreases");
 }
 
 TEST_F(WrongFile, ContactsOfDifferentLength) {
   const std::array<double, 2> force = {1.0, 2.0};
   replace("truth/contacts/normal_force_n", H5T_NATIVE_DOUBLE, {2}, force.data());
-  EXPECT_THAT(truth_complaint(), HasSubstr("truth/contacts: datasets differ in length"));
+  EXPECT_THAT(truth_complaint(), HasSubstr("truth/contacts: the datasets differ in length"));
 }
 
 TEST_F(WrongFile, ChangedReadingsDoNotFitTheDigest) {

@@ -156,9 +156,9 @@ TEST_F(QuestionTest, IsClaimedBeforeTheDraws) {
       EXPECT_THAT(error.what(), HasSubstr(what));
     }
   };
-  refused(question_of(200), "was asked");
+  refused(question_of(200), "stores the question");
   results.set_note(kQuestionNote, "");
-  refused(question_of(100), "before the question was asked");
+  refused(question_of(100), "before the question was set");
 }
 
 TEST_F(QuestionTest, OfNothingIsOpen) {
@@ -181,10 +181,10 @@ TEST(Question, RefusesWhatCannotBeAsked) {
   };
   EXPECT_NO_THROW(require_sound(question_of(1)));
   refused([](Question& q) { q.method = "tumble"; }, "needs its kind");
-  refused([](Question& q) { q.against = "slam/icp"; }, "of two kinds");
-  refused([](Question& q) { q.against = q.method; }, "better than itself");
-  refused([](Question& q) { q.metric = "rate_error"; }, "not known");
-  refused([](Question& q) { q.metric = "estimate_cpu_s"; }, "no better side");
+  refused([](Question& q) { q.against = "slam/icp"; }, "have different kinds");
+  refused([](Question& q) { q.against = q.method; }, "is compared with itself");
+  refused([](Question& q) { q.metric = "rate_error"; }, "is unknown");
+  refused([](Question& q) { q.metric = "estimate_cpu_s"; }, "has no better direction");
   refused([](Question& q) { q.metric = "translation_error_end_m"; }, "is of kind");
   refused([](Question& q) { q.margin.value = -0.1; }, "margin is -0.1");
   refused([](Question& q) { q.margin.value = std::numeric_limits<double>::quiet_NaN(); }, "margin is nan");

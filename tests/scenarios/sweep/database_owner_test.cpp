@@ -76,7 +76,7 @@ TEST_F(DatabaseOwnerTest, IsKnownUnderEveryName) {
   write("results.db", "");
   std::filesystem::create_symlink("results.db", folder_ / "link.db");
   const DatabaseOwner owner(database());
-  EXPECT_THAT(complaint(folder_ / "link.db"), HasSubstr("is writing to it"));
+  EXPECT_THAT(complaint(folder_ / "link.db"), HasSubstr("is writing to this database"));
 }
 
 TEST_F(DatabaseOwnerTest, AKilledOneLeavesItToTheNext) {

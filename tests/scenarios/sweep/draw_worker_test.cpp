@@ -108,7 +108,7 @@ TEST_F(DrawWorkerTest, MemoryIsLimited) {
     if (!message.outcome) continue;
     ++outcomes;
     EXPECT_EQ(message.outcome->status, OutcomeStatus::killed) << message.outcome->message;
-    EXPECT_NE(message.outcome->message.find("no memory was left"), std::string::npos) << message.outcome->message;
+    EXPECT_NE(message.outcome->message.find("not enough memory"), std::string::npos) << message.outcome->message;
   }
   EXPECT_EQ(outcomes, 2u);
   EXPECT_FALSE(worker.is_fresh()) << "it is not used again";

@@ -171,9 +171,9 @@ TEST(Gate, AMetricThatAnOkOutcomeHadMayNotGo) {
   const Change drop = [](Outcome& outcome) {
     if (outcome.seed == 3) std::erase_if(outcome.scores, [](const Score& score) { return score.metric == kNees; });
   };
-  EXPECT_EQ(fault_after(kNees, drop), "has no value any more: seed 3");
+  EXPECT_EQ(fault_after(kNees, drop), "no longer has a value at seed 3");
   EXPECT_EQ(fault_after(kNees, [](Outcome& o) { score_of(o, kNees) = std::nan(""); }).substr(0, 22),
-            "has no value any more:");
+            "no longer has a value at seed");
 }
 
 TEST(Gate, AFailureThatWasAcceptedMayStayOrGo) {
@@ -248,11 +248,11 @@ TEST_F(GateFiles, SayWhatIsWrongAndWhere) {
   EXPECT_THAT(complaint(kPolicy, head + "hill,slam,tumble,status,ok,fine\n"), HasSubstr("'fine'"));
   EXPECT_THAT(complaint(kPolicy, good + "hill,slam,tumble,map_overlp,1,1\n"), HasSubstr("'map_overlap'"));
   EXPECT_THAT(complaint(kPolicy, good + "hill,slam,tumble,map_overlap,1\n"), HasSubstr("5 columns, must be 6"));
-  EXPECT_THAT(complaint(kPolicy, good + "hill,slam,tumble,map_overlap,1,nan\n"), HasSubstr("no finite number"));
+  EXPECT_THAT(complaint(kPolicy, good + "hill,slam,tumble,map_overlap,1,nan\n"), HasSubstr("not a finite number"));
   EXPECT_THAT(complaint(kPolicy, head + "hill,slam,tumble,map_overlap,1,1\n"), HasSubstr("must follow"));
   EXPECT_THAT(complaint(kPolicy, good + "hill,slam,tumble,status,ok,ok\n"), HasSubstr("twice"));
-  EXPECT_THAT(complaint(kPolicy, "scenario,kind,method,metric,2,1\n"), HasSubstr("seeds must rise"));
-  EXPECT_THAT(complaint(kPolicy, head), HasSubstr("nothing accepted"));
+  EXPECT_THAT(complaint(kPolicy, "scenario,kind,method,metric,2,1\n"), HasSubstr("seeds must increase"));
+  EXPECT_THAT(complaint(kPolicy, head), HasSubstr("has no accepted results"));
   EXPECT_THAT(complaint("suite: small\nrisk: 0.7\nmargin: 0\nshare_margin: 0\ntime_margin_s: 0\nworst: 2\n", good),
               HasSubstr("0.7"));
   write("scenarios/gates/other.yaml", kPolicy);

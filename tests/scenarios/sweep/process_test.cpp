@@ -174,7 +174,7 @@ TEST_F(RunIsolated, AKillFromOutsideAndNoMemoryAreTheMachines) {
   EXPECT_EQ(killed.message, "ended by signal 9 (Killed)");
   const Outcome memory = run([](const sim::Sensors&) -> Estimate { throw std::bad_alloc(); });
   EXPECT_EQ(memory.status, OutcomeStatus::killed);
-  EXPECT_EQ(memory.message, "no memory was left for it");
+  EXPECT_EQ(memory.message, "not enough memory for the method");
 }
 
 TEST_F(RunIsolated, EndlessWorkIsATimeout) {

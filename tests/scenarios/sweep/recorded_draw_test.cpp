@@ -104,12 +104,12 @@ TEST_F(RecordedSweep, ARecordingThatHasChangedIsRefused) {
   EXPECT_EQ(complaint(suite(), folder_ / "c.db"), "");
   Suite elsewhere = suite();
   elsewhere.recordings_folder = folder_ / "nowhere";
-  EXPECT_THAT(complaint(elsewhere, folder_ / "d.db"), HasSubstr("no recording fits 'wands/*.h5'"));
+  EXPECT_THAT(complaint(elsewhere, folder_ / "d.db"), HasSubstr("no recording matches 'wands/*.h5'"));
   std::filesystem::create_directories(folder_ / "data/other");
   std::filesystem::copy(folder_ / "data/wands/wand_a.h5", folder_ / "data/other/wand_a.h5");
   Suite twice = suite();
   twice.recordings = {"wands/*.h5", "other/*.h5"};
-  EXPECT_THAT(complaint(twice, folder_ / "e.db"), HasSubstr("a recording of that name is"));
+  EXPECT_THAT(complaint(twice, folder_ / "e.db"), HasSubstr("there is another recording with this name"));
   twice.recordings = {"wands/*.h5", "wands/wand_a.h5"};
   EXPECT_EQ(find_recordings(twice.recordings, twice.recordings_folder).size(), 2u) << "each file once";
 }
@@ -125,8 +125,9 @@ TEST_F(RecordedSweep, SuitesOfRecordingsHaveNoScenarios) {
     return std::string();
   };
   EXPECT_EQ(refusal("recordings: [a.h5]\n"), "");
-  EXPECT_THAT(refusal("recordings: [a.h5]\nseeds: {first: 1, last: 2}\n"), HasSubstr("a suite of recordings has none"));
-  EXPECT_THAT(refusal("recordings: []\n"), HasSubstr("no recording"));
+  EXPECT_THAT(refusal("recordings: [a.h5]\nseeds: {first: 1, last: 2}\n"),
+              HasSubstr("is not allowed in a suite of recordings"));
+  EXPECT_THAT(refusal("recordings: []\n"), HasSubstr("needs at least one recording"));
   EXPECT_THAT(refusal("seeds: {first: 1, last: 2}\n"), HasSubstr("scenarios"));
 }
 

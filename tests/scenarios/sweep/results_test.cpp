@@ -212,7 +212,7 @@ TEST_F(ResultsTest, WhatTheSchemaHasIsThereOrNamed) {
     write("results.db", whole);
     SQLite::Database(path().string(), SQLite::OPEN_READWRITE)
         .exec(std::string("PRAGMA legacy_alter_table = ON;") + change);
-    const std::string says = path().string() + ": not a usable results database: it has no " + missing;
+    const std::string says = path().string() + ": not a usable results database: it lacks " + missing;
     EXPECT_EQ(complaint(Results::Mode::read_only), says);
     EXPECT_EQ(complaint(Results::Mode::create_or_append), says);
   }

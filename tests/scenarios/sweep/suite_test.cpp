@@ -63,12 +63,13 @@ TEST_F(SuiteTest, ComplaintsNameFileLineAndNearestName) {
             std::string::npos);
   EXPECT_NE(complaint(head + "scenarios: [hill]\nseeds: {first: 1, last: 2}\nmethods: [saav]\n").find("'saave'"),
             std::string::npos);
-  EXPECT_NE(complaint(head + "scenarios: [hill, hill]\nseeds: {first: 1, last: 2}\n").find("'hill' stands twice"),
+  EXPECT_NE(complaint(head + "scenarios: [hill, hill]\nseeds: {first: 1, last: 2}\n").find("'hill' occurs twice"),
             std::string::npos);
   EXPECT_NE(complaint(head + "scenarios: [hill]\nseeds: [1, 2]\n").find("must be a map with the keys first, last"),
             std::string::npos);
-  EXPECT_NE(complaint(head + "scenarios: [hill]\nseeds: {first: 2, last: 1}\n").find("last is below first"),
-            std::string::npos);
+  EXPECT_NE(
+      complaint(head + "scenarios: [hill]\nseeds: {first: 2, last: 1}\n").find("the last seed is below the first"),
+      std::string::npos);
   EXPECT_NE(complaint(head + "scenarios: [hill]\nseeds: {first: 1, last: 2}\ntimeout: 5\n").find("timeout"),
             std::string::npos);
   EXPECT_NE(complaint(head + "scenarios: [hill]\nseeds: {first: 1, last: 2}\ntimeout_s: -5\n").find("timeout_s"),
@@ -84,7 +85,7 @@ TEST_F(SuiteTest, ComplaintsNameFileLineAndNearestName) {
 
 TEST_F(SuiteTest, AScenarioIsToldFromASuite) {
   EXPECT_THAT(complaint("name: icy\ndoc: d\nduration_s: 4\nmotion: {type: push}\n"),
-              ::testing::AllOf(::testing::HasSubstr("test.yaml:4: motion: a scenario has it"),
+              ::testing::AllOf(::testing::HasSubstr("test.yaml:4: motion: this key belongs to a scenario"),
                                ::testing::HasSubstr("scenarios/catalogue")));
 }
 
@@ -110,7 +111,8 @@ TEST_F(SuiteTest, DrawsMayBeNamedInClasses) {
   EXPECT_THAT(complaint(head + "draws: {mild: {hill: [1]}, wild: {hill: [1]}}\n"), ::testing::HasSubstr("twice"));
   EXPECT_THAT(complaint(head + "draws: {mild: {}}\n"), ::testing::HasSubstr("no draw"));
   EXPECT_THAT(complaint(head + "draws: {}\n"), ::testing::HasSubstr("no draw"));
-  EXPECT_THAT(complaint(head + "draws: {mild: {hill: [1]}}\nscenarios: [hill]\n"), ::testing::HasSubstr("has none"));
+  EXPECT_THAT(complaint(head + "draws: {mild: {hill: [1]}}\nscenarios: [hill]\n"),
+              ::testing::HasSubstr("is not allowed"));
   EXPECT_THAT(complaint(head + "draws: {mild: {hill: [1]}}\nmetrics: [ate]\n"), ::testing::HasSubstr("ate_m"));
 }
 

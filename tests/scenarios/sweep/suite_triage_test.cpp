@@ -113,7 +113,7 @@ TEST_F(SuiteTriage, AProcessThatHangsIsLate) {
   const std::vector<DrawTriage> all =
       triage_draws(tree_data(), std::vector<DrawName>{{clipping_tumble(folder_), 1}}, hangs, options);
   ASSERT_EQ(all.size(), 1u);
-  EXPECT_EQ(all[0].trouble, "the draw did not end in time");
+  EXPECT_EQ(all[0].trouble, "the draw did not finish within its time limit");
 }
 
 TEST_F(SuiteTriage, MemoryIsLimited) {

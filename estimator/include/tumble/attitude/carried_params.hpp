@@ -6,58 +6,63 @@
 
 namespace tumble {
 
-/// What a hand does, in time.
+/// Time constants of hand-held motion.
 struct CarriedHandParams {
-  double hand_tau_s = 0.1;        ///< its memory
-  double velocity_tau_s = 0.3;    ///< and memory
-  double position_tau_s = 1.0;    ///< and memory of that
-  double position_leak_s = 10.0;  ///< in which a position is forgotten
-  double hand_follow = 0.8;       ///< how far the hand's density follows its power about that time
-  double hand_window_s = 2.0;     ///< over which that power is taken
-  double hand_floor = 1.0;        ///< least share of the assumed density
+  double hand_tau_s = 0.1;        ///< correlation time of the held point's acceleration
+  double velocity_tau_s = 0.3;    ///< correlation time of its velocity
+  double position_tau_s = 1.0;    ///< correlation time of its position
+  double position_leak_s = 10.0;  ///< time constant with which a position decays
+  double hand_follow = 0.8;       ///< adaptation of the acceleration's density to its measured power, 0 to 1
+  double hand_window_s = 2.0;     ///< averaging time of this power
+  double hand_floor = 1.0;        ///< minimum density as a fraction of the assumed one
 
   template <class Self, class Visitor>
   static void fields(Self& p, Visitor& visit) {
-    visit(p.hand_tau_s, {"hand_tau_s", "s", 1e-3, 10.0, "memory of the carried point's acceleration", Rank::first});
-    visit(p.velocity_tau_s, {"velocity_tau_s", "s", 1e-3, 1e3, "memory of the carried point's velocity"});
-    visit(p.position_tau_s, {"position_tau_s", "s", 1e-3, 1e3, "memory of the carried point's position"});
-    visit(p.position_leak_s, {"position_leak_s", "s", 0.1, 1e4, "in which a position is forgotten"});
+    visit(p.hand_tau_s,
+          {"hand_tau_s", "s", 1e-3, 10.0, "correlation time of the hand-held point's acceleration", Rank::first});
+    visit(p.velocity_tau_s, {"velocity_tau_s", "s", 1e-3, 1e3, "correlation time of the hand-held point's velocity"});
+    visit(p.position_tau_s, {"position_tau_s", "s", 1e-3, 1e3, "correlation time of the hand-held point's position"});
+    visit(p.position_leak_s,
+          {"position_leak_s", "s", 0.1, 1e4, "time constant with which the position decays to zero"});
     visit(p.hand_follow,
-          {"hand_follow", "1", 0.0, 1.0, "how far the hand's density follows the motion's own power", Rank::first});
-    visit(p.hand_window_s, {"hand_window_s", "s", 0.01, 1e3, "over which that power is taken"});
-    visit(p.hand_floor, {"hand_floor", "1", 1e-3, 1e3, "least share of the hand's assumed density"});
+          {"hand_follow", "1", 0.0, 1.0,
+           "share by which the assumed acceleration follows the measured power of the motion; 0: not at all",
+           Rank::first});
+    visit(p.hand_window_s,
+          {"hand_window_s", "s", 0.01, 1e3, "time window over which the power of the motion is measured"});
+    visit(p.hand_floor, {"hand_floor", "1", 1e-3, 1e3, "least ratio of the adapted acceleration to the assumed one"});
   }
 };
 
-/// What readings are off by beside their noise, clipped and recovered ones among them.
+/// Errors of readings other than noise, including clipped and recovered readings.
 struct CarriedReadingParams {
-  double tilt_share = 0.02;             ///< error of a free element per deficit of a clipped one
-  double rail_sigma_rad_s = 0.01;       ///< how sharp a rail is
-  double accel_error_share = 0.02;      ///< more, per m/s^2 away from gravity
-  double rotation_error_sqrts = 1e-3;   ///< random walk of the attitude per rad/s turned
-  double recovered_sigma_rad_s = 1.0;   ///< a clipped rate known better is recovered
-  double recovered_tau_s = 0.005;       ///< memory of the error of a rate that was recovered
-  double recovered_scale_share = 6e-3;  ///< beside recovered rates: of the turning, by which gyros misread all of it
+  double tilt_share = 0.02;             ///< error of a free element per deficit of a clipped element
+  double rail_sigma_rad_s = 0.01;       ///< softness of a saturation level
+  double accel_error_share = 0.02;      ///< additional force noise per m/s^2 of difference from gravity
+  double rotation_error_sqrts = 1e-3;   ///< random walk of the attitude per rad/s of rotation
+  double recovered_sigma_rad_s = 1.0;   ///< a clipped rate with a smaller standard deviation is recovered
+  double recovered_tau_s = 0.005;       ///< correlation time of the error of a recovered rate
+  double recovered_scale_share = 6e-3;  ///< scale error of rates next to recovered ones
 
   template <class Self, class Visitor>
   static void fields(Self& p, Visitor& visit) {
-    visit(p.tilt_share,
-          {"tilt_share", "1", 0.0, 1.0, "error of a free element per deficit of a clipped one", Rank::first});
-    visit(p.rail_sigma_rad_s, {"rail_sigma_rad_s", "rad/s", 1e-4, 1.0, "how sharp a rail is"});
-    visit(p.accel_error_share,
-          {"accel_error_share", "1", 0.0, 1.0, "noise of the specific force more, per m/s^2 away from gravity"});
-    visit(p.rotation_error_sqrts,
-          {"rotation_error_sqrts", "sqrt(s)", 0.0, 1.0, "angle random walk per rad/s turned: scale", Rank::first});
+    visit(p.tilt_share, {"tilt_share", "1", 0.0, 1.0,
+                         "error of an unclipped element per saturation deficit of a clipped element", Rank::first});
+    visit(p.rail_sigma_rad_s, {"rail_sigma_rad_s", "rad/s", 1e-4, 1.0, "standard deviation of the rail"});
+    visit(p.accel_error_share, {"accel_error_share", "1", 0.0, 1.0,
+                                "additional noise of the specific force, per m/s^2 of distance from gravity"});
+    visit(p.rotation_error_sqrts, {"rotation_error_sqrts", "sqrt(s)", 0.0, 1.0,
+                                   "angle random walk per rad/s of rate, from scale errors", Rank::first});
     visit(p.recovered_sigma_rad_s,
           {"recovered_sigma_rad_s", "rad/s", 0.0, 1e4,
-           "a clipped rate known better than this is recovered, not only bounded", Rank::first});
-    visit(p.recovered_tau_s, {"recovered_tau_s", "s", 1e-4, 1e4, "memory of the error of a rate that was recovered"});
+           "largest standard deviation for a clipped rate to count as recovered instead of bounded", Rank::first});
+    visit(p.recovered_tau_s, {"recovered_tau_s", "s", 1e-4, 1e4, "correlation time of the error of a recovered rate"});
     visit(p.recovered_scale_share, {"recovered_scale_share", "1", 0.0, 1.0,
-                                    "beside recovered rates: of the turning, by which gyros misread all of it"});
+                                    "scale error of the gyro next to recovered rates, as a share of the rate"});
   }
 };
 
-/// A node that rests.
+/// A stationary node.
 struct CarriedStillParams {
   double rest_sigma_rad_s = 0.01;  ///< of the rate at rest, one node
   double rest_sigma_m_s = 0.02;    ///< of the velocity at rest
@@ -65,19 +70,21 @@ struct CarriedStillParams {
 
   template <class Self, class Visitor>
   static void fields(Self& p, Visitor& visit) {
-    visit(p.rest_sigma_rad_s, {"rest_sigma_rad_s", "rad/s", 1e-6, 10.0, "of the rate at rest, one node"});
-    visit(p.rest_sigma_m_s, {"rest_sigma_m_s", "m/s", 1e-6, 10.0, "of the velocity at rest"});
-    visit(p.rest_sigma_m_s2, {"rest_sigma_m_s2", "m/s^2", 1e-6, 10.0, "of the acceleration at rest"});
+    visit(p.rest_sigma_rad_s,
+          {"rest_sigma_rad_s", "rad/s", 1e-6, 10.0, "standard deviation of the rate at rest, per node"});
+    visit(p.rest_sigma_m_s, {"rest_sigma_m_s", "m/s", 1e-6, 10.0, "standard deviation of the velocity at rest"});
+    visit(p.rest_sigma_m_s2,
+          {"rest_sigma_m_s2", "m/s^2", 1e-6, 10.0, "standard deviation of the acceleration at rest"});
   }
 };
 
-/// What few need of CarriedParams, by meaning. Fields bear the names that they have in tables and on command lines.
+/// Parameters of CarriedParams that few users change, grouped by meaning. Field names equal those in tables and on
+/// command lines.
 struct CarriedExpertParams {
-  double node_s = 0.01;  ///< between two nodes
+  double node_s = 0.01;  ///< time between two nodes
   int iterations_max = 15;
   double gap_max_s = 1.0;
-  /// What motions of a kind differ in their jerk is not known beforehand: covariances are those of a root density so
-  /// many times larger.
+  /// Inflation of the jerk's root density in covariances. The jerk of the actual motion is not known in advance.
   double jerk_inflation = 4.0;
   RestDetector::Params rest = {};
   CarriedHandParams hand = {};
@@ -86,11 +93,13 @@ struct CarriedExpertParams {
 
   template <class Self, class Visitor>
   static void fields(Self& p, Visitor& visit) {
-    visit(p.node_s, {"node_s", "s", 1e-3, 0.1, "between two nodes of the smoother", Rank::first});
-    visit(p.iterations_max, {"iterations_max", "1", 1, 1000, "most steps of Gauss-Newton", Rank::first});
-    visit(p.gap_max_s, {"gap_max_s", "s", 1e-300, 1e4, "longest time between two samples before the run is refused"});
-    visit(p.jerk_inflation, {"jerk_inflation", "1", 1.0, 100.0,
-                             "covariances are those of a root density of the jerk so many times larger", Rank::first});
+    visit(p.node_s, {"node_s", "s", 1e-3, 0.1, "time between two nodes of the smoother", Rank::first});
+    visit(p.iterations_max, {"iterations_max", "1", 1, 1000, "largest number of Gauss-Newton steps", Rank::first});
+    visit(p.gap_max_s, {"gap_max_s", "s", 1e-300, 1e4,
+                        "longest allowed time between two samples; a longer gap ends the run with an error"});
+    visit(p.jerk_inflation,
+          {"jerk_inflation", "1", 1.0, 100.0,
+           "covariances are computed for an angular-jerk root density larger by this factor", Rank::first});
     visit.group("rest_", p.rest);
     visit.group("", p.hand);
     visit.group("", p.readings);
@@ -98,7 +107,7 @@ struct CarriedExpertParams {
   }
 };
 
-/// Of CarriedSmoother and CarriedStream: the IMU, and how a hand moves it.
+/// Parameters of CarriedSmoother and CarriedStream: the IMU, and the hand-held motion.
 struct CarriedParams {
   double gravity_m_s2 = 9.80665;
   double gyro_noise_density = 5e-4;   ///< rad/s/sqrt(Hz)
@@ -107,31 +116,34 @@ struct CarriedParams {
   double accel_bias_sigma_m_s2 = 0.02;
   double lever_arm_sigma_m = 0.03;
   double jerk_rad_s3_sqrts = 200.0;  ///< root density of the angular jerk
-  double hand_m_s2 = 5.0;            ///< deviation of the carried point's acceleration
-  double velocity_m_s = 1.0;         ///< deviation of the carried point's velocity
-  double position_m = 1.0;           ///< deviation of its position
+  double hand_m_s2 = 5.0;            ///< standard deviation of the held point's acceleration
+  double velocity_m_s = 1.0;         ///< standard deviation of the held point's velocity
+  double position_m = 1.0;           ///< standard deviation of the held point's position
 
   using Expert = CarriedExpertParams;
-  Expert expert = {};  ///< what few need
+  Expert expert = {};  ///< parameters that few users change
 
-  /// Every number of it, stated once.
+  /// Visits every parameter: its value, name, unit, bounds and meaning (common/parameters.hpp).
   template <class Self, class Visitor>
   static void fields(Self& p, Visitor& visit) {
     visit(p.gravity_m_s2, {"gravity_m_s2", "m/s^2", 1e-300, 100.0, "strength of gravity"});
     visit(p.gyro_noise_density, {"gyro_noise_density", "rad/s/sqrt(Hz)", 1e-6, 1.0, "noise density of the gyro"});
     visit(p.accel_noise_density, {"accel_noise_m_s2_sqrt_hz", "m/s^2/sqrt(Hz)", 1e-5, 10.0,
-                                  "noise density of the specific force, unmodelled errors included", Rank::first});
+                                  "noise density of the specific force, including unmodelled errors", Rank::first});
     visit(p.gyro_bias_sigma_rad_s,
-          {"gyro_bias_sigma_rad_s", "rad/s", 1e-6, 10.0, "prior of the gyro's bias", Rank::first});
-    visit(p.accel_bias_sigma_m_s2,
-          {"accel_bias_sigma_m_s2", "m/s^2", 1e-6, 10.0, "prior of the accelerometer's bias", Rank::first});
-    visit(p.lever_arm_sigma_m,
-          {"lever_arm_sigma_m", "m", 1e-6, 10.0, "prior of the lever arm from the carried point", Rank::first});
-    visit(p.jerk_rad_s3_sqrts,
-          {"jerk_rad_s3_sqrts", "rad/s^3 sqrt(s)", 1e-2, 1e6, "root density of the angular jerk", Rank::first});
-    visit(p.hand_m_s2, {"hand_m_s2", "m/s^2", 1e-3, 1e3, "deviation of the carried point's acceleration", Rank::first});
-    visit(p.velocity_m_s, {"velocity_m_s", "m/s", 1e-3, 1e3, "deviation of the carried point's velocity", Rank::first});
-    visit(p.position_m, {"position_m", "m", 1e-3, 1e3, "deviation of the carried point's position", Rank::first});
+          {"gyro_bias_sigma_rad_s", "rad/s", 1e-6, 10.0, "prior standard deviation of the gyro bias", Rank::first});
+    visit(p.accel_bias_sigma_m_s2, {"accel_bias_sigma_m_s2", "m/s^2", 1e-6, 10.0,
+                                    "prior standard deviation of the accelerometer bias", Rank::first});
+    visit(p.lever_arm_sigma_m, {"lever_arm_sigma_m", "m", 1e-6, 10.0,
+                                "prior standard deviation of the lever arm from the hand-held point", Rank::first});
+    visit(p.jerk_rad_s3_sqrts, {"jerk_rad_s3_sqrts", "rad/s^3 sqrt(s)", 1e-2, 1e6,
+                                "root power spectral density of the angular jerk", Rank::first});
+    visit(p.hand_m_s2,
+          {"hand_m_s2", "m/s^2", 1e-3, 1e3, "standard deviation of the hand-held point's acceleration", Rank::first});
+    visit(p.velocity_m_s,
+          {"velocity_m_s", "m/s", 1e-3, 1e3, "standard deviation of the hand-held point's velocity", Rank::first});
+    visit(p.position_m,
+          {"position_m", "m", 1e-3, 1e3, "standard deviation of the hand-held point's position", Rank::first});
     visit.group("", p.expert);
   }
 };

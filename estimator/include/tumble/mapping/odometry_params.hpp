@@ -13,13 +13,14 @@
 
 namespace tumble {
 
-/// What few need of OdometryParams, by meaning. Fields bear the names that they have in tables and on command lines.
+/// Parameters of OdometryParams that few users change, grouped by meaning. Field names equal those in tables and on
+/// command lines.
 struct OdometryExpertParams {
   double gravity_m_s2 = 9.80665;
   /// Standard deviation of gravity's horizontal part; 0: exact, not estimated.
   double gravity_sigma_m_s2 = 0.0;
-  /// Sweeps that are refined together: the newest, and so many less one before it by what it teaches (see
-  /// SweepReport::smoothed). 1: none is refined later.
+  /// Number of sweeps that are refined together: the newest one and the window_sweeps - 1 before it (see
+  /// SweepReport::smoothed). 1: no sweep is refined later.
   int window_sweeps = 2;
   RestBoundsParams rest = {};
   OdometryStartParams start = {};
@@ -38,14 +39,15 @@ struct OdometryExpertParams {
   static void fields(Self& p, Visitor& visit) {
     visit(p.gravity_m_s2, {"gravity_m_s2", "m/s^2", 0.0, 100.0, "strength of gravity"});
     visit(p.gravity_sigma_m_s2, {"gravity_sigma_m_s2", "m/s^2", 0.0, 10.0,
-                                 "gravity's direction as levelled at the start; 0: exact", Rank::first});
+                                 "standard deviation of gravity after initial levelling; 0: exact", Rank::first});
     visit.group("", p.rest);
     visit.group("", p.map);
     visit.group("", p.matching);
     visit.group("", p.prior);
     visit.group("", p.rails);
-    visit(p.window_sweeps, {"window_sweeps", "1", 1, 8,
-                            "sweeps refined together: so many less one by what comes after them", Rank::first});
+    visit(p.window_sweeps,
+          {"window_sweeps", "1", 1, 8,
+           "number of sweeps refined together; a sweep is refined by this many minus one later sweeps", Rank::first});
     visit.group("", p.flight);
     visit.group("", p.tracking);
     visit.group("start_", p.start);
@@ -56,7 +58,7 @@ struct OdometryExpertParams {
   }
 };
 
-/// Of LidarInertialOdometry.
+/// Parameters of LidarInertialOdometry.
 struct OdometryParams {
   Eigen::Isometry3d T_IL = Eigen::Isometry3d::Identity();  ///< lidar in IMU axes
   double time_offset_s = 0.0;                              ///< the IMU's clock minus the lidar's
@@ -66,33 +68,35 @@ struct OdometryParams {
   double time_offset_sigma_s = 0.0;
   double range_min_m = 0.3;        ///< nearer returns are dropped
   double range_max_m = 100.0;      ///< farther returns are dropped
-  Eigen::AlignedBox3d own_body_L;  ///< returns inside are the robot's own; an empty box, as here, keeps all
+  Eigen::AlignedBox3d own_body_L;  ///< returns inside hit the robot itself; an empty box, the default, keeps all
   double sweep_voxel_m = 0.25;     ///< one point per voxel of a sweep is registered
-  /// Threads, if any, that the registration may use; results do not depend on it.
+  /// Threads that the registration may use, if any. Results do not depend on it.
   ParallelFor parallel_for;
 
   using Expert = OdometryExpertParams;
-  Expert expert;  ///< what few need
+  Expert expert;  ///< parameters that few users change
 
-  /// Every number of it, stated once.
+  /// Visits every parameter: its value, name, unit, bounds and meaning (common/parameters.hpp).
   template <class Self, class Visitor>
   static void fields(Self& p, Visitor& visit) {
-    visit(p.time_offset_s, {"time_offset_s", "s", -1.0, 1.0, "the IMU's clock minus the lidar's"});
+    visit(p.time_offset_s, {"time_offset_s", "s", -1.0, 1.0, "clock of the IMU minus clock of the lidar"});
     visit(p.mount_sigma_rad, calibration_fields::kMountSigma_rad);
     visit(p.mount_sigma_m, calibration_fields::kMountSigma_m);
     visit(p.time_offset_sigma_s, calibration_fields::kTimeOffsetSigma_s);
-    visit(p.range_min_m, {"range_min_m", "m", 0.0, 10.0, "nearer returns are dropped"});
-    visit(p.range_max_m, {"range_max_m", "m", 0.0, 1e4, "farther returns are dropped"});
+    visit(p.range_min_m, {"range_min_m", "m", 0.0, 10.0, "returns nearer than this are dropped"});
+    visit(p.range_max_m, {"range_max_m", "m", 0.0, 1e4, "returns farther than this are dropped"});
     visit(p.own_body_L.min(), {"own_body_min_m", "m", -kUnbounded, kUnbounded,
-                               "least corner of the box that holds the robot's own returns, lidar axes"});
-    visit(p.own_body_L.max(), {"own_body_max_m", "m", -kUnbounded, kUnbounded, "and its largest corner"});
-    visit(p.sweep_voxel_m,
-          {"sweep_voxel_m", "m", 0.01, 10.0, "one point per voxel of a sweep is registered", Rank::first});
+                               "smallest corner of the box around the robot's own returns, lidar axes"});
+    visit(p.own_body_L.max(), {"own_body_max_m", "m", -kUnbounded, kUnbounded,
+                               "largest corner of the box around the robot's own returns, lidar axes"});
+    visit(p.sweep_voxel_m, {"sweep_voxel_m", "m", 0.01, 10.0,
+                            "edge of the voxel from which one point per sweep is registered", Rank::first});
     visit.group("", p.expert);
   }
 };
 
-/// `out_of_range` with the first number that LidarInertialOdometry would refuse: that of a Field, or of what is none.
+/// Checks all parameters. Returns `out_of_range` with the first one that LidarInertialOdometry would reject, including
+/// those that are not fields.
 Status check_odometry_params(const OdometryParams& params);
 
 }  // namespace tumble

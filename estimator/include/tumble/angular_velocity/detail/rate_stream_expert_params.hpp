@@ -8,47 +8,48 @@
 /// Groups of RateStream::Params::Expert.
 namespace tumble {
 
-/// How much less a rig without calibration counts while few samples of flight, n, have been learnt from; one that is
-/// shorter than `model_error_s` counts for its part of it.
+/// Inflation of the calibration's uncertainty while it is estimated from few samples of flight, n. A sample shorter
+/// than `model_error_s` counts as a fraction.
 struct RigInflationParams {
-  /// Its covariance, but for the gyro's bias and never beyond that beforehand, counts 1 + covariance / (1 + n /
-  /// samples) times.
+  /// Inflation of the covariance by 1 + covariance / (1 + n / samples), except for the gyro's bias, and never beyond
+  /// the prior.
   double covariance = 60.0;
   double samples = 30.0;
-  /// What contact tells of a rate beyond the rail rests on a rig that flight has to tell: its deviation is at least
-  /// this share of what lies beyond the rail, over 1 + n / samples.
+  /// Rates beyond saturation that are recovered during contact depend on the calibration. The standard deviation of
+  /// such rates is at least this fraction of the deficit, divided by 1 + n / samples.
   double contact = 0.5;
-  /// Of a run of clipped samples in contact: the deviation is at least this share of what a parabola with the slopes at
-  /// the run's ends hides, less what the estimate has of it.
+  /// Rule for a run of clipped samples in contact. A parabola with the slopes at the run's ends predicts a deficit. The
+  /// standard deviation is at least this fraction of the predicted deficit, minus the estimated deficit.
   double slopes = 1.0;
 
   template <class Self, class Visitor>
   static void fields(Self& p, Visitor& visit) {
     visit(p.covariance, {"rig_inflation", "1", 0.0, 1e3,
-                         "covariance of a rig without calibration counts 1 + this / (1 + n / rig_inflation_samples) "
-                         "times, n samples of flight learnt from, of model_error_s each"});
-    visit(p.samples, {"rig_inflation_samples", "1", 1.0, 1e6, "see rig_inflation"});
+                         "covariance of an uncalibrated rig is multiplied by 1 + this / (1 + n / "
+                         "rig_inflation_samples), for n flight samples of model_error_s each"});
+    visit(p.samples, {"rig_inflation_samples", "1", 1.0, 1e6, "number of flight samples that halves rig_inflation"});
     visit(p.contact, {"contact_inflation", "1", 0.0, 10.0,
-                      "of a rig without calibration: deviation of a rate in contact, as a share of what lies "
-                      "beyond the rail, over 1 + n / rig_inflation_samples"});
+                      "uncalibrated rig: standard deviation of a rate in contact, as a share of the rate beyond the "
+                      "rail, divided by 1 + n / rig_inflation_samples"});
     visit(p.slopes, {"contact_slopes", "1", 0.0, 10.0,
-                     "deviation of a clipped rate in contact, as a share of what the slopes at the ends of its run "
-                     "hide"});
+                     "standard deviation of a clipped rate in contact, as a share of the excess predicted by the "
+                     "slopes at both ends of the clipped run"});
   }
 };
 
-/// What few need of RateStreamParams, by meaning. Fields bear the names that they have in tables and on command lines.
+/// Parameters of RateStreamParams that few users change, grouped by meaning. Field names equal those in tables and on
+/// command lines.
 struct RateStreamExpertParams {
-  RailPlaneFinder::Params planes = {};  ///< without a stated range of its own: that of RateStreamParams::rails
-  RailPlaneFinder::Params accel_planes = RailPlaneFinder::Params::for_accelerometer();  ///< likewise
+  RailPlaneFinder::Params planes = {};  ///< without a stated range, that of RateStreamParams::rails applies
+  RailPlaneFinder::Params accel_planes = RailPlaneFinder::Params::for_accelerometer();  ///< same for the accelerometer
   RestDetector::Params rests = {};
-  double widen_first = 8.0;      ///< threshold of contact for a new clipped sample, halved with each step
+  double widen_first = 8.0;      ///< contact threshold's factor for a new clipped sample, halved in each step
   double step_max_rad_s = 10.0;  ///< longest step of a rate at one sample
-  int bound_age = 3;             ///< steps after which the bounds of a sample in contact are softened
-  double bound_damping = 0.5;    ///< share of a new bound taken over in each step
-  int flight_run_min = 6;        ///< a flight of fewer samples in a row says nothing of the rig
+  int bound_age = 3;             ///< steps after which the bounds of a sample in contact become soft
+  double bound_damping = 0.5;    ///< weight of a new bound in each step
+  int flight_run_min = 6;        ///< minimum consecutive flight samples that update the calibration
   RigInflationParams inflation = {};
-  /// Share of the devices that nobody has calibrated, before the readings tell; 0: a device is as its sheet says.
+  /// Prior probability of an uncalibrated device; 0: the device matches its data sheet.
   double uncalibrated = 0.3;
 
   template <class Self, class Visitor>
@@ -56,16 +57,16 @@ struct RateStreamExpertParams {
     visit.group("planes_", p.planes);
     visit.group("accel_planes_", p.accel_planes);
     visit.group("rests_", p.rests);
-    visit(p.widen_first,
-          {"widen_first", "1", 1.0, 1000.0, "threshold of contact for a new clipped sample, halved with each step"});
-    visit(p.step_max_rad_s, {"step_max_rad_s", "rad/s", 1e-3, 1e4, "longest step of a rate at one sample"});
-    visit(p.bound_age, {"bound_age", "1", 0, 4096, "steps after which the bounds of a sample in contact are softened"});
+    visit(p.widen_first, {"widen_first", "1", 1.0, 1000.0,
+                          "factor on the contact threshold of a new clipped sample; halved in each step"});
+    visit(p.step_max_rad_s,
+          {"step_max_rad_s", "rad/s", 1e-3, 1e4, "largest change of a rate at one sample in one step"});
+    visit(p.bound_age, {"bound_age", "1", 0, 4096, "steps after which the bounds of a contact sample are softened"});
     visit(p.flight_run_min,
-          {"flight_run_min", "1", 0, 4096, "a flight of fewer samples in a row says nothing of the rig"});
+          {"flight_run_min", "1", 0, 4096, "least flight samples in a row that may calibrate the rig"});
     visit.group("", p.inflation);
-    visit(p.uncalibrated,
-          {"uncalibrated", "1", 0.0, 0.99, "share of the devices that nobody has calibrated, before readings tell"});
-    visit(p.bound_damping, {"bound_damping", "1", 0.01, 1.0, "share of a new bound taken over in each step"});
+    visit(p.uncalibrated, {"uncalibrated", "1", 0.0, 0.99, "prior probability that a device is not calibrated"});
+    visit(p.bound_damping, {"bound_damping", "1", 0.01, 1.0, "share of a new bound that each step adopts"});
   }
 };
 

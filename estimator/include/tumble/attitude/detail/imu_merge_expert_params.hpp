@@ -6,69 +6,76 @@
 /// Groups of ImuMerge::Params::Expert.
 namespace tumble {
 
-/// Where a reading is off from the others', and left out of its sample.
+/// Outliers: a reading far from those of the others is excluded from its sample.
 struct ImuOutlierParams {
-  double rate_rad_s = 0.15;  ///< from the median
-  double rate_share = 0.03;  ///< more, as a share of the rate
-  double force_m_s2 = 3.0;   ///< from the median
-  /// A reading from this share of the range on may hide a rail met within its sample.
+  double rate_rad_s = 0.15;  ///< difference from the median
+  double rate_share = 0.03;  ///< additional, as a fraction of the rate
+  double force_m_s2 = 3.0;   ///< difference from the median
+  /// A reading above this fraction of the range may have been saturated within its sample.
   double subsample_saturation_share = 0.15;
-  double hidden_force_m_s2 = 3.0;  ///< by which it then may disagree with another
+  double hidden_force_m_s2 = 3.0;  ///< such a reading may differ from another by this much
 
   template <class Self, class Visitor>
   static void fields(Self& p, Visitor& visit) {
-    visit(p.rate_rad_s, {"rate_tolerance_rad_s", "rad/s", 1e-12, 1e3, "a rate this far from the median is left out"});
-    visit(p.rate_share, {"rate_tolerance_share", "1", 0.0, 1.0, "and further, as a share of the rate"});
-    visit(p.force_m_s2, {"force_tolerance_m_s2", "m/s^2", 1e-12, 1e4, "a force this far from the median is left out"});
+    visit(p.rate_rad_s, {"rate_tolerance_rad_s", "rad/s", 1e-12, 1e3,
+                         "largest accepted distance of a rate from the median of the IMUs"});
+    visit(p.rate_share,
+          {"rate_tolerance_share", "1", 0.0, 1.0, "additional accepted distance, as a share of the rate"});
+    visit(p.force_m_s2, {"force_tolerance_m_s2", "m/s^2", 1e-12, 1e4,
+                         "largest accepted distance of a force from the median of the IMUs"});
     visit(p.subsample_saturation_share,
           {"subsample_saturation_share", "1", 1e-12, 1.0,
-           "a reading from this share of the range on may hide a rail met within its sample"});
+           "share of the range above which a reading may hide saturation within its sample"});
     visit(p.hidden_force_m_s2, {"hidden_force_m_s2", "m/s^2", 1e-12, 1e4,
-                                "by which a force that may hide a rail may disagree with another"});
+                                "largest accepted difference between a possibly saturated force and the other IMUs"});
   }
 };
 
-/// A unit that is frozen: a reading that lasts while the others move, or a force while gravity turns. Sample and hold
-/// is shorter.
+/// Frozen units: a reading that repeats while the others change, or a force that repeats while gravity rotates.
+/// Repetition by sample and hold is shorter.
 struct FrozenImuParams {
   double after_s = 0.1;
-  double rate_rad_s = 0.03;  ///< by which the others move
+  double rate_rad_s = 0.03;  ///< minimum change of the others
   double force_m_s2 = 0.3;
-  double turned_rad = 1.0;      ///< and gravity turns, also where all repeat themselves
-  double thawed_after_s = 0.5;  ///< of readings that change
+  double turned_rad = 1.0;      ///< minimum rotation of gravity, also if all units repeat their readings
+  double thawed_after_s = 0.5;  ///< duration of changing readings after which a unit is used again
 
   template <class Self, class Visitor>
   static void fields(Self& p, Visitor& visit) {
-    visit(p.after_s,
-          {"frozen_after_s", "s", 1e-12, 1e3, "a reading that lasts so long while the others move is frozen"});
-    visit(p.rate_rad_s, {"frozen_rate_rad_s", "rad/s", 1e-12, 1e3, "the others move by more than this"});
-    visit(p.force_m_s2, {"frozen_force_m_s2", "m/s^2", 1e-12, 1e4, "or by more than this"});
-    visit(p.turned_rad,
-          {"frozen_turned_rad", "rad", 1e-12, 1e3, "a force that lasts while all turn by this across it is frozen"});
+    visit(p.after_s, {"frozen_after_s", "s", 1e-12, 1e3,
+                      "an IMU is frozen if its reading repeats for this long while the others move"});
+    visit(p.rate_rad_s,
+          {"frozen_rate_rad_s", "rad/s", 1e-12, 1e3, "least motion of the other IMUs' rates in that time"});
+    visit(p.force_m_s2,
+          {"frozen_force_m_s2", "m/s^2", 1e-12, 1e4, "least motion of the other IMUs' forces in that time"});
+    visit(p.turned_rad, {"frozen_turned_rad", "rad", 1e-12, 1e3,
+                         "an accelerometer is frozen if its reading repeats while the IMUs rotate by this angle"});
     visit(p.thawed_after_s,
-          {"thawed_after_s", "s", 1e-12, 1e3, "of readings that change, after which a unit is in use again"});
+          {"thawed_after_s", "s", 1e-12, 1e3, "duration of changing readings after which a frozen IMU is used again"});
   }
 };
 
-/// A unit that is off from the median, as a mean over half a second, for so long that it is left out for good.
+/// A unit whose mean over half a second differs from the median for long enough is excluded permanently.
 struct DisagreeingImuParams {
   double rate_rad_s = 0.1;
-  double rate_share = 0.06;  ///< more, as a share of the rate
+  double rate_share = 0.06;  ///< additional, as a fraction of the rate
   double force_m_s2 = 1.0;
   double after_s = 0.3;
 
   template <class Self, class Visitor>
   static void fields(Self& p, Visitor& visit) {
     visit(p.rate_rad_s, {"disagree_rate_rad_s", "rad/s", 1e-12, 1e3,
-                         "a mean rate over half a second this far from the median disagrees"});
-    visit(p.rate_share, {"disagree_rate_share", "1", 0.0, 1.0, "and further, as a share of the rate"});
+                         "an IMU disagrees if its mean rate over 0.5 s is this far from the median"});
+    visit(p.rate_share, {"disagree_rate_share", "1", 0.0, 1.0,
+                         "additional accepted distance of the mean rate, as a share of the rate"});
     visit(p.force_m_s2, {"disagree_force_m_s2", "m/s^2", 1e-12, 1e4,
-                         "a mean force over half a second this far from the median disagrees"});
-    visit(p.after_s, {"disagrees_after_s", "s", 1e-12, 1e3, "for so long, to be left out"});
+                         "an IMU disagrees if its mean force over 0.5 s is this far from the median"});
+    visit(p.after_s, {"disagrees_after_s", "s", 1e-12, 1e3, "duration of disagreement after which an IMU is excluded"});
   }
 };
 
-/// What few need of ImuMergeParams, by meaning. Fields bear the names that they have in tables and on command lines.
+/// Parameters of ImuMergeParams that few users change, grouped by meaning. Field names equal those in tables and on
+/// command lines.
 struct ImuMergeExpertParams {
   ImuOutlierParams outliers = {};
   FrozenImuParams frozen = {};

@@ -3,14 +3,21 @@
 
 #include "tumble/common/parameters.hpp"
 
-/// Fields of each `Params` that says how well the lidar's mounting and clock are known.
+/// Fields shared by all `Params` that state the accuracy of the lidar's mounting and time offset.
 namespace tumble::calibration_fields {
 
 inline constexpr Field kMountSigma_rad{
-    "mount_sigma_rad", "rad", 0.0, 1.0, "the lidar's attitude on the IMU as given; 0: exact", Rank::first};
+    "mount_sigma_rad", "rad", 0.0, 1.0, "prior standard deviation of the lidar's orientation on the IMU; 0: exact",
+    Rank::first};
 inline constexpr Field kMountSigma_m{
-    "mount_sigma_m", "m", 0.0, 1.0, "the lidar's position on the IMU as given; 0: exact", Rank::first};
+    "mount_sigma_m", "m", 0.0, 1.0, "prior standard deviation of the lidar's position on the IMU; 0: exact",
+    Rank::first};
 inline constexpr Field kTimeOffsetSigma_s{
-    "time_offset_sigma_s", "s", 0.0, 0.02, "offset between the clocks of lidar and IMU; 0: none", Rank::first};
+    "time_offset_sigma_s",
+    "s",
+    0.0,
+    0.02,
+    "prior standard deviation of the time offset between lidar and IMU; 0: no offset",
+    Rank::first};
 
 }  // namespace tumble::calibration_fields

@@ -3,60 +3,67 @@
 
 #include "tumble/common/parameters.hpp"
 
-/// Groups of LidarInertialOdometry::Params::Expert: what the mapper takes for rest, at the start and later.
+/// Groups of LidarInertialOdometry::Params::Expert: detection of rest, at the start and later.
 namespace tumble {
 
-/// At rest (`mapper_rest.hpp`) the rate stays within rate_rad_s of the bias and of its mean, and the specific force
-/// within force_m_s2 of gravity and of its mean. During the rest at the start the robot is held still, and the mean
-/// rate becomes the gyro's bias.
+/// At rest (`mapper_rest.hpp`) the rate stays within rate_rad_s of the bias and of its mean. The specific force stays
+/// within force_m_s2 of gravity and of its mean. During the initial rest the robot is stationary, and the mean rate
+/// becomes the gyro's bias.
 struct RestBoundsParams {
-  double levels_s = 0.5;  ///< at most this much of the start is used to level the attitude
+  double levels_s = 0.5;  ///< maximum duration of the initial rest that is used for levelling
   double rate_rad_s = 0.05;
   double force_m_s2 = 0.5;
 
   template <class Self, class Visitor>
   static void fields(Self& p, Visitor& visit) {
     visit(p.levels_s,
-          {"rest_s", "s", 1e-9, 60.0, "at most this much of the rest at the start levels the attitude", Rank::first});
+          {"rest_s", "s", 1e-9, 60.0, "longest part of the initial rest that levels the attitude", Rank::first});
     visit(p.rate_rad_s, {"rest_rate_rad_s", "rad/s", 1e-6, 10.0,
-                         "at rest the rate is within this of the bias and of its mean, per axis"});
-    visit(p.force_m_s2,
-          {"rest_force_m_s2", "m/s^2", 1e-6, 10.0, "and the specific force within this of gravity and of its mean"});
+                         "at rest: largest distance of the rate from the bias and from its mean, per axis"});
+    visit(p.force_m_s2, {"rest_force_m_s2", "m/s^2", 1e-6, 10.0,
+                         "at rest: largest distance of the specific force from gravity and from its mean"});
   }
 };
 
-/// The start: an IMU levelled at rest, and how far the first sweeps may correct it.
+/// The start: an IMU levelled at rest, and the corrections that the first sweeps may apply.
 struct OdometryStartParams {
-  /// A weight and no error: five times the tilt that WorldCovarianceParams reports, for a rest that was none.
+  /// A weight, not an error: five times the tilt that WorldCovarianceParams reports. The larger value allows for a
+  /// start that was not at rest.
   double level_sigma_rad = 0.01;
-  double speed_sigma_m_s = 0.05;  ///< within what passes for rest
-  double bias_rest_s = 0.1;       ///< a shorter rest teaches no bias of the gyro
+  double speed_sigma_m_s = 0.05;  ///< residual speed of an apparent rest
+  double bias_rest_s = 0.1;       ///< minimum rest for an estimate of the gyro's bias
 
   template <class Self, class Visitor>
   static void fields(Self& p, Visitor& visit) {
-    visit(p.level_sigma_rad, {"level_sigma_rad", "rad", 1e-9, 1.0, "correction of the levelled tilt that is allowed"});
-    visit(p.speed_sigma_m_s, {"speed_sigma_m_s", "m/s", 1e-9, 100.0, "speed that passes for rest"});
-    visit(p.bias_rest_s, {"bias_rest_s", "s", 0.0, 60.0, "a shorter rest at the start teaches no bias of the gyro"});
+    visit(p.level_sigma_rad,
+          {"level_sigma_rad", "rad", 1e-9, 1.0, "standard deviation of corrections to the levelled tilt"});
+    visit(p.speed_sigma_m_s, {"speed_sigma_m_s", "m/s", 1e-9, 100.0, "largest speed that counts as rest"});
+    visit(p.bias_rest_s, {"bias_rest_s", "s", 0.0, 60.0, "shortest initial rest that calibrates the gyro bias"});
   }
 };
 
-/// A robot that is known not to move, be it at the start or by an IMU that says nothing but gravity.
+/// A stationary robot: at the start, or while the IMU measures only gravity.
 struct StandstillParams {
-  double start_sigma_m_s = 0.01;  ///< of the velocity, during the rest at the start
-  double sigma_m_s = 0.05;        ///< of the velocity, where the IMU says nothing but gravity
-  /// Believed slower than this such an IMU rests, where no surface holds it: a world that holds nothing lets it creep.
+  double start_sigma_m_s = 0.01;  ///< of the velocity, during the initial rest
+  double sigma_m_s = 0.05;        ///< of the velocity, while the IMU measures only gravity
+  /// While the IMU measures only gravity and no surface constrains it, it is stationary below this estimated speed. The
+  /// rule prevents slow drift in a world without features.
   double creep_max_m_s = 0.5;
-  int sweeps_min = 3;         ///< in a row before that is believed
-  double noise_share = 0.02;  ///< of the inertial prior's standard deviations in motion
+  int sweeps_min = 3;         ///< minimum number of consecutive sweeps for this rule
+  double noise_share = 0.02;  ///< fraction of the inertial prior's standard deviations in motion
 
   template <class Self, class Visitor>
   static void fields(Self& p, Visitor& visit) {
-    visit(p.start_sigma_m_s, {"start_sigma_m_s", "m/s", 1e-9, 100.0, "velocity during the rest at the start"});
-    visit(p.sigma_m_s, {"sigma_m_s", "m/s", 1e-9, 100.0, "velocity of an IMU that says nothing but gravity"});
-    visit(p.creep_max_m_s, {"creep_max_m_s", "m/s", 0.0, 100.0,
-                            "such an IMU rests where it is believed slower than this and no surface holds it"});
-    visit(p.sweeps_min, {"sweeps_min", "1", 1, 1e6, "in a row before that is believed"});
-    visit(p.noise_share, {"noise_share", "1", 1e-9, 1.0, "of the inertial prior's standard deviations in motion"});
+    visit(p.start_sigma_m_s,
+          {"start_sigma_m_s", "m/s", 1e-9, 100.0, "standard deviation of the velocity during the initial rest"});
+    visit(p.sigma_m_s,
+          {"sigma_m_s", "m/s", 1e-9, 100.0, "standard deviation of the velocity while the IMU measures only gravity"});
+    visit(p.creep_max_m_s,
+          {"creep_max_m_s", "m/s", 0.0, 100.0,
+           "an IMU that measures only gravity is at rest below this speed if no surface constrains the pose"});
+    visit(p.sweeps_min, {"sweeps_min", "1", 1, 1e6, "sweeps in a row before this rest is accepted"});
+    visit(p.noise_share, {"noise_share", "1", 1e-9, 1.0,
+                          "standard deviations of the inertial prediction at rest, as a share of those in motion"});
   }
 };
 

@@ -3,75 +3,92 @@
 
 #include "tumble/common/parameters.hpp"
 
-/// Groups of RollingParams::Expert: the floor. A field bears its whole name: groups add no prefix.
+/// Groups of RollingParams::Expert: the floor. Fields have unique names, so groups add no prefix.
 namespace tumble {
 
-/// The sphere on the floor: how closely it rolls, and what floors are like.
+/// Contact of sphere and floor: accuracy of the rolling constraint and properties of floors.
 struct RollingContactParams {
-  double grip_sigma_m_s = 3e-3;      ///< of the contact velocity while gripping
-  double grip_sigma_share = 1.5e-3;  ///< more, as a share of the rolling speed
+  double grip_sigma_m_s = 3e-3;      ///< standard deviation of the contact velocity while gripping
+  double grip_sigma_share = 1.5e-3;  ///< additional, as a fraction of the rolling speed
   double vertical_sigma_m_s = 8e-3;
-  double rough_share = 0.055;               ///< more on a rough floor, as a share of the rolling speed
-  double rough_radius_walk_m_sqrts = 1e-4;  ///< of the radius that it rolls with there
-  double slope_sigma = 0.15;                ///< of the sines of a slope, when one begins
+  double rough_share = 0.055;               ///< additional on a rough floor, as a fraction of the rolling speed
+  double rough_radius_walk_m_sqrts = 1e-4;  ///< random walk of the rolling radius on a rough floor
+  double slope_sigma = 0.15;                ///< of the sines of a slope when a slope begins
   double slope_walk_sqrts = 0.02;
-  double impact_share = 0.06;  ///< of the velocity that an impact gives: error of its timing and direction
-  /// A wheel that stays on the floor meets no impacts: mean of what one may give in a node.
+  double impact_share = 0.06;  ///< error of the timing and direction of an impact, as a fraction of its velocity change
+  /// Mean velocity change of an impact per node while rolling: a sphere that stays on the floor meets no strong
+  /// impacts.
   double unexplained_impact_m_s = 0.03;
   double rest_velocity_sigma_m_s = 2e-3;
   double rest_rate_sigma_rad_s = 3e-3;  ///< of a node's mean rate at rest
-  double speed_sigma_m_s = 1.0;  ///< where the velocity is lost it is about zero, by this of its mean over a second
+  double speed_sigma_m_s = 1.0;  ///< of the mean velocity over a second about zero, while the velocity is unknown
 
   template <class Self, class Visitor>
   static void fields(Self& p, Visitor& visit) {
-    visit(p.grip_sigma_m_s,
-          {"grip_sigma_m_s", "m/s", 1e-12, 1e3, "of the contact velocity while gripping", Rank::first});
-    visit(p.grip_sigma_share, {"grip_sigma_share", "1", 1e-12, 1e3, "and further, as a share of the rolling speed"});
-    visit(p.vertical_sigma_m_s, {"vertical_sigma_m_s", "m/s", 1e-12, 1e3, "of the vertical velocity while rolling"});
-    visit(p.rough_share, {"rough_share", "1", 1e-12, 1e3,
-                          "of the rolling speed: how fast a rough floor goes up and down", Rank::first});
-    visit(p.rough_radius_walk_m_sqrts,
-          {"rough_radius_walk_m_sqrts", "m/sqrt(s)", 0.0, 1.0, "of the radius that it rolls with there"});
-    visit(p.slope_sigma, {"slope_sigma", "1", 0.0, 1e3, "of the sines of a slope, when one begins"});
+    visit(p.grip_sigma_m_s, {"grip_sigma_m_s", "m/s", 1e-12, 1e3,
+                             "standard deviation of the contact velocity while gripping", Rank::first});
+    visit(p.grip_sigma_share,
+          {"grip_sigma_share", "1", 1e-12, 1e3, "additional standard deviation, as a share of the rolling speed"});
+    visit(p.vertical_sigma_m_s,
+          {"vertical_sigma_m_s", "m/s", 1e-12, 1e3, "standard deviation of the vertical velocity while rolling"});
+    visit(
+        p.rough_share,
+        {"rough_share", "1", 1e-12, 1e3,
+         "standard deviation of the vertical velocity on a rough floor, as a share of the rolling speed", Rank::first});
+    visit(p.rough_radius_walk_m_sqrts, {"rough_radius_walk_m_sqrts", "m/sqrt(s)", 0.0, 1.0,
+                                        "random walk of the effective rolling radius on a rough floor"});
+    visit(p.slope_sigma, {"slope_sigma", "1", 0.0, 1e3, "standard deviation of the sines of a slope when it begins"});
     visit(p.slope_walk_sqrts, {"slope_walk_sqrts", "sqrt(s)", 1e-12, 1e3, "random walk of the sines of a slope"});
     visit(p.impact_share,
-          {"impact_share", "1", 0.0, 1e3, "of the velocity that an impact gives: error of its timing and direction"});
-    visit(p.unexplained_impact_m_s, {"unexplained_impact_m_s", "m/s", 1e-12, 1e3,
-                                     "mean of what an impact may give in a node while the wheel stays on the floor"});
+          {"impact_share", "1", 0.0, 1e3,
+           "standard deviation of an impact's timing and direction, as a share of its velocity change"});
+    visit(p.unexplained_impact_m_s,
+          {"unexplained_impact_m_s", "m/s", 1e-12, 1e3,
+           "mean unexplained velocity change by impacts in a node while the sphere stays on the floor"});
     visit(p.rest_velocity_sigma_m_s,
-          {"rest_velocity_sigma_m_s", "m/s", 1e-12, 1e3, "of a node's mean velocity at rest"});
-    visit(p.rest_rate_sigma_rad_s, {"rest_rate_sigma_rad_s", "rad/s", 1e-12, 1e3, "of a node's mean rate at rest"});
+          {"rest_velocity_sigma_m_s", "m/s", 1e-12, 1e3, "standard deviation of a node's mean velocity at rest"});
+    visit(p.rest_rate_sigma_rad_s,
+          {"rest_rate_sigma_rad_s", "rad/s", 1e-12, 1e3, "standard deviation of a node's mean rate at rest"});
     visit(p.speed_sigma_m_s,
-          {"speed_sigma_m_s", "m/s", 1e-12, 1e3, "where the velocity is lost: of its mean over a second, about zero"});
+          {"speed_sigma_m_s", "m/s", 1e-12, 1e3,
+           "without velocity information: standard deviation of the mean velocity over 1 s about zero"});
   }
 };
 
-/// Change of mode, per second, and what is made of an event.
+/// Rates of mode changes, and rules for events.
 struct RollingModeParams {
   double slip_begins_per_s = 0.5, slip_ends_per_s = 2.0;
   double bump_begins_per_s = 0.3, bump_ends_per_s = 5.0;
   double slip_bump_per_s = 0.2;                                   ///< slip to bump and back
-  double incline_begins_per_s = 0.001, incline_ends_per_s = 0.1;  ///< from and to the level
+  double incline_begins_per_s = 0.001, incline_ends_per_s = 0.1;  ///< from and to the level floor
   double rough_begins_per_s = 0.02, rough_ends_per_s = 0.1;
-  double event_shortest_s = 0.06;  ///< least stay in slip or bump
-  /// By how much more than this the horizontal sigma grows in an event that is called uncertain.
+  double event_shortest_s = 0.06;  ///< minimum duration of slip or bump
+  /// An event is uncertain if it increases the horizontal standard deviation by more than this.
   double uncertain_m = 0.03;
 
   template <class Self, class Visitor>
   static void fields(Self& p, Visitor& visit) {
-    visit(p.slip_begins_per_s, {"slip_begins_per_s", "1/s", 1e-12, 1e3, "rate of grip changing to slip", Rank::first});
-    visit(p.slip_ends_per_s, {"slip_ends_per_s", "1/s", 1e-12, 1e3, "rate of slip changing to grip", Rank::first});
-    visit(p.bump_begins_per_s, {"bump_begins_per_s", "1/s", 1e-12, 1e3, "rate of grip changing to bump", Rank::first});
-    visit(p.bump_ends_per_s, {"bump_ends_per_s", "1/s", 1e-12, 1e3, "rate of bump changing to grip", Rank::first});
-    visit(p.slip_bump_per_s, {"slip_bump_per_s", "1/s", 1e-12, 1e3, "rate of slip changing to bump and back"});
+    visit(p.slip_begins_per_s,
+          {"slip_begins_per_s", "1/s", 1e-12, 1e3, "rate of transitions from grip to slip", Rank::first});
+    visit(p.slip_ends_per_s,
+          {"slip_ends_per_s", "1/s", 1e-12, 1e3, "rate of transitions from slip to grip", Rank::first});
+    visit(p.bump_begins_per_s,
+          {"bump_begins_per_s", "1/s", 1e-12, 1e3, "rate of transitions from grip to bump", Rank::first});
+    visit(p.bump_ends_per_s,
+          {"bump_ends_per_s", "1/s", 1e-12, 1e3, "rate of transitions from bump to grip", Rank::first});
+    visit(p.slip_bump_per_s,
+          {"slip_bump_per_s", "1/s", 1e-12, 1e3, "rate of transitions between slip and bump, each way"});
     visit(p.incline_begins_per_s,
-          {"incline_begins_per_s", "1/s", 1e-12, 1e3, "rate of a slope beginning", Rank::first});
-    visit(p.incline_ends_per_s, {"incline_ends_per_s", "1/s", 1e-12, 1e3, "rate of a slope ending"});
-    visit(p.rough_begins_per_s, {"rough_begins_per_s", "1/s", 1e-12, 1e3, "rate of a rough floor beginning"});
-    visit(p.rough_ends_per_s, {"rough_ends_per_s", "1/s", 1e-12, 1e3, "rate of a rough floor ending"});
-    visit(p.event_shortest_s, {"event_shortest_s", "s", 0.0, 10.0, "least stay in slip or bump", Rank::first});
+          {"incline_begins_per_s", "1/s", 1e-12, 1e3, "rate of transitions from level floor to slope", Rank::first});
+    visit(p.incline_ends_per_s,
+          {"incline_ends_per_s", "1/s", 1e-12, 1e3, "rate of transitions from slope to level floor"});
+    visit(p.rough_begins_per_s,
+          {"rough_begins_per_s", "1/s", 1e-12, 1e3, "rate of transitions from smooth to rough floor"});
+    visit(p.rough_ends_per_s,
+          {"rough_ends_per_s", "1/s", 1e-12, 1e3, "rate of transitions from rough to smooth floor"});
+    visit(p.event_shortest_s, {"event_shortest_s", "s", 0.0, 10.0, "shortest duration of a slip or bump", Rank::first});
     visit(p.uncertain_m, {"uncertain_m", "m", 1e-12, 1e3,
-                          "an event in which the horizontal sigma grows by much more than this is called uncertain"});
+                          "growth of the horizontal standard deviation above which an event is reported as uncertain"});
   }
 };
 

@@ -3,10 +3,10 @@
 
 #include "tumble/common/parameters.hpp"
 
-/// Groups of RollingParams::Expert: the IMU in the sphere. A field bears its whole name: groups add no prefix.
+/// Groups of RollingParams::Expert: the IMU in the sphere. Fields have unique names, so groups add no prefix.
 namespace tumble {
 
-/// Prior standard deviations. Zero: known.
+/// Prior standard deviations. Zero: exactly known.
 struct RollingPriorParams {
   double tilt_sigma_rad = 6e-3;
   double velocity_sigma_m_s = 2e-3;
@@ -14,91 +14,99 @@ struct RollingPriorParams {
   double accel_bias_sigma_m_s2 = 0.04;
   double accel_scale_sigma = 3.5e-3;  ///< each entry of scale and misalignment
   double gyro_scale_sigma = 2.5e-3;
-  double accel_delay_sigma_s = 3e-3;  ///< accelerometer later than gyro
-  /// A first reading that turns faster than this was taken in motion: attitude and velocity are then known by that much
-  /// less.
+  double accel_delay_sigma_s = 3e-3;  ///< delay of the accelerometer relative to the gyro
+  /// A larger first rate means a start in motion. The initial uncertainty of attitude and velocity is then increased
+  /// accordingly.
   double start_rate_rad_s = 0.1;
 
   template <class Self, class Visitor>
   static void fields(Self& p, Visitor& visit) {
-    visit(p.tilt_sigma_rad,
-          {"tilt_sigma_rad", "rad", 0.0, 1e3, "prior of the levelling by the first sample", Rank::first});
-    visit(p.velocity_sigma_m_s, {"velocity_sigma_m_s", "m/s", 0.0, 1e3, "prior of the velocity at the start"});
+    visit(p.tilt_sigma_rad, {"tilt_sigma_rad", "rad", 0.0, 1e3,
+                             "prior standard deviation of the tilt from the first sample", Rank::first});
+    visit(p.velocity_sigma_m_s,
+          {"velocity_sigma_m_s", "m/s", 0.0, 1e3, "prior standard deviation of the initial velocity"});
     visit(p.gyro_bias_sigma_rad_s,
-          {"gyro_bias_sigma_rad_s", "rad/s", 0.0, 1e3, "prior of the gyro's bias", Rank::first});
-    visit(p.accel_bias_sigma_m_s2,
-          {"accel_bias_sigma_m_s2", "m/s^2", 0.0, 1e3, "prior of the accelerometer's bias", Rank::first});
+          {"gyro_bias_sigma_rad_s", "rad/s", 0.0, 1e3, "prior standard deviation of the gyro bias", Rank::first});
+    visit(p.accel_bias_sigma_m_s2, {"accel_bias_sigma_m_s2", "m/s^2", 0.0, 1e3,
+                                    "prior standard deviation of the accelerometer bias", Rank::first});
     visit(p.accel_scale_sigma,
-          {"accel_scale_sigma", "1", 0.0, 1e3, "prior of each entry of the accelerometer's scale and misalignment"});
-    visit(p.gyro_scale_sigma,
-          {"gyro_scale_sigma", "1", 0.0, 1e3, "prior of each entry of the gyro's scale and misalignment"});
-    visit(p.accel_delay_sigma_s,
-          {"accel_delay_sigma_s", "s", 0.0, 1e3, "prior of how much later the accelerometer is than the gyro"});
+          {"accel_scale_sigma", "1", 0.0, 1e3,
+           "prior standard deviation of each entry of the accelerometer's scale and misalignment"});
+    visit(p.gyro_scale_sigma, {"gyro_scale_sigma", "1", 0.0, 1e3,
+                               "prior standard deviation of each entry of the gyro's scale and misalignment"});
+    visit(p.accel_delay_sigma_s, {"accel_delay_sigma_s", "s", 0.0, 1e3,
+                                  "prior standard deviation of the accelerometer's delay relative to the gyro"});
     visit(p.start_rate_rad_s,
-          {"start_rate_rad_s", "rad/s", 1e-12, 10.0, "a first reading that turns faster was taken in motion"});
+          {"start_rate_rad_s", "rad/s", 1e-12, 10.0, "rate above which the first reading counts as motion"});
   }
 };
 
 /// Noise of the IMU.
 struct RollingImuNoiseParams {
   double attitude_walk_rad_sqrts = 1e-4;  ///< 0.006 deg/sqrt(s)
-  double rate_error_sqrts = 6e-4;         ///< per rad/s turned
+  double rate_error_sqrts = 6e-4;         ///< per rad/s of rotation
   double velocity_walk_m_s_sqrts = 6e-3;
-  double spin_force_sqrts = 4e-5;  ///< velocity walk more, per (rad/s)^2 turned: what errors make of large forces
+  double spin_force_sqrts = 4e-5;  ///< additional velocity random walk per (rad/s)^2: errors of large forces
   double gyro_bias_walk_rad_s_sqrts = 1.7e-5;
   double accel_bias_walk_m_s2_sqrts = 2e-3;
 
   template <class Self, class Visitor>
   static void fields(Self& p, Visitor& visit) {
     visit(p.attitude_walk_rad_sqrts, {"attitude_walk_rad_sqrts", "rad/sqrt(s)", 1e-12, 1e3, "angle random walk"});
-    visit(p.rate_error_sqrts, {"rate_error_sqrts", "sqrt(s)", 1e-12, 1e3, "angle random walk per rad/s turned"});
+    visit(p.rate_error_sqrts, {"rate_error_sqrts", "sqrt(s)", 1e-12, 1e3, "angle random walk per rad/s of rate"});
     visit(p.velocity_walk_m_s_sqrts, {"velocity_walk_m_s_sqrts", "m/s/sqrt(s)", 1e-12, 1e3, "velocity random walk"});
-    visit(p.spin_force_sqrts, {"spin_force_sqrts", "m/s/sqrt(s)/(rad/s)^2", 0.0, 1e3,
-                               "velocity walk more, per (rad/s)^2 turned: what errors make of large forces"});
+    visit(p.spin_force_sqrts,
+          {"spin_force_sqrts", "m/s/sqrt(s)/(rad/s)^2", 0.0, 1e3,
+           "additional velocity random walk per (rad/s)^2 of rate, from sensor errors under large forces"});
     visit(p.gyro_bias_walk_rad_s_sqrts,
-          {"gyro_bias_walk_rad_s_sqrts", "rad/s/sqrt(s)", 1e-12, 1e3, "random walk of the gyro's bias"});
+          {"gyro_bias_walk_rad_s_sqrts", "rad/s/sqrt(s)", 1e-12, 1e3, "random walk of the gyro bias"});
     visit(p.accel_bias_walk_m_s2_sqrts,
-          {"accel_bias_walk_m_s2_sqrts", "m/s^2/sqrt(s)", 1e-12, 1e3, "random walk of the accelerometer's bias"});
+          {"accel_bias_walk_m_s2_sqrts", "m/s^2/sqrt(s)", 1e-12, 1e3, "random walk of the accelerometer bias"});
   }
 };
 
-/// Clipped readings say no more than that: how short they may be.
+/// Saturated readings: standard deviation of the saturation deficit.
 struct RollingRailParams {
   double clipped_rate_sigma_rad_s = 5.0;
-  /// Above zero: a rate beyond the range that no flag calls clipped was recovered (ImuMerge) to this.
+  /// Standard deviation of unflagged rates beyond the range, which ImuMerge recovered. 0: rates are not recovered.
   double recovered_rate_sigma_rad_s = 0.0;
   double clipped_force_sigma_m_s2 = 4.0;
-  /// An impact within one sample may have met the accelerometer's rail though its mean did not: sigma of what is
-  /// missing along the force, as a share of it; full from 0.6 of the range on, none up to 0.3.
+  /// Standard deviation of the force that subsample saturation removes, as a fraction of the force. A short impact may
+  /// saturate the accelerometer within a sample although the mean stays below the range. The full value applies from
+  /// 0.6 of the range on, and none below 0.3.
   double subsample_saturation_share = 0.25;
 
   template <class Self, class Visitor>
   static void fields(Self& p, Visitor& visit) {
     visit(p.clipped_rate_sigma_rad_s,
-          {"clipped_rate_sigma_rad_s", "rad/s", 1e-12, 1e3, "how short a clipped rate may be"});
+          {"clipped_rate_sigma_rad_s", "rad/s", 1e-12, 1e3, "standard deviation of the rate beyond the rail"});
     visit(p.recovered_rate_sigma_rad_s,
           {"recovered_rate_sigma_rad_s", "rad/s", 0.0, 1e3,
-           "of a rate beyond the range that was recovered from several IMUs; 0: none is"});
+           "standard deviation of a rate beyond the range that was recovered from several IMUs; 0: no recovery"});
     visit(p.clipped_force_sigma_m_s2,
-          {"clipped_force_sigma_m_s2", "m/s^2", 1e-12, 1e3, "how short a clipped force may be"});
-    visit(p.subsample_saturation_share, {"subsample_saturation_share", "1", 0.0, 10.0,
-                                         "of an impact within one sample: what its mean may lack, as a share of it"});
+          {"clipped_force_sigma_m_s2", "m/s^2", 1e-12, 1e3, "standard deviation of the force beyond the rail"});
+    visit(p.subsample_saturation_share,
+          {"subsample_saturation_share", "1", 0.0, 10.0,
+           "standard deviation of the mean force of an impact within one sample, as a share of it"});
   }
 };
 
-/// Gaps. Between two readings further apart than gap_from_s nothing is known of the force; the rate is taken to have
-/// gone straight from the one to the other, give or take what an angular acceleration of gap_acceleration_rad_s2 does.
+/// Gaps. If two readings are further apart than gap_from_s, the force between them is unknown. The rate is interpolated
+/// linearly, with the uncertainty of an angular acceleration of gap_acceleration_rad_s2.
 struct RollingGapParams {
   double gap_from_s = 0.06;
-  double gap_max_s = 1.0;  ///< a longer one ends the run
+  double gap_max_s = 1.0;  ///< a longer gap ends the run
   double gap_acceleration_rad_s2 = 15.0;
 
   template <class Self, class Visitor>
   static void fields(Self& p, Visitor& visit) {
-    visit(p.gap_from_s, {"gap_from_s", "s", 1e-9, 1.0, "between readings further apart nothing is known of the force"});
-    visit(p.gap_max_s, {"gap_max_s", "s", 1e-9, 1.0, "longest time between two samples before the run is refused"});
+    visit(p.gap_from_s,
+          {"gap_from_s", "s", 1e-9, 1.0, "time between readings above which the force between them is unknown"});
+    visit(p.gap_max_s, {"gap_max_s", "s", 1e-9, 1.0,
+                        "longest allowed time between two samples; a longer gap ends the run with an error"});
     visit(p.gap_acceleration_rad_s2,
-          {"gap_acceleration_rad_s2", "rad/s^2", 1e-12, 1e4, "what the rate does in a gap beside going straight"});
+          {"gap_acceleration_rad_s2", "rad/s^2", 1e-12, 1e4,
+           "standard deviation of the angular acceleration during a gap, about a linear change of rate"});
   }
 };
 
