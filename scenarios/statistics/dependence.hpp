@@ -20,7 +20,7 @@ struct Correlation {
 };
 
 /// Returns Spearman's rank correlation with the interval of Bonett and Wright (Psychometrika 65:23, 2000),
-/// statistics.md (S12), and the p-value of Student's distribution, (S13). Ignores pairs with NaN. The full interval
+/// statistics.md (S16), and the p-value of Student's distribution, (S17). Ignores pairs with NaN. The full interval
 /// [-1, 1] results for fewer than four pairs or a constant variable. Throws BadInput if the lengths differ.
 Correlation rank_correlation(std::span<const double> x, std::span<const double> y);
 
@@ -31,9 +31,9 @@ struct FirstOrder {
 };
 
 /// Estimates the first-order (Sobol') index of y by x from given data, whatever else y depends on. The index is the
-/// variance of class means over equally large classes of x, statistics.md (S14), minus its expectation without
-/// dependence, (S15). Source: Plischke, Borgonovo, Smith, EJOR 226:536, 2013. If x takes few values, each is a class.
-/// If y are ranks, the p-value, (S16), is that of the Kruskal-Wallis test.
+/// variance of class means over equally large classes of x, statistics.md (S18), minus its expectation without
+/// dependence, (S19). Source: Plischke, Borgonovo, Smith, EJOR 226:536, 2013. If x takes few values, each is a class.
+/// If y are ranks, the p-value, (S20), is that of the Kruskal-Wallis test.
 ///
 /// y must be finite; pairs with NaN are ignored. Needs at least 24 pairs. Throws BadInput if the lengths differ.
 FirstOrder first_order_index(std::span<const double> x, std::span<const double> y);

@@ -8,10 +8,10 @@ namespace tumble::scenarios {
 
 /// Returns the part of a two-sided risk that one side may have spent after `share` in [0, 1] of all draws: almost
 /// nothing at first, half of `risk` at the end (Lan and DeMets, Biometrika 70:659, 1983, with O'Brien and Fleming's
-/// bounds), statistics.md (S19).
+/// bounds), statistics.md (S13).
 double spent_by(double risk, double share);
 
-/// Sign test with interim analyses (Armitage, McPherson, Rowe, JRSS A 132:235, 1969), statistics.md (S19) to (S21). At
+/// Sign test with interim analyses (Armitage, McPherson, Rowe, JRSS A 132:235, 1969), statistics.md (S13) to (S15). At
 /// each look both sides get a bound. The probability of reaching a bound by this look, without a difference, is at most
 /// the risk that may have been spent. The probabilities are exact: they use the distribution of sign sums that passed
 /// no earlier bound. Zero differences are ignored. The number and times of looks are free if they do not depend on the

@@ -27,7 +27,7 @@ void set_system(const SensorErrorEvidence& evidence, const Vector& deviation, do
   }
 }
 
-// rate_stream.md (R103); NaN if the evidence is indefinite
+// rate_stream.md (R102); NaN if the evidence is indefinite
 double log_odds(const SensorErrorEvidence& evidence, const Vector& deviation, Matrix& system) {
   set_system(evidence, deviation, kDoubtBelievedOfOdds, system);
   const Eigen::LLT<Eigen::Ref<Matrix>> factor(system);
@@ -36,7 +36,7 @@ double log_odds(const SensorErrorEvidence& evidence, const Vector& deviation, Ma
   return 0.5 * z.dot(factor.solve(z)) - system.diagonal().array().log().sum();
 }
 
-// rate_stream.md (R103): cov_i + m_i m_i' of one device; false if the evidence is indefinite
+// rate_stream.md (R102): cov_i + m_i m_i' of one device; false if the evidence is indefinite
 bool about_corrected(const SensorErrorEvidence& evidence, const Vector& deviation, DeviceDoubt::Work& work) {
   constexpr int kRest = SensorErrors::kSize - SensorErrors::kFelt;
   constexpr double kBelieved = DeviceDoubt::kBelieved;

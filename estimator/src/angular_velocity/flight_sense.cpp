@@ -59,7 +59,7 @@ constexpr std::array<Sense, FlightSense::kSenses> kSensors = {{
     {kAsRead, kTwice, "seconds of flight as a gyro reads it that reads half the rate"},
 }};
 
-/// imu_merge.md (I29). Converts a reading to that of the alternative sensor. `known` if the rate of a saturated axis
+/// imu_merge.md (I32). Converts a reading to that of the alternative sensor. `known` if the rate of a saturated axis
 /// follows from |w x t|^2 = -f t and is beyond the level.
 FlightSense::Reading as_read(const FlightSense::Reading& reading, const Sense& sense, const Eigen::Vector3d& t) {
   FlightSense::Reading out = reading;
@@ -83,7 +83,7 @@ FlightSense::Reading as_read(const FlightSense::Reading& reading, const Sense& s
   return out;
 }
 
-/// imu_merge.md (I28). Returns whether the middle one of three readings is flight under an alternative.
+/// imu_merge.md (I31). Returns whether the middle one of three readings is flight under an alternative.
 bool flies(const Sense& sense, const std::array<FlightSense::Reading, 3>& readings, const FlightSense::Params& params) {
   const Eigen::Vector3d& t = params.lever_arm_m;
   const FlightSense::Reading first = as_read(readings[0], sense, t), middle = as_read(readings[1], sense, t),

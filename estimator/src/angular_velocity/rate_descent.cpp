@@ -18,10 +18,10 @@ constexpr double kOtherStarts[] = {16.0, 0.25};
 constexpr double kFlightShareExpected = 0.5;
 
 // Convergence: the last step changes no combination of unknowns by more than this many standard deviations:
-// rate_smoother.md (R45). A nearly unknown rate may still change by much.
+// rate_smoother.md (R30). A nearly unknown rate may still change by much.
 constexpr double kStepDeviations = 0.1;
 
-// rate_smoother.md (R22) to (R25); the jump is the smaller one of (R23).
+// rate_smoother.md (R16) to (R19); the jump is the smaller one of (R17).
 void weigh_all(const RateModel& model, std::span<const RateObservation> observations, const RigConstants& rig,
                const RigConstants::Matrix& rig_covariance, double widen, std::span<RateEstimate> estimates) {
   double before = std::numeric_limits<double>::max();
@@ -82,7 +82,7 @@ bool descend(const RateSmoother::Params& params, const RateModel& model, std::sp
 }
 
 // Measures how well free flight explains what the gyro does not measure, by the part of the robust cost that differs
-// between local minima, rate_smoother.md (R43). `share`: fraction of these samples that count as flight.
+// between local minima, rate_smoother.md (R31). `share`: fraction of these samples that count as flight.
 double explained(std::span<const RateObservation> observations, std::span<const RateEstimate> estimates,
                  double& share) {
   double sum = 0.0, unseen = 0.0, flight = 0.0;
@@ -98,7 +98,7 @@ double explained(std::span<const RateObservation> observations, std::span<const 
 
 }  // namespace
 
-// Eliminates the system of rate_smoother.md (R28) from the first sample on.
+// Eliminates the system of rate_smoother.md (R26) from the first sample on.
 bool RateIteration::factorise(const RateModel& model, std::span<const RateEstimate> estimates,
                               const RigConstants& rig) {
   corner_ = {};
@@ -117,7 +117,7 @@ bool RateIteration::factorise(const RateModel& model, std::span<const RateEstima
   return arrow::solve_corner(corner_, rig_step_, rig_covariance_);
 }
 
-// g' H^-1 g, block by block: rate_smoother.md (R45). Blocks contain L^-1 g after elimination.
+// g' H^-1 g, block by block: rate_smoother.md (R30). Blocks contain L^-1 g after elimination.
 double RateIteration::decrement() const {
   double sum = rig_step_.dot(corner_.gradient);
   for (const arrow::Block& block : blocks_) sum += block.gradient.squaredNorm();
@@ -142,7 +142,7 @@ double RateIteration::apply(const RateModel& model, double step_max, std::span<R
   return largest;
 }
 
-// rate_smoother.md (R36), (R37), (R37a)
+// rate_smoother.md (R37), (R38), (R39)
 RateIteration::Moved RateIteration::moved_by_errors(const RateModel& model, std::span<const RateEstimate> estimates,
                                                     const RigConstants& rig) const {
   Moved out;

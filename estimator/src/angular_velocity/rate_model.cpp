@@ -72,14 +72,14 @@ Eigen::Matrix3d euler_spread(const RateFactor& f, const RigConstants::Matrix& ri
 }
 
 // Squared residual normalised by its covariance, from the sensor and from the uncertain calibration: rate_smoother.md
-// (R22).
+// (R16).
 double normalised(const RateFactor& f, Eigen::Matrix3d spread, double sigma, const Vector3d& more = Vector3d::Zero()) {
   spread.diagonal().array() += sigma * sigma;
   spread.diagonal() += more;
   return f.residual.dot(spread.inverse() * f.residual);
 }
 
-// Mahalanobis distance of one part of the constants, divided by the root of its size: rate_smoother.md (R4)
+// Mahalanobis distance of one part of the constants, divided by the root of its size: rate_smoother.md (R32)
 template <int kFirst, int kCount>
 double mahalanobis(const RigConstants::Vector& moved, const RigConstants::Matrix& covariance) {
   const Eigen::Matrix<double, kCount, 1> part = moved.segment<kCount>(kFirst);
@@ -137,7 +137,7 @@ RateModel::RateModel(const RateModelParams& params, double period_s) : params_(p
   check(params);
   require_within("period_s", period_s, 1e-6, 10.0);
   const double bandwidth_hz = 1.0 / period_s;
-  gyro_sigma_rad_s_ = params.gyro_noise_density * std::sqrt(bandwidth_hz);  // rate_smoother.md (R5)
+  gyro_sigma_rad_s_ = params.gyro_noise_density * std::sqrt(bandwidth_hz);  // rate_smoother.md (R6)
   accel_noise_m_s2_ = params.accel_noise_density * std::sqrt(bandwidth_hz);
   accel_sigma_m_s2_ = std::hypot(params.expert.flight.sigma_m_s2, accel_noise_m_s2_);
   share_ = std::min(1.0, period_s / params.expert.model_error_s);
@@ -161,10 +161,10 @@ void RateModel::weigh(const RateObservation& observation, const RigConstants& ri
                     normalised(euler, euler_spread(euler, rig_covariance), params_.expert.flight.euler_sigma_rad_s2) +
                     jump;
   const double threshold = widen * params_.expert.flight.threshold;
-  // Geman-McClure, rate_smoother.md (R24): the gradient of an outlier decreases with the cube of its size
+  // Geman-McClure, rate_smoother.md (R18): the gradient of an outlier decreases with the cube of its size
   const double ratio = 1.0 / (1.0 + r2 / (threshold * threshold));
   estimate.flight_weight = ratio * ratio;
-  // the residual is model minus reading: rate_smoother.md (R25)
+  // the residual is model minus reading: rate_smoother.md (R19)
   estimate.contact_m_s2 = (estimate.flight_weight - 1.0) * flight.residual;
 }
 
@@ -179,7 +179,7 @@ double RateModel::accel_variance_together(const RateObservation& observation) co
   return share_ < 1.0 ? noise2 + (single * single - noise2) / share_ : single * single;
 }
 
-// The step normalised by its covariance in flight: rate_smoother.md (R23), (R20).
+// The step normalised by its covariance in flight: rate_smoother.md (R17), (R4).
 double RateModel::jump(const RateKnot& from, const RateKnot& to, double dt_s) const {
   const Vector3d e0 = from.rate_rad_s + dt_s * from.acceleration_rad_s2 - to.rate_rad_s;
   const Vector3d e1 = dt_s * (from.acceleration_rad_s2 - to.acceleration_rad_s2);
@@ -190,7 +190,7 @@ double RateModel::jump(const RateKnot& from, const RateKnot& to, double dt_s) co
 double RateModel::gyro_information(const RateObservation& observation, const RateEstimate& estimate, int axis) const {
   if (observation.gyro_repeats) return 0.0;
   if (observation.gyro_age_s > 0.0) {
-    // change of the rate by contact since the reading was taken: rate_smoother.md (R6)
+    // change of the rate by contact since the reading was taken: rate_smoother.md (R7)
     const double change = params_.expert.contact.gain_rad_m * estimate.contact_m_s2.norm() * observation.gyro_age_s;
     const double lost = (observation.read_in_part() >> axis & 1u) != 0 ? observation.lost_sigma_rad_s[axis] : 0.0;
     return 1.0 / (gyro_sigma_rad_s_ * gyro_sigma_rad_s_ + change * change + lost * lost);
@@ -200,7 +200,7 @@ double RateModel::gyro_information(const RateObservation& observation, const Rat
   return 1.0 / (lost * lost + impact * impact);
 }
 
-// In contact, the force has a prior with its current magnitude as standard deviation: rate_smoother.md (R26). Smaller
+// In contact, the force has a prior with its current magnitude as standard deviation: rate_smoother.md (R20). Smaller
 // forces are thus more probable explanations of an unmeasured rate.
 RateModel::ForceFactor RateModel::force_factor(const RateObservation& observation, const RateEstimate& estimate,
                                                const RigConstants& rig) const {
@@ -275,7 +275,7 @@ void RateModel::add_sample(const RateObservation& observation, const RateEstimat
   }
 }
 
-// A force through one point of the body has no torque about its own direction: rate_smoother.md (R19).
+// A force through one point of the body has no torque about its own direction: rate_smoother.md (R21).
 Eigen::Matrix3d RateModel::euler_information(const RateEstimate& estimate) const {
   const double flight = params_.expert.flight.euler_sigma_rad_s2 * params_.expert.flight.euler_sigma_rad_s2;
   const double force = estimate.contact_m_s2.norm(), lever = params_.expert.contact.lever_rad_m * force;
@@ -290,10 +290,10 @@ void RateModel::add_step(const RateEstimate& from, const RateEstimate& to, doubl
                          arrow::Block& next) const {
   const double h = time_scale_s_, ratio = dt_s / h;
   // a contact may change the angular acceleration by gain * force within one step of model_error_s, and proportionally
-  // less in shorter steps: rate_smoother.md (R21)
+  // less in shorter steps: rate_smoother.md (R5)
   const double change = params_.expert.contact.gain_rad_m * std::max(from.contact_m_s2.norm(), to.contact_m_s2.norm());
   const double psd = params_.expert.flight.jerk_psd_rad2_s5 + share_ * change * change / dt_s;
-  // inverse of Q = psd [dt^3/3, dt^2 h/2; dt^2 h/2, dt h^2] of the scaled state: rate_smoother.md (R20)
+  // inverse of Q = psd [dt^3/3, dt^2 h/2; dt^2 h/2, dt h^2] of the scaled state: rate_smoother.md (R4)
   const double a = 12.0 / (psd * dt_s * dt_s * dt_s), b = -6.0 / (psd * dt_s * dt_s * h),
                c = 4.0 / (psd * dt_s * h * h);
   for (int j = 0; j < 3; ++j) {

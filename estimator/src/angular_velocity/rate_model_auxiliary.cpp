@@ -50,7 +50,7 @@ void RateModel::add_auxiliary_imus(const RateObservation& observation, const Rat
     const AuxiliaryImu& mount = params_.auxiliary_imus[i];
     const AuxiliaryReading& reading = observation.auxiliary_imus[i];
     const Eigen::Matrix3d R_CI = mount.T_IC.linear().transpose();
-    // the lever from the primary replaces that from the centre of mass, rate_smoother.md (R27)
+    // the lever from the primary replaces that from the centre of mass, rate_smoother.md (R15)
     const RateFactor rotation =
         flight_factor(estimate.knot, {.lever_arm_m = mount.T_IC.translation()}, Vector3d::Zero());
     const Vector3d force = observation.sample.specific_force_m_s2 - rig.accel_bias_m_s2 + rotation.residual;

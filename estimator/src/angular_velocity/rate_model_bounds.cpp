@@ -92,7 +92,7 @@ void RateModel::update_bounds(const RateObservation& observation, const RigConst
     for (int i = 0; i < 3; ++i) by_rig += row[i] * conditional.by_border.row(i);
     const Eigen::Matrix<double, 1, RigConstants::kSize> cross = by_rig.lazyProduct(rig_covariance);
     const Vector3d by_state = conditional.state.topLeftCorner<3, 3>().lazyProduct(row);
-    // mirrored so that the bound is below: rate_smoother.md (R9); variance as in (R34)
+    // mirrored so that the bound is below: rate_smoother.md (R22); variance as in (R35)
     const NormalMoments marginal{sign * off.residual[j], row.dot(by_state) + cross.dot(by_rig)};
     const NormalSite site =
         refined_bound(marginal, {estimate.bound_precision[j], sign * estimate.bound_shift[j]}, 0.0,

@@ -28,7 +28,7 @@ void RateModel::keep_from_rig(const RateObservation& o, RateFactor& flight) {
   }
 }
 
-// The rate to which a reading refers: rate_smoother.md (R6).
+// The rate to which a reading refers: rate_smoother.md (R7).
 RateKnot RateModel::at_reading(const RateObservation& observation, const RateEstimate& estimate) const {
   const RateKnot& knot = estimate.knot;
   return {knot.rate_rad_s - observation.gyro_age_s * knot.acceleration_rad_s2, knot.acceleration_rad_s2};
@@ -48,7 +48,7 @@ RateFactor RateModel::flight(const RateObservation& observation, const RateKnot&
   if (exact_ && delay_s == 0.0 && by_delay == nullptr) return flight_factor(knot, rig, reading);
   const Vector3d force = reading - params_.errors.accel * reading;
   RateFactor out = late_flight_factor(knot, rig, force, delay_s, by_delay);
-  // small compared with the rest, so its derivatives are neglected: rate_smoother.md (R17)
+  // small compared with the rest, so its derivatives are neglected: rate_smoother.md (R13)
   out.residual += 0.5 * params_.errors.accel_blur_s2 * flight_curvature(knot, rig);
   return out;
 }
@@ -63,7 +63,7 @@ RateFactor RateModel::flight_by_rig(const RateObservation& observation, const Ra
   return out;
 }
 
-// rate_smoother.md (R35), and the sums over samples of (R37)
+// rate_smoother.md (R36), and the sums over samples of (R38)
 void RateModel::add_errors(const RateObservation& observation, const RateEstimate& estimate, const RigConstants& rig,
                            arrow::ErrorMatrix& block, arrow::BorderErrors& border, SensorErrorEvidence& evidence,
                            bool doubted) const {
@@ -124,7 +124,7 @@ void RateModel::add_errors(const RateObservation& observation, const RateEstimat
   }
 }
 
-// rate_smoother.md (R42)
+// rate_smoother.md (R49)
 Eigen::Matrix3d RateModel::reported(const Eigen::Matrix3d& covariance, const RateObservation& observation,
                                     const RateEstimate& estimate) const {
   const double factor = 1.0 + (params_.expert.contact.sigma_factor - 1.0) * (1.0 - estimate.flight_weight);

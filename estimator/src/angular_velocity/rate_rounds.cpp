@@ -68,7 +68,7 @@ RateModelParams held(const RateModelParams& params, const RateModel& model) {
   return out;
 }
 
-// Distance of the constants from their prior, rate_smoother.md (R4), including changes due to sensor errors.
+// Distance of the constants from their prior, rate_smoother.md (R32), including changes due to sensor errors.
 double mahalanobis_of(const RateModelParams& known, const RateModel& model, double period_s,
                       std::span<const RateObservation> observations, const RateSolution& solution) {
   RateIteration again(observations);
@@ -114,7 +114,7 @@ Status descend_held(const RateSmoother::Params& params, const RateModelParams& k
 // A guessed delay further from the assumed one, in standard deviations, becomes the initial value.
 constexpr double kGuessFar = 2.0;
 
-// Adds the evidence from impacts, which the flight model does not use, to rate_smoother.md (R37).
+// Adds the evidence from impacts, which the flight model does not use, to rate_smoother.md (R38).
 void add_guess(const TriadDelay& guess, SensorErrorEvidence& evidence) {
   if (!(guess.sigma_s > 0.0)) return;
   const double information = 1.0 / (guess.sigma_s * guess.sigma_s);

@@ -27,7 +27,7 @@ std::vector<std::optional<HeldRate>> read_in_time(std::span<const ImuSample> sam
   return rates_between_readings(samples, hidden, readings.gyro_held);
 }
 
-// Contribution of the sensor errors' uncertainty to a rate, limited to the largest rate: rate_smoother.md (R41).
+// Contribution of the sensor errors' uncertainty to a rate, limited to the largest rate: rate_smoother.md (R44).
 Eigen::Matrix3d open_of_errors(const arrow::ErrorMatrix& moved, const SensorErrors::Matrix& covariance,
                                double rate_max_rad_s) {
   const Eigen::Matrix<double, 3, SensorErrors::kSize> rates = moved.topRows<3>(), spread = rates * covariance;

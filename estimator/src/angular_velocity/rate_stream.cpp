@@ -144,7 +144,7 @@ void RateStream::predict_covariance(State& state) const {
   newest.covariance_rad2_s2 += sigma.cwiseAbs2().asDiagonal();
 }
 
-// rate_stream.md (R90); the final weight by rate_smoother.md (R22) to (R25), short flights by rate_stream.md (R92).
+// rate_stream.md (R90); the final weight by rate_smoother.md (R16) to (R19), short flights by rate_stream.md (R92).
 void RateStream::marginalise(std::size_t first, State& state) const {
   Knot& oldest = state.window[first];
   const Knot& next = state.window[first + 1];
@@ -289,7 +289,7 @@ void RateStream::weigh(State& state) const {
   }
 }
 
-// rate_smoother.md (R28) to (R34) over the window.
+// rate_smoother.md (R26) to (R35) over the window.
 bool RateStream::step(State& state) const {
   const std::size_t count = state.window.size();
   std::vector<arrow::Block>& blocks = state.work;
@@ -336,7 +336,7 @@ bool RateStream::step(State& state) const {
   return true;
 }
 
-// rate_stream.md (R93)
+// rate_stream.md (R97)
 RigConstants::Matrix RateStream::inflated(const State& state) const {
   if (params_.model.calibration) return state.rig_covariance;
   const double samples =

@@ -66,7 +66,7 @@ std::ptrdiff_t RateStream::force_shift(const State& state) const {
   return std::lround(state.device.front().delay.in_use_s / params_.period_s);
 }
 
-// Sets the force at the time of sample k, or the closest available one, and its remaining delay. rate_stream.md (R108)
+// Sets the force at the time of sample k, or the closest available one, and its remaining delay. rate_stream.md (R105)
 void RateStream::pair_force(std::size_t k, State& state) const {
   Knot& knot = state.window[k];
   const auto last = static_cast<std::ptrdiff_t>(state.window.size()) - 1;
@@ -92,7 +92,7 @@ std::size_t RateStream::pair_newest(State& state) const {
 }
 
 // Adds the interval between two readings as far back in the window as the maximum delay, when their clipping is known.
-// rate_stream.md (R107)
+// rate_stream.md (R104)
 void RateStream::count_strokes(State& state) const {
   if (!delay_open_ || state.window.size() < ForceAbout::kReadings) return;
   const std::size_t first = state.window.size() - ForceAbout::kReadings, after = first + kBeside + 1;
@@ -120,7 +120,7 @@ TriadDelay RateStream::guessed_delay(const State& state) const {
   return strokes.told(params_.period_s, params_.period_s);
 }
 
-// Before a step: decides whether to change the delay. rate_stream.md (R109)
+// Before a step: decides whether to change the delay. rate_stream.md (R106)
 void RateStream::seek_delay(State& state) const {
   RateStreamDelay& delay = state.device.front().delay;
   const TimeNs now_ns = state.window.back().observation.sample.time_ns;
@@ -160,7 +160,7 @@ void RateStream::take_delay(double delay_s, bool found, State& state) const {
   }
 }
 
-// Applies a small change of the delay; the prior from the past changes to first order. rate_stream.md (R110)
+// Applies a small change of the delay; the prior from the past changes to first order. rate_stream.md (R107)
 void RateStream::refine_delay(State& state) const {
   RateStreamDevice& device = state.device.front();
   const std::ptrdiff_t before = force_shift(state);

@@ -15,7 +15,7 @@ using Eigen::Matrix3d;
 // Time between two evaluations: systems of 29 unknowns cost more than a step.
 constexpr TimeNs kAskEvery_ns = 50'000'000;
 
-// rate_smoother.md (R41), limited to the largest rate
+// rate_smoother.md (R44), limited to the largest rate
 Matrix3d considered(const arrow::ErrorMatrix& moved, const SensorErrors::Matrix& covariance, double rate_max_rad_s) {
   const Eigen::Matrix<double, 3, SensorErrors::kSize> rates = moved.topRows<3>(),
                                                       spread = rates.lazyProduct(covariance);
@@ -29,7 +29,7 @@ bool moves(const RateStream::Knot& knot) {
 
 }  // namespace
 
-// rate_stream.md (R101): the Schur complement of a leaving sample, with errors as the last unknowns
+// rate_stream.md (R100): the Schur complement of a leaving sample, with errors as the last unknowns
 void RateStream::remember_errors(const arrow::Block& block, arrow::ErrorMatrix& errors, State& state) const {
   RateStreamDevice& device = state.device.front();
   device.prior.setZero();
@@ -66,7 +66,7 @@ KnownSensorErrors RateStream::sensor_errors(const State& state) const {
   return out;
 }
 
-// rate_stream.md (R102) over the window with eliminated blocks, before its estimates and the calibration change.
+// rate_stream.md (R101) over the window with eliminated blocks, before its estimates and the calibration change.
 void RateStream::consider_errors(const arrow::BorderVector& rig_step, State& state) const {
   RateStreamDevice& device = state.device.front();
   const std::size_t count = state.window.size();

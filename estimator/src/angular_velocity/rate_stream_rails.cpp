@@ -122,7 +122,7 @@ void RateStream::judge_from(std::size_t changed, State& state) const {
 }
 
 // Returns whether a reading may be saturated: if a known level is within reach of its uncertain slopes. Without a known
-// level, the largest reading so far is used if it is close to the other elements' levels. rate_stream.md (R94)
+// level, the largest reading so far is used if it is close to the other elements' levels. rate_stream.md (R93)
 bool RateStream::may_clip(const ImuSample& sample, int axis, int sign, const State& state) const {
   const Vector3d& y = sample.angular_velocity_rad_s;
   const RailPlanes planes = state.rails.known.planes_in_use();
@@ -192,7 +192,7 @@ double RateStream::run_slope(int axis, std::size_t first, std::size_t last, cons
   return std::max({in, out, 0.0});
 }
 
-// Marks one such run: a smooth motion that is cut off would have continued with the slopes at its ends. (R95)
+// Marks one such run: a smooth motion that is cut off would have continued with the slopes at its ends. (R94)
 void RateStream::doubt_run(int axis, std::size_t first, std::size_t last, State& state) const {
   const auto size = [&](std::size_t k) {
     return std::abs(state.window[k].observation.sample.angular_velocity_rad_s[axis]);

@@ -21,7 +21,7 @@ bool RateStream::in_long_flight(std::size_t at, const State& state) const {
 }
 
 // Deficit of a sample in a run of clipped readings by the slopes at its ends. A flight also ends the run, since the
-// force then determines the rate. rate_stream.md (R105)
+// force then determines the rate. rate_stream.md (R99)
 double RateStream::hidden_by_slopes(std::size_t at, int axis, const State& state) const {
   const std::vector<Knot>& window = state.window;
   const auto hidden = [&](std::size_t k) {
@@ -41,7 +41,7 @@ double RateStream::hidden_by_slopes(std::size_t at, int axis, const State& state
   return slope * before * after / (before + after);
 }
 
-// rate_stream.md (R96), (R105)
+// rate_stream.md (R98), (R99)
 Eigen::Matrix3d RateStream::doubted(std::size_t at, const State& state) const {
   const Knot& knot = state.window[at];
   Eigen::Matrix3d out = knot.covariance_rad2_s2;
@@ -75,7 +75,7 @@ bool RateStream::near_rails(std::size_t at, const State& state) const {
 
 // If the gyro is the later triad, evaluates the rate some time after the sample by a cubic between knots, as
 // RateSmoother does. Beyond the newest knot, the acceleration is assumed constant, with uncertainty. rate_stream.md
-// (R111)
+// (R108)
 void RateStream::move_later(std::size_t at, double late_s, const State& state, RateState& out) const {
   const auto reported = [&](std::size_t k) {
     const Knot& knot = state.window[k];

@@ -40,7 +40,7 @@ bool RestDetector::observe(const ImuSample& sample, State& state, const Eigen::V
                       bias_rad_s, state);
 }
 
-/// attitude.md (A11).
+/// attitude.md (A15).
 bool RestDetector::observe_mean(const Eigen::Vector3d& rate_rad_s, const Eigen::Vector3d& force_m_s2, TimeNs from_ns,
                                 TimeNs to_ns, const Eigen::Vector3d& bias_rad_s, State& state) const {
   const double step_s = seconds(to_ns - state.last_mean_ns);

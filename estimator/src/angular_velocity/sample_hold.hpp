@@ -19,7 +19,7 @@ struct HeldReadings {
   std::vector<double> age_s;  ///< per sample: additional age of its reading
   std::vector<bool> repeats;  ///< the reading equals the previous sample's
   /// Time from the middle of a reading's window to the middle of the sample's window, if both end together. A gyro
-  /// integrates over its period; an accelerometer over an unknown part of it. docs/maths/carried.md (C35), (C36).
+  /// integrates over its period; an accelerometer over an unknown part of it. docs/maths/carried.md (C11), (C12).
   double window_lag_s = 0.0;
 
   bool steady() const { return agreement >= sample_hold::kAgreementMin; }

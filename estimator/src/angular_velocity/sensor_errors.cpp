@@ -64,8 +64,8 @@ struct Hypothesis {
   Matrix covariance;
 };
 
-// Evidence in units of the prior's standard deviations, h = gamma + information * errors: rate_smoother.md (R38),
-// (R39), (R46).
+// Evidence in units of the prior's standard deviations, h = gamma + information * errors: rate_smoother.md (R40),
+// (R41), (R43).
 Hypothesis posterior(const Matrix& information, const Matrix& learnt, const Vector& h, const Vector& deviation,
                      double log_prior) {
   constexpr int kRest = SensorErrors::kSize - SensorErrors::kFelt;
@@ -186,7 +186,7 @@ SensorErrorFit fit_sensor_errors(const SensorErrorEvidence& evidence, const Sens
     kept += one.log_odds;
   }
   mean /= std::max(kept, 1e-300);
-  // relative to the mean in use: rate_smoother.md (R40)
+  // relative to the mean in use: rate_smoother.md (R42)
   for (const Hypothesis& one : all) {
     const Vector off = one.mean - mean;
     out.known.covariance += one.log_odds * (one.covariance + off * off.transpose());
@@ -195,7 +195,7 @@ SensorErrorFit fit_sensor_errors(const SensorErrorEvidence& evidence, const Sens
   return out;
 }
 
-// rate_smoother.md (R46)
+// rate_smoother.md (R43)
 SensorErrorEvidence learnt_evidence(const KnownSensorErrors& learnt, const SensorErrorSizes& sizes) {
   const Vector unit = deviations(sizes, {});
   const Matrix symmetric = 0.5 * (learnt.covariance + learnt.covariance.transpose());

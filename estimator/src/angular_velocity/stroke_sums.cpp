@@ -17,7 +17,7 @@ constexpr double kStruckMin = 30.0;
 constexpr double kStroke_m_s2 = 30.0, kFlying_m_s2 = 5.0, kFlyingShareMin = 0.1;
 constexpr double kStrokesMin = 10.0;
 
-// Of the two quantities in rate_smoother.md (R44).
+// Of the two quantities in rate_smoother.md (R45).
 double correlation(const StrokeSums& sums, int i) {
   const double n = sums.intervals, x = sums.turn, xx = sums.turn_squared;
   const double y = sums.force[i], yy = sums.force_squared[i], xy = sums.product[i];

@@ -97,7 +97,7 @@ std::vector<Instant> instants_of(const TriadReadings& gyro) {
   return out;
 }
 
-// Robust cost of a delay, minimised over lever arm and bias: residuals of rate_smoother.md (R13).
+// Robust cost of a delay, minimised over lever arm and bias: residuals of rate_smoother.md (R10).
 double cost(const TriadReadings& accel, std::span<const Instant> instants, const Vector3d& lever_arm_m,
             double delay_s) {
   Unknown prior, at, information;
@@ -155,7 +155,7 @@ class ForceIntegral {
   std::vector<double> norm_, sum_;
 };
 
-// From impacts, rate_smoother.md (R44); sigma 0 without information.
+// From impacts, rate_smoother.md (R45); sigma 0 without information.
 TriadDelay struck(const TriadReadings& gyro, const TriadReadings& accel, double period_s) {
   if (accel.size() < 4) return {};
   const ForceIntegral force(accel);

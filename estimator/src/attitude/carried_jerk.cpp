@@ -28,7 +28,7 @@ struct Reach {
 };
 
 // Estimates the jerk from free readings, per element, three in a row. The second difference of means over contiguous
-// windows has the variance 11/20 q P^3, plus six times that of the noise: carried.md (C37)
+// windows has the variance 11/20 q P^3, plus six times that of the noise: carried.md (C24)
 void add_bends(const GyroReadings& rates, const Eigen::Matrix3d& rows, double noise_rad_s, double node_s,
                std::vector<double>& densities) {
   const double period_s = rates.windows.period_s, reach_s = kJerkReach * std::max(period_s, node_s);
@@ -68,7 +68,7 @@ bool slope_of(const GyroReadings& rates, const Eigen::Matrix3d& rows, std::size_
 
 // Estimates the jerk across a hidden segment of an element. White jerk of density q changes the angular acceleration by
 // q T within T (mean square). The curvature of adjacent free readings says little about a motion that reverses beyond
-// the saturation level: carried.md (C39)
+// the saturation level: carried.md (C25)
 void add_across(const GyroReadings& rates, const Eigen::Matrix3d& rows, double noise_rad_s, double node_s,
                 std::vector<double>& densities) {
   const std::size_t count = rates.samples.size();

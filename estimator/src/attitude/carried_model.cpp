@@ -21,7 +21,7 @@ using BorderRow = Eigen::Matrix<double, 1, kBorder>;  // by the constants
 using ForceState = Eigen::Matrix<double, 3, 12>;      // by attitude, rate, and both accelerations
 using ForceBorder = Eigen::Matrix<double, 3, kBorder>;
 
-// carried.md (C12): slope h = -d/du log Phi(u) is the hazard phi/Phi; asymptotic series in the tail, where both
+// carried.md (C14): slope h = -d/du log Phi(u) is the hazard phi/Phi; asymptotic series in the tail, where both
 // underflow
 double hazard(double u) {
   if (u < -12.0) return -u - 1.0 / u * (1.0 - 2.0 / (u * u));
@@ -78,7 +78,7 @@ double deficit(const NodeReadings& readings, const std::array<GyroRows, 3>& rows
 }
 
 // replaces n readings at times t by two independent ones, of the value at their mean time and of the slope: carried.md
-// (C11)
+// (C13)
 double add_free(const ElementSums& e, const GyroRows& rows, double information, System::Block& block,
                 System::Corner& corner) {
   const double mean_t = e.t_s / e.n;
@@ -97,7 +97,7 @@ double add_free(const ElementSums& e, const GyroRows& rows, double information, 
   return cost;
 }
 
-// carried.md (C12)
+// carried.md (C14)
 double add_bound(const ElementSums& e, const GyroRows& rows, double sigma, double share, System::Block& block,
                  System::Corner& corner) {
   const GyroRow row = rows.value + e.clipped_t_s * rows.slope;
@@ -173,7 +173,7 @@ double add_gyro(const NodeReadings& readings, const Matrix3d& rows, const Readin
   return cost;
 }
 
-// carried.md (C13)
+// carried.md (C16)
 double add_force(const NodeReadings& readings, const Vector3d& g_W_m_s2, const ReadingNoise& noise, const Node& node,
                  const Constants& constants, System::Block& block, System::Corner& corner) {
   if (!(readings.force_n > 0.0)) return 0.0;

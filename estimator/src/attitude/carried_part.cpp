@@ -52,7 +52,7 @@ Problem::Problem(const Problem& whole, const Part& part)
             whole.hand_.begin() + static_cast<std::ptrdiff_t>(part.last + 1)),
       blocks_(nodes_.size()) {}
 
-// Computes the Schur complements of carried.md (C14), from both ends.
+// Computes the Schur complements of carried.md (C17), from both ends.
 bool Problem::tell(std::span<Part> parts) const {
   System::Corner unused;
   // from the left: the prior of a node from all earlier ones

@@ -52,7 +52,7 @@ namespace {
 
 // Returns the noise for the covariances. A bound contains no information about how far the rate is beyond it. The mean
 // over a window P differs from the rate at its centre: white jerk of density q causes the variance q P^3/320,
-// carried.md (C38).
+// carried.md (C26).
 ReadingNoise stated_noise(const CarriedSmoother::Params& params, ReadingNoise noise, double period_s) {
   noise.bound = 0.0;
   noise.window_rad_s = params.jerk_rad_s3_sqrts * std::sqrt(period_s * period_s * period_s / 320.0);
@@ -129,7 +129,7 @@ double Problem::linearise() {
   return cost;
 }
 
-// carried.md (C14), (C15)
+// carried.md (C17), (C18)
 bool Problem::eliminate(System::BorderVector& step) {
   for (std::size_t i = 0; i < blocks_.size(); ++i) {
     System::Block* const next = i + 1 < blocks_.size() ? &blocks_[i + 1] : nullptr;
@@ -138,7 +138,7 @@ bool Problem::eliminate(System::BorderVector& step) {
   return System::solve_corner(corner_, step, constants_covariance_);
 }
 
-// carried.md (C16)
+// carried.md (C19)
 bool Problem::step(double& largest) {
   if (!eliminate(border_step_)) return false;
   // the steps overwrite the gradients, which are no longer needed
@@ -188,7 +188,7 @@ void Problem::restore(Answer answer) {
   covariances_ = std::move(answer.covariances);
 }
 
-// carried.md (C16), (C34)
+// carried.md (C19), (C20)
 Status Problem::solve(CarriedSmoother::Report& report) {
   std::optional<Iterate> before;
   report.converged = false;
@@ -233,7 +233,7 @@ bool Problem::descend_from(const Iterate& before, double& cost) {
   return false;
 }
 
-// carried.md (C17), (C18), with the jerk of (C19) and bounds without information about the distance beyond
+// carried.md (C21), (C22), with the jerk of (C23) and bounds without information about the distance beyond
 Status Problem::covariances(CarriedSmoother::Report& report) {
   for (std::size_t i = 0; i < jerk_.size(); ++i)
     jerk_[i] = std::max(params_.expert.jerk_inflation, jerk_seen_[i] / params_.jerk_rad_s3_sqrts);
@@ -256,7 +256,7 @@ Status Problem::covariances(CarriedSmoother::Report& report) {
   return {};
 }
 
-// carried.md (C20): the mean over a window T of a process with standard deviation s and correlation time tau has the
+// carried.md (C30): the mean over a window T of a process with standard deviation s and correlation time tau has the
 // variance s^2 2 tau/T (1 - tau/T (1 - exp(-T/tau)))
 double Problem::hand_mahalanobis() const {
   const auto window = static_cast<std::size_t>(std::max(1.0, kHandMean_s / params_.expert.node_s));

@@ -151,7 +151,7 @@ void place(double node_s, std::size_t nodes, Windows& windows) {
 }
 
 // A slow accelerometer averages over an unknown part of its period. Window centres are moved to the middle of the
-// possible range, and the force's change over the rest is added as uncertainty: carried.md (C36)
+// possible range, and the force's change over the rest is added as uncertainty: carried.md (C12)
 std::vector<double> open_forces(OwnReadings& forces, double log_period_s) {
   const std::vector<ImuSample>& samples = forces.samples;
   std::vector<double> out(samples.size(), 0.0);
@@ -191,7 +191,7 @@ void whole_windows(double noise_rad_s, const Eigen::Matrix3d& rows, GyroReadings
   for (std::size_t k = 0; k < count; ++k) rates.samples[k].angular_velocity_rad_s += inverse * lost[k];
 }
 
-// carried.md (C40): replaces readings with correlated errors by equivalent ones with independent errors
+// carried.md (C15): replaces readings with correlated errors by equivalent ones with independent errors
 void recovered_readings(const CarriedSmoother::Params& params, const ClippedElements& clipped, GyroReadings& rates) {
   const double nodes = std::sqrt(2.0 * params.expert.readings.recovered_tau_s / params.expert.node_s);
   for (std::size_t k = 0; k < clipped.recovered_rad2_s2.size(); ++k) {

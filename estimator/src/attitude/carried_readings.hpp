@@ -52,7 +52,7 @@ inline constexpr double kLongest = 1.5;  ///< longest window, in periods
 
 /// Estimates the root density of the angular jerk near each of `nodes` nodes from readings [rad/s^3 sqrt(s)]. The
 /// estimate uses the curvature of free readings, and the change of slope across hidden segments. 0 without information.
-/// carried.md (C37), (C39). O(N).
+/// carried.md (C24), (C25). O(N).
 std::vector<double> seen_jerk(const GyroReadings& rates, const Eigen::Matrix3d& rows, double noise_rad_s, double node_s,
                               std::size_t nodes);
 

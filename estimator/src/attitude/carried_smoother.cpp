@@ -55,7 +55,7 @@ RateSource source(const RateState& rate, double recovered_sigma) {
 }
 
 /// Adds the effect of the gyro's scale error for a body that is not hand-held and rotates on in one direction. The
-/// error grows with the rotation since the last rest or until the next one, whichever is smaller. carried.md (C42).
+/// error grows with the rotation since the last rest or until the next one, whichever is smaller. carried.md (C27).
 void widen_by_rotation(const CarriedSmoother::Params& params, const carried::Collected& collected,
                        const std::vector<RateState>& rates, std::vector<AttitudeState>& attitudes) {
   const double share = params.expert.readings.recovered_scale_share;

@@ -214,7 +214,7 @@ void CarriedStream::rebuild(State& state) const {
 
 // Adds a reading to the nodes of the window. Repetitions are skipped. A reading of a slow sensor has a window of its
 // own period, which ended at an unknown time since the previous sample. For an accelerometer, the length of the window
-// is unknown as well, as in carried.md (C36): rate_stream.md (R97).
+// is unknown as well, as in carried.md (C12): rate_stream.md (R95).
 void CarriedStream::add(const Reading& reading, State& state) const {
   const double node_s = params_.body.expert.node_s;
   const auto readings_at = [&](std::int64_t node) -> carried::NodeReadings* {
@@ -287,7 +287,7 @@ void CarriedStream::predict(const Node& before, const Eigen::Matrix3d& rows, Kno
   if (knot.readings.force_n > 0.0) node.a_W_m_s2 = node.q_WI * knot.readings.force_m_s2 + g_W_m_s2_;
 }
 
-// carried.md (C32)
+// carried.md (C41)
 double CarriedStream::hand(const State& state) const {
   return std::max(params_.body.expert.hand.hand_floor,
                   1.0 + params_.body.expert.hand.hand_follow * (state.hand_power - 1.0));
@@ -309,7 +309,7 @@ void CarriedStream::add_prior(const State& state, System::Block& block, System::
   corner.gradient += state.prior_corner.gradient - state.prior_corner.matrix * c - state.prior.border.transpose() * x;
 }
 
-// carried.md (C14), as rate_stream.md (R90); the held point's power is that of carried.md (C32).
+// carried.md (C17), as rate_stream.md (R90); the held point's power is that of carried.md (C41).
 void CarriedStream::marginalise_oldest(State& state) const {
   keep_rates_of_oldest(state);
   const Knot& oldest = state.window[0];
@@ -349,7 +349,7 @@ void CarriedStream::forget_readings(State& state) const {
   state.readings.erase(state.readings.begin(), state.readings.begin() + static_cast<std::ptrdiff_t>(gone));
 }
 
-// carried.md (C14), (C15)
+// carried.md (C17), (C18)
 bool CarriedStream::factorise(const carried::Motion& motion, const carried::ReadingNoise& noise, State& state,
                               System::BorderVector& step) const {
   const std::size_t count = state.window.size();
@@ -372,7 +372,7 @@ bool CarriedStream::factorise(const carried::Motion& motion, const carried::Read
   return System::solve_corner(corner, step, state.constants_covariance);
 }
 
-// carried.md (C16)
+// carried.md (C19)
 bool CarriedStream::step(State& state) const {
   System::BorderVector border;
   if (!factorise(motion_, noise_of(state), state, border)) return false;

@@ -76,7 +76,7 @@ RateState CarriedStream::to_rate(const Reading& reading, const State& state, con
   return out;
 }
 
-// Counts the segment of the reported reading `at` if it may contain an additional revolution: carried.md (C44).
+// Counts the segment of the reported reading `at` if it may contain an additional revolution: carried.md (C43).
 void CarriedStream::count_revolutions(std::size_t at, const RateState& rate, State& state) const {
   const Reading& reading = state.readings[at];
   const double since_s = at > 0 ? reading.end_s - state.readings[at - 1].end_s : params_.period_s;
@@ -97,8 +97,8 @@ void CarriedStream::count_revolutions(std::size_t at, const RateState& rate, Sta
   }
 }
 
-// Reports the rates of the readings [first, last] with their covariances; near clipped nodes those of carried.md (C19),
-// (C43). `factorised`: the buffer contains the equations with the assumed jerk.
+// Reports the rates of the readings [first, last] with their covariances; near clipped nodes those of carried.md (C23),
+// (C42). `factorised`: the buffer contains the equations with the assumed jerk.
 void CarriedStream::publish(std::size_t first, std::size_t last, bool factorised, State& state,
                             std::span<RateState> out) const {
   const auto of = [&](std::size_t k) {
@@ -111,7 +111,7 @@ void CarriedStream::publish(std::size_t first, std::size_t last, bool factorised
   for (std::size_t i = from; i < to; ++i) clipped = clipped || carried::clips(state.window[i].readings);
   System::BorderVector unused;
   carried::ReadingNoise noise = noise_of(state);
-  // a bound contains no information about how far a rate or a force is beyond it: carried.md (C43)
+  // a bound contains no information about how far a rate or a force is beyond it: carried.md (C42)
   if (clipped) noise.bound = noise.force_bound = 0.0;
   const bool known = (factorised && !clipped) || factorise(clipped ? doubted_ : motion_, noise, state, unused);
   System::Conditional here, next;

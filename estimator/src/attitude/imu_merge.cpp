@@ -224,7 +224,7 @@ ImuSample ImuMerge::mean_of_used(const Vectors& rates, const Vectors& forces, co
   return merged;
 }
 
-/// imu_merge.md (I7).
+/// imu_merge.md (I8).
 std::optional<double> ImuMerge::arm_share(const State& state) {
   if (state.arm_square_m2_s3 < kArmSquareMin_m2_s3) return std::nullopt;
   return state.arm_product / state.arm_square_m2_s3;
@@ -270,7 +270,7 @@ void ImuMerge::close_windows(const Flags& present, const Vectors& rates, const V
 /// Excludes units that may be saturated for less than a sample by an impact. On a rigid body, one unit predicts the
 /// force on the others along the connecting line, without the angular acceleration. Units that disagree with the
 /// accepted one are excluded: imu_merge.md (I6). If no two units agree, a common angular acceleration that started
-/// within the window is tested first: (I6a).
+/// within the window is tested first: (I7).
 void ImuMerge::leave_out_subsample_saturated(const Readings& samples, const Flags& present, const Vectors& forces,
                                              const Eigen::Vector3d& rate, double h, State& state, Flags& used) const {
   const double since_s = 0.5 * (h + state.length_s);
@@ -327,7 +327,7 @@ void ImuMerge::recover(const Readings& readings, const Flags& present, double h,
 }
 
 /// Updates the errors of a unit's rate over the last window relative to the mean: bias, scale and time offset. The
-/// angular acceleration is a central difference over the adjacent windows. imu_merge.md (I3), (I7).
+/// angular acceleration is a central difference over the adjacent windows. imu_merge.md (I3), (I8).
 void ImuMerge::learn(const Vectors& rates, State& state) const {
   const auto count = static_cast<std::size_t>(params_.count);
   Eigen::Vector3d now = Eigen::Vector3d::Zero(), mean = Eigen::Vector3d::Zero();

@@ -20,7 +20,7 @@ auto least_unexplained(const ImuPlausibility::State& state) {
   return std::min_element(state.unexplained_rad2.begin(), state.unexplained_rad2.end());
 }
 
-// imu_merge.md (I17): |a - b|^2 = |a|^2 + |b|^2 - 2 a b.
+// imu_merge.md (I20): |a - b|^2 = |a|^2 + |b|^2 - 2 a b.
 double together_rad2(const ImuPlausibility::State& state) {
   return 0.5 * (state.by_force_rad2 + state.by_gyro_rad2 - state.unexplained_rad2.front());
 }
@@ -73,7 +73,7 @@ void ImuPlausibility::hold(const Eigen::Vector3d& reading, double dt_s, Hold& ho
   if (froze) hold.frozen_s = std::max(hold.frozen_s, hold.held_s);
 }
 
-/// imu_merge.md (I15), (I16).
+/// imu_merge.md (I18), (I19).
 void ImuPlausibility::take(State& state) const {
   const Eigen::Vector3d force = state.average.mean.specific_force_m_s2;
   const Eigen::Vector3d turned = state.average.length_s * state.average.mean.angular_velocity_rad_s;
@@ -106,7 +106,7 @@ void ImuPlausibility::take(State& state) const {
   }
 }
 
-/// Adds a window with constant force to the sums. imu_merge.md (I16), (I18).
+/// Adds a window with constant force to the sums. imu_merge.md (I19), (I22).
 void ImuPlausibility::compare(const Eigen::Vector3d& force_m_s2, State& state) const {
   const auto near_gravity = [&](const Eigen::Vector3d& force) {
     return std::abs(force.norm() - params_.gravity_m_s2) <= params_.near_share * params_.gravity_m_s2;
@@ -161,7 +161,7 @@ double ImuPlausibility::frozen_s(const State& state) const {
       {state.gyro.frozen_s, state.accel.frozen_s, gyro ? state.gyro.held_s : 0.0, accel ? state.accel.held_s : 0.0});
 }
 
-/// imu_merge.md (I17).
+/// imu_merge.md (I20).
 double ImuPlausibility::rotation_slope(const State& state) const {
   if (!turned(state)) return 1.0;
   return together_rad2(state) / std::max(state.by_gyro_rad2, kStandstillRad2);
@@ -177,7 +177,7 @@ double ImuPlausibility::force_rotated_share(const State& state) const {
                                                                         : state.all_force_rad2 / state.all_gyro_rad2;
 }
 
-/// imu_merge.md (I18).
+/// imu_merge.md (I22).
 std::optional<AxisLabels> ImuPlausibility::other_labels(const State& state) const {
   if (unexplained_share(state) < params_.expert.naming.unexplained_least) return std::nullopt;
   const auto least = least_unexplained(state);

@@ -25,7 +25,7 @@ constexpr double kClearly = 0.4;           // logarithm of a ratio of squares
 
 using Readings = std::array<Eigen::Matrix3d, kReadings>;
 
-/// Factors of the rates, S of imu_merge.md (I24).
+/// Factors of the rates, S of imu_merge.md (I27).
 Readings all_readings() {
   Readings out;
   for (std::size_t k = 0; k < kAxisLabels; ++k) {
@@ -79,7 +79,7 @@ class Segments {
     vote(fits);
   }
 
-  /// imu_merge.md (I25), (I26).
+  /// imu_merge.md (I28), (I29).
   void compare(const std::array<PivotFit, kReadings>& fits) {
     // a force magnitude other than gravity's counts as an error, like an unexplained velocity
     const auto residual = [&](std::size_t k) {
@@ -99,7 +99,7 @@ class Segments {
     }
   }
 
-  /// imu_merge.md (I27).
+  /// imu_merge.md (I30).
   void vote(const std::array<PivotFit, kReadings>& fits) {
     const PivotFit& fit = fits[0];
     if (fit.residual_m_s > params_.explains_m_s) return;
@@ -119,7 +119,7 @@ class Segments {
 };
 
 /// Weighted mean of the segments' scales, with its heteroscedasticity-consistent deviation (White, 1980). imu_merge.md
-/// (I27).
+/// (I30).
 void conclude_scale(const std::vector<ScaleVote>& votes, PivotCheck::Found& found) {
   double weight = 0.0, sum = 0.0, spread = 0.0;
   for (const ScaleVote& vote : votes) weight += vote.weight, sum += vote.weight * vote.step;
@@ -189,7 +189,7 @@ PivotCheck::Found PivotCheck::find(std::span<const ImuSample> samples, std::span
   return found;
 }
 
-/// imu_merge.md (I26), (I27).
+/// imu_merge.md (I29), (I30).
 Status PivotCheck::verdict(const Found& found) const {
   const double least = std::max(params_.evidence_least, params_.evidence_of_each * static_cast<double>(found.counted));
   const auto better = static_cast<double>(found.better), worse = static_cast<double>(found.worse);

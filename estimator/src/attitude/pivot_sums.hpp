@@ -10,14 +10,14 @@
 
 namespace tumble {
 
-/// Fit of a segment of motion by rotation about a point of the body that keeps its velocity. imu_merge.md (I24).
+/// Fit of a segment of motion by rotation about a point of the body that keeps its velocity. imu_merge.md (I27).
 struct PivotFit {
   double residual_m_s = 0.0;  ///< root mean square of the velocity residual, all components together
   double gravity_m_s2 = 0.0;  ///< magnitude of the force that does not rotate
   double arm_m = 0.0;         ///< from the pivot to the sensor
 };
 
-/// Normal equations of imu_merge.md (I24) for one alternative of the gyro.
+/// Normal equations of imu_merge.md (I27) for one alternative of the gyro.
 class PivotSums {
  public:
   /// Adds a mean reading over `dt_s`, with its middle `at_s` after the segment's start. O(1).

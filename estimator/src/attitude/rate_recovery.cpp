@@ -147,7 +147,7 @@ void RateRecovery::start(const ImuSample& merged, State& state) const {
   state.started = state.running = true;
 }
 
-/// imu_merge.md (I11), (I12).
+/// imu_merge.md (I14), (I15).
 void RateRecovery::predict(double dt_s, State& state) const {
   const Eigen::Vector3d rate = state.x.segment<3>(kRate), force = state.x.segment<3>(kForce);
   const Eigen::Matrix3d turn = so3::exp(-dt_s * rate).toRotationMatrix();  // a constant force in W rotates in C
@@ -166,7 +166,7 @@ void RateRecovery::predict(double dt_s, State& state) const {
   diagonal.segment<3>(kForce).array() += squared(params_.force_walk_m_s2_sqrts) * dt_s;
 }
 
-/// imu_merge.md (I13).
+/// imu_merge.md (I16).
 void RateRecovery::measure_rates(std::span<const ImuSample> units, double dt_s, State& state) const {
   const double shorter = std::max(1.0, kReading_s / dt_s);
   for (std::size_t k = 0; k < units.size(); ++k) {
@@ -189,7 +189,7 @@ void RateRecovery::measure_rates(std::span<const ImuSample> units, double dt_s, 
   }
 }
 
-/// imu_merge.md (I14).
+/// imu_merge.md (I17).
 void RateRecovery::measure_forces(std::span<const ImuSample> units, double dt_s, State& state) const {
   const double shorter = std::max(1.0, kReading_s / dt_s);
   for (std::size_t k = 0; k < units.size(); ++k) {

@@ -16,7 +16,7 @@ bool unread(const RateReport& report, const RateState& rate, std::size_t k) {
   return rate.clipped_axes != 0 || report.doubted_axes[k] != 0;
 }
 
-/// Returns the samples with forces at the times of the rates; those of a slow accelerometer are older. carried.md (C28)
+/// Returns the samples with forces at the times of the rates; those of a slow accelerometer are older. carried.md (C38)
 std::vector<ImuSample> forces_in_time(std::span<const ImuSample> samples) {
   std::vector<ImuSample> out(samples.begin(), samples.end());
   const std::vector<Eigen::Vector3d> forces = forces_between_readings(samples);
@@ -75,7 +75,7 @@ void RegimeSmoother::join(std::span<const ImuSample> samples, std::vector<RateSt
 }
 
 /// Probability of hand-held motion within `near_s` of a sample, restricted to its segment of clipped or suspect
-/// samples; 0 away from all segments. carried.md (C41)
+/// samples; 0 away from all segments. carried.md (C40)
 std::vector<double> RegimeSmoother::carried_segments(std::span<const RegimeShares> shares, const RateReport& report,
                                                      std::span<const RateState> rates) const {
   std::vector<double> out(rates.size(), 0.0);

@@ -43,7 +43,7 @@ RateState joined_rate(const RateState& rate, const RateState& carried, double sh
 }
 
 // Derivative of the rates around sample k, over kTurn_s if there are enough samples. RateStream's own angular
-// acceleration depends on the force to be judged, even if the gyro measures the rate: carried.md (C33)
+// acceleration depends on the force to be judged, even if the gyro measures the rate: carried.md (C44)
 Eigen::Vector3d angular_acceleration(std::span<const RateStream::Knot> window, std::size_t k) {
   // integer differences, since seconds since the clock's start would lose precision
   const auto between_s = [&](std::size_t from, std::size_t to) {
@@ -145,7 +145,7 @@ bool RegimeStream::doubts(const State& state) const {
   return state.resets > kDoubtShare * rate.lag_s / std::max(rate.period_s, rate.step_s);
 }
 
-// Updates the evidence with the reported sample and its rate: the forward pass of carried.md (C28).
+// Updates the evidence with the reported sample and its rate: the forward pass of carried.md (C38).
 void RegimeStream::judge(const RateState& rate, State& state) const {
   const double dt_s = state.given == 0 ? params_.evidence.memory_s : seconds(rate.time_ns - state.given_ns);
   state.shares =
@@ -160,7 +160,7 @@ void RegimeStream::judge(const RateState& rate, State& state) const {
   state.sum.carried += state.shares.carried;
 }
 
-// Returns the weight of CarriedStream for the reported sample, s of carried.md (C41). The weight is the smallest nearby
+// Returns the weight of CarriedStream for the reported sample, s of carried.md (C40). The weight is the smallest nearby
 // probability in the segment of clipped samples, within the window; 0 away from all segments.
 double RegimeStream::share_of(const RateState& rate, State& state) const {
   const auto near_ns = static_cast<TimeNs>(std::llround(1e9 * params_.near_s));

@@ -88,7 +88,7 @@ void RestGravity::step(const ImuSample& sample, const RateState& rate, State& st
   state.span_angle_rad = state.variance_rad2 = state.segment_s = state.segment_rad2_s = 0.0;
 }
 
-/// A reading is a mean over its window and refers to the middle of it: imu_merge.md (I22).
+/// A reading is a mean over its window and refers to the middle of it: imu_merge.md (I25).
 void RestGravity::turn(const ImuSample& sample, const RateState& rate, double dt_s, State& state) const {
   const Eigen::Quaterniond half = so3::exp(0.5 * dt_s * rate.w_WI_I_rad_s);
   const Eigen::Vector3d& force = sample.specific_force_m_s2;
@@ -101,13 +101,13 @@ void RestGravity::turn(const ImuSample& sample, const RateState& rate, double dt
   if (at_range || (sample.device_clip_flags & kClipAccel) != 0) state.hidden_m_s += dt_s * peak;
 }
 
-/// Saturation deficits within a segment are correlated: imu_merge.md (I19).
+/// Saturation deficits within a segment are correlated: imu_merge.md (I23).
 void RestGravity::end_segment(State& state) const {
   state.variance_rad2 += std::max(params_.correlation_s, state.segment_s) * state.segment_rad2_s;
   state.segment_s = state.segment_rad2_s = 0.0;
 }
 
-/// imu_merge.md (I19).
+/// imu_merge.md (I23).
 void RestGravity::arrive(State& state) const {
   end_segment(state);
   if (state.from_m_s2.isZero(0.0) || state.span_angle_rad < params_.rotation_least_rad ||
@@ -123,7 +123,7 @@ void RestGravity::arrive(State& state) const {
   state.miss_sigma_rad = sigma_rad;
 }
 
-/// imu_merge.md (I22), (I23).
+/// imu_merge.md (I25), (I26).
 void RestGravity::close_velocity(const Eigen::Vector3d& here_m_s2, double sigma_rad, State& state) const {
   const Eigen::Vector3d mean_m_s2 = state.velocity_sum_m_s / state.span_s;
   const double from_start = (mean_m_s2 - state.from_m_s2).norm() / state.from_m_s2.norm();
@@ -136,7 +136,7 @@ void RestGravity::close_velocity(const Eigen::Vector3d& here_m_s2, double sigma_
   state.velocity_allowed_share = allowed;
 }
 
-/// imu_merge.md (I20).
+/// imu_merge.md (I24).
 double RestGravity::allowed_rad(double sigma_rad) const {
   return std::min(params_.miss_most_rad, std::max(params_.miss_least_rad, params_.miss_deviations * sigma_rad));
 }

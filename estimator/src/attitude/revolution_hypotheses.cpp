@@ -50,7 +50,7 @@ double revolution_cost(const Problem& problem, std::size_t steps) {
   return carried::revolution_cost(static_cast<double>(steps) * problem.node_s(), problem.jerk_rad_s3_sqrts());
 }
 
-/// carried.md (C30)
+/// carried.md (C28)
 std::vector<Segment> doubtful_segments(const Problem& problem) {
   std::vector<Segment> out;
   const std::size_t count = problem.nodes().size();
@@ -153,7 +153,7 @@ struct Asked {
   bool another = false;
 };
 
-/// Returns the probabilities of carried.md (C31) of all but `standing`.
+/// Returns the probabilities of carried.md (C29) of all but `standing`.
 Open shares_of(const Asked& asked, std::optional<std::size_t> standing) {
   Open out{asked.from, {}};
   const double least = asked.found.front().cost;
@@ -262,7 +262,7 @@ void ask_revolutions(Problem& problem, CarriedSmoother::Report& report, SolveAga
     report.revolutions_taken += static_cast<int>(taken);
   }
   report.revolutions_open = static_cast<int>(open.size());
-  // carried.md (C31)
+  // carried.md (C29)
   for (const Open& segment : open) {
     for (const auto& [share, nodes] : segment.others) {
       for (std::size_t i = 0; i < nodes.size(); ++i) {

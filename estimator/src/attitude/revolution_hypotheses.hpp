@@ -9,7 +9,7 @@ inline constexpr double kAngleShare = 1.0 / 3.0;  ///< of pi: standard deviation
 inline constexpr double kLogOdds = 6.9;           ///< 1 to 1000: less probable alternatives are ignored
 
 /// Returns the minimum cost of an additional revolution within a time with fixed ends, for white jerk of a root density
-/// [rad/s^3 sqrt(s)]: carried.md (C30), 2 pi / T 30 u^2 (1 - u)^2.
+/// [rad/s^3 sqrt(s)]: carried.md (C28), 2 pi / T 30 u^2 (1 - u)^2.
 double revolution_cost(double span_s, double jerk_rad_s3_sqrts);
 
 /// Tests, segment by segment, whether the body rotated one more or one less revolution while an element of its gyro was

@@ -13,7 +13,7 @@
 namespace tumble {
 
 /// Specific forces of units at different positions of one rigid body over a window, body axes. Finds units whose force
-/// contradicts the common motion. imu_merge.md (I6), (I6a).
+/// contradicts the common motion. imu_merge.md (I6), (I7).
 struct RigidForces {
   static constexpr std::size_t kUnits = ImuMergeState::kImus;
 
@@ -56,7 +56,7 @@ struct RigidForces {
     return best;
   }
 
-  /// Returns the correction of the acceleration that minimises all differences. (I6a)
+  /// Returns the correction of the acceleration that minimises all differences. (I7)
   Eigen::Vector3d common_acceleration() const {
     Eigen::Matrix3d A = Eigen::Matrix3d::Zero();
     Eigen::Vector3d b = Eigen::Vector3d::Zero();

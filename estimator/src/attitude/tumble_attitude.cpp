@@ -22,7 +22,7 @@ constexpr double kContradicts_sigma2 = 4.0;
 constexpr int kTilt = 0, kBias = 2, kVelocity = 5, kDisplacement = 7, kHeading = 9;
 
 /// Kalman update by a scalar measurement of state `index` of attitude.md (A4): `innovation` is measurement minus
-/// prediction. The heading's variance is unchanged: attitude.md (A8b).
+/// prediction. The heading's variance is unchanged: attitude.md (A9).
 void update(int index, double innovation, double variance, TumbleAttitude::State& state) {
   const double heading = state.covariance(kHeading, kHeading);
   const Eigen::Matrix<double, TumbleAttitude::State::kStates, 1> correction =
@@ -121,7 +121,7 @@ void TumbleAttitude::take_average(State& state) const {
   if (state.node_s >= params_.expert.node_s - 0.5 * length_s) end_node(state);
 }
 
-/// attitude.md (A11a): whether the mean rate of the run agrees with the bias, within the uncertainty of both.
+/// attitude.md (A16): whether the mean rate of the run agrees with the bias, within the uncertainty of both.
 bool TumbleAttitude::rotates_by_bias_alone(const State& state) const {
   const Eigen::Array3d off_rad_s = (state.rest.mean_rate_rad_s() - state.bias_rad_s).array();
   const Eigen::Array3d variance = state.covariance.diagonal().segment<3>(kBias).array() +
@@ -152,7 +152,7 @@ void TumbleAttitude::integrate(const ImuSample& sample, double dt_s, State& stat
   state.node_s += dt_s;
 }
 
-/// attitude.md (A8c), (A8d).
+/// attitude.md (A17), (A18).
 void TumbleAttitude::bridge_gap(const ImuSample& after, const Eigen::Matrix3d& rate_covariance_rad2_s2, double gap_s,
                                 State& state) const {
   if (state.average.readings > 0) take_average(state);
@@ -205,7 +205,7 @@ double TumbleAttitude::own_velocity_m2_s2(double power_m2_s2, const State& state
   return std::max({believed, power_m2_s2, turning});
 }
 
-/// Updates an alignment after this node's correction, a rotation of W; attitude.md (A10c), (A10d).
+/// Updates an alignment after this node's correction, a rotation of W; attitude.md (A19), (A20).
 void TumbleAttitude::align(const Eigen::Quaterniond& corrected, State& state) const {
   CoarseAlignment& alignment = state.alignment;
   alignment.force_W_m_s = corrected * alignment.force_W_m_s;
@@ -243,7 +243,7 @@ void TumbleAttitude::restart(const Eigen::Quaterniond& levelling, double tilt_ra
   state.displacement_power_m2 = 0.0;
 }
 
-/// attitude.md (A8a).
+/// attitude.md (A10).
 void TumbleAttitude::add_recovered(double dt_s, State& state) const {
   if (state.at_rest || state.recovered_rad2_s2.isZero(0.0)) {
     state.recovered_rad.setZero();
@@ -258,7 +258,7 @@ void TumbleAttitude::add_recovered(double dt_s, State& state) const {
   state.recovered_rad2_s2.setZero();
 }
 
-/// attitude.md (A6), (A7), (A8), (A8b).
+/// attitude.md (A6), (A7), (A8), (A9).
 void TumbleAttitude::predict_node(State& state) const {
   const double h = state.node_s;
   const double keep = std::exp(-h / params_.displacement_tau_s);
@@ -306,7 +306,7 @@ bool TumbleAttitude::watch_slip(const Eigen::Vector2d& misfit_m_s, State& state)
   return state.slipping;
 }
 
-/// attitude.md (A10a): variance of a body's own velocity or displacement, one axis. `power` is the previous value.
+/// attitude.md (A13): variance of a body's own velocity or displacement, one axis. `power` is the previous value.
 double TumbleAttitude::own_motion(const Eigen::Vector2d& misfit, int index, double sigma_sqrts, double power,
                                   const State& state) const {
   const double seen = 0.5 * (misfit.squaredNorm() - state.covariance.block<2, 2>(index, index).trace());
@@ -314,7 +314,7 @@ double TumbleAttitude::own_motion(const Eigen::Vector2d& misfit, int index, doub
   return std::max({squared(sigma_sqrts) / params_.motion_tau_s, seen, remembered});
 }
 
-/// A body other than a sphere: velocity, while it moves, and displacement about zero. attitude.md (A10), (A10b).
+/// A body other than a sphere: velocity, while it moves, and displacement about zero. attitude.md (A12), (A14).
 void TumbleAttitude::correct_body(const Eigen::Vector2d& turned_m_s, State& state) const {
   const double memories = params_.motion_tau_s / state.node_s;
   if (!state.at_rest) {
@@ -332,14 +332,14 @@ void TumbleAttitude::correct_body(const Eigen::Vector2d& turned_m_s, State& stat
   }
 }
 
-/// Velocity of the IMU due to the body's rotation about the centre, and of the rolling centre. attitude.md (A9).
+/// Velocity of the IMU due to the body's rotation about the centre, and of the rolling centre. attitude.md (A11).
 Eigen::Vector2d TumbleAttitude::velocity_of_rotation(const State& state) const {
   const Eigen::Vector3d w_W = state.q_WI * state.rate_rad_s;
   const Eigen::Vector3d arm_W = state.q_WI * params_.lever_arm_m + params_.radius_m * Eigen::Vector3d::UnitZ();
   return w_W.cross(arm_W).head<2>();
 }
 
-/// Velocity of a sphere or of a body at rest, and the bias at rest. attitude.md (A9), (A10).
+/// Velocity of a sphere or of a body at rest, and the bias at rest. attitude.md (A11), (A12).
 void TumbleAttitude::correct_node(State& state) const {
   const double h = state.node_s;
   const Eigen::Vector2d turned = velocity_of_rotation(state);

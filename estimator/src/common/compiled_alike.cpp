@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "tumble/common/compiled_alike.hpp"
+#include "tumble/common/detail/compiled_alike.hpp"
 
 namespace tumble::detail {
 

@@ -17,7 +17,7 @@ struct Belief {
   Registration::Matrix error = Registration::Matrix::Zero();
 };
 
-/// Returns the estimate of an IMU levelled at rest, in a map defined by the lidar's pose: mapping.md (R43), (R44).
+/// Returns the estimate of an IMU levelled at rest, in a map defined by the lidar's pose: mapping.md (R54), (R55).
 Belief belief_at_start(const LidarInertialOdometry::Params& params, const MotionState& levelled);
 
 /// Returns the derivative of the unknowns, with the motion at `t_s` after the start, by the unknowns at the start.
@@ -36,7 +36,7 @@ void at_end(const Belief& at_start, const SweepTrajectory& trajectory, const Reg
             TimeNs end_ns, Belief& end);
 
 /// Returns the derivative of the IMU's pose error by mounting errors for an exact lidar pose, at this attitude of the
-/// IMU: K of mapping.md (R43).
+/// IMU: K of mapping.md (R54).
 Eigen::Matrix<double, 6, 6> pose_by_mounting(const Eigen::Quaterniond& q_WI, const Eigen::Vector3d& p_IL_m);
 
 /// Returns the matrix with variances of 0 replaced by small ones, so that it can be inverted.

@@ -24,7 +24,7 @@ struct WindowRate {
 };
 
 /// Appends samples from the end of `before` to the start of `after`. The rate is interpolated linearly, with the
-/// standard deviation of a random walk that is known at both ends; mapping.md (R100). All axes count as clipped, so
+/// standard deviation of a random walk that is known at both ends; mapping.md (R44). All axes count as clipped, so
 /// that a registration that estimates the saturation deficit also estimates the interpolation error. The force is
 /// unknown (`bridges_gap`). Steps of 10 ms, longer ones over gaps beyond 0.64 s.
 void bridge_gap(const InertialNoiseParams& params, const WindowRate& before, const WindowRate& after,

@@ -11,7 +11,7 @@ namespace tumble::mapping {
 
 namespace u = unknowns;
 
-/// mapping.md (R31), (R32), (R33), (R101).
+/// mapping.md (R39), (R40), (R41), (R43).
 Eigen::Matrix<double, 9, 9> inertial_noise(const LidarInertialOdometry::Params& params,
                                            const SweepTrajectory& trajectory, std::span<const MotionSample> samples,
                                            unsigned deficit_axes) {
@@ -52,12 +52,12 @@ Eigen::Matrix<double, 9, 9> inertial_noise(const LidarInertialOdometry::Params& 
   };
   if (std::all_of(samples.begin(), samples.end(), rests))
     return params.expert.standstill.noise_share * params.expert.standstill.noise_share * noise;
-  u::block(noise, u::attitude) += trajectory.duration_s() * turned;  // mapping.md (R34)
+  u::block(noise, u::attitude) += trajectory.duration_s() * turned;  // mapping.md (R42)
   u::variances(noise, u::attitude).array() += std::pow(params.expert.prior.rotation_share * rotated_rad, 2);
   return noise;
 }
 
-/// mapping.md (R35).
+/// mapping.md (R45).
 Eigen::Matrix3d railed_velocity_variance(const LidarInertialOdometry::Params& params, const SweepTrajectory& trajectory,
                                          std::span<const MotionSample> samples) {
   std::size_t hint = 0;

@@ -37,7 +37,7 @@ class LagWindow {
   WindowSweep& enter();
   /// Returns whether the oldest sweep has its final estimate.
   bool is_full() const { return sweeps_.size() == length_; }
-  /// Smooths each sweep but the newest with the later ones: mapping.md (R52).
+  /// Smooths each sweep but the newest with the later ones: mapping.md (R63).
   void smooth();
   /// Moves the map points of all sweeps but the newest to their smoothed positions.
   void move_inserted(LocalMap& map) const;

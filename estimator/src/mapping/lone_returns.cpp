@@ -38,18 +38,18 @@ float LoneReturns::variance_m2(const RangeNoise& noise, const Beam& beam) {
   return square(std::max(static_cast<float>(noise.sigma_m), static_cast<float>(noise.share) * beam.range_m));
 }
 
-/// Whether two returns are at the same range: mapping.md (R56).
+/// Whether two returns are at the same range: mapping.md (R13).
 bool LoneReturns::same_range(const RangeNoise& noise, const Beam& a, const Beam& b) {
   return square(a.range_m - b.range_m) <= square(kDeviations) * (variance_m2(noise, a) + variance_m2(noise, b));
 }
 
-/// Whether the line between two returns forms at least this angle with the beam: mapping.md (R57).
+/// Whether the line between two returns forms at least this angle with the beam: mapping.md (R14).
 bool LoneReturns::stands(float sine, const Beam& a, const Beam& b) {
   const float farther = std::max(a.range_m, b.range_m);
   return a.x_L_m.cross(b.x_L_m).squaredNorm() >= square(sine * farther) * (a.x_L_m - b.x_L_m).squaredNorm();
 }
 
-/// Whether a return is on the line between the returns before and after it: mapping.md (R58).
+/// Whether a return is on the line between the returns before and after it: mapping.md (R15).
 bool LoneReturns::between(const RangeNoise& noise, const Beam& before, const Beam& beam, const Beam& after) {
   if (!stands(kGrazingSine, before, after)) return false;
   const float to_before = std::sqrt(sine2_between(before, beam)), to_after = std::sqrt(sine2_between(beam, after));

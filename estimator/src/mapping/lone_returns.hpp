@@ -19,7 +19,7 @@ struct RangeNoise {
 /// A surface returns many neighbouring beams. A return is confirmed in one of three ways. One of the two returns before
 /// or after it on its ring has the same range within noise. Or the line to the next one is steep enough against the
 /// beam to be a surface (I. Bogoslavskyi, C. Stachniss, IROS 2016). Or it is on the line between one before and one
-/// after it, as on ground at a grazing angle: mapping.md (R56), (R57), (R58). Neighbours are within the sweep's angular
+/// after it, as on ground at a grazing angle: mapping.md (R13), (R14), (R15). Neighbours are within the sweep's angular
 /// step, so a return among misses is alone. All returns are kept if successive returns are too far apart for this test.
 /// All returns are also kept if there are no more lone returns than in clear air. Larger moving objects (people, cars)
 /// are not lone returns.

@@ -41,7 +41,7 @@ inline void impose(const MotionPrior& prior, Prediction& prediction) {
   if (const auto* const velocity = std::get_if<KnownVelocity>(&prior)) impose(*velocity, prediction);
 }
 
-/// Updates the prediction of a sweep by a reading from within: mapping.md (R107) to (R110). `within` is a part of the
+/// Updates the prediction of a sweep by a reading from within: mapping.md (R34) to (R37). `within` is a part of the
 /// sweep's noise. An unusable reading, or one outside of the window, has no effect.
 void weigh_reading(const OdometerReading& reading, const Border& border, const MotionWindow& window,
                    const MotionNoise& within, Prediction& prediction);

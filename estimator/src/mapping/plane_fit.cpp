@@ -62,7 +62,7 @@ PlaneFit fit_plane(const VoxelMap& map, const Neighbours& neighbours, const Plan
     fit.verdict = PlaneVerdict::collinear;
     return fit;
   }
-  // the plane uses three of the n degrees of freedom: mapping.md (R24)
+  // the plane uses three of the n degrees of freedom: mapping.md (R27)
   const double noise2 = l[0] / std::max(n - 3, 1);
   for (int axis = 0; axis < 2; ++axis) {
     fit.tilt_W.col(axis) = (std::sqrt(noise2 / l[axis + 1]) * solver.eigenvectors().col(axis + 1)).cast<float>();

@@ -17,7 +17,7 @@ class PointMotion {
   PointMotion(const SweepTrajectory& trajectory, const SweepCalibration& calibration, const SweepPoint& point,
               std::size_t& hint);
 
-  /// Computes the derivative of the point's position along a direction of the world by all unknowns: mapping.md (R15).
+  /// Computes the derivative of the point's position along a direction of the world by all unknowns: mapping.md (R17).
   void along(const Eigen::Vector3d& direction_W, SweepUnknowns::Vector& derivative) const;
 
   /// Returns u of SweepTrajectory::base_m, in W.

@@ -19,7 +19,7 @@ namespace {
 namespace u = unknowns;
 using Params = LidarInertialOdometry::Params;
 
-/// Continues the deficit of an axis that is saturated at the boundary, with exponential decay: mapping.md (R38).
+/// Continues the deficit of an axis that is saturated at the boundary, with exponential decay: mapping.md (R48).
 void carry_deficit(const Params& params, const Border& border, const SweepTrajectory& trajectory, Prediction& next) {
   constexpr int kLast = SweepTrajectory::kKnots - 1;
   u::rows(next.by_last, u::deficit).setZero();
@@ -50,8 +50,8 @@ double deficit_sigma(const Params& params, const MotionWindow& window, const Swe
   return sigma;
 }
 
-/// Knots are samples of a first-order Gauss-Markov process with the reported standard deviation, mapping.md (R36),
-/// (R37), (R39). The last one applies if the first knot continues from the last sweep.
+/// Knots are samples of a first-order Gauss-Markov process with the reported standard deviation, mapping.md (R46),
+/// (R47), (R49). The last one applies if the first knot continues from the last sweep.
 void add_deficit_noise(const Params& params, const MotionWindow& window, const SweepTrajectory& trajectory,
                        Prediction& next) {
   if (!params.expert.rails.estimate_deficit) return;
@@ -78,7 +78,7 @@ double knot_correlation(const Params& params, const SweepTrajectory& trajectory)
   return std::exp(-trajectory.duration_s() / (SweepTrajectory::kKnots - 1) / params.expert.rails.deficit_time_s);
 }
 
-/// mapping.md (R29).
+/// mapping.md (R32).
 void Prediction::compose(const Belief& at_border) {
   sandwich(by_last, at_border.weight, prior.covariance);
   sandwich(by_last, at_border.error, errors);
@@ -94,7 +94,7 @@ void Prediction::zero_velocity_update(double sigma_m_s) {
   u::variances(noise, u::velocity).setConstant(sigma_m_s * sigma_m_s);
 }
 
-/// mapping.md (R30).
+/// mapping.md (R33).
 void impose(const KnownVelocity& known, Prediction& prediction) {
   prediction.zero_velocity_update(known.sigma_m_s);
   const Eigen::Vector3d v_WI_m_s = prediction.prior.mean.state.q_WI * known.v_WI_I_m_s;
@@ -151,7 +151,7 @@ Belief posterior(const Prediction& prediction) {
 
 namespace {
 
-/// Computes the factor of the prior's errors in mapping.md (R41). A separate function to limit the stack.
+/// Computes the factor of the prior's errors in mapping.md (R52). A separate function to limit the stack.
 [[gnu::noinline]] void weigh_prior(const Prediction& prediction, const Registration::Result& aligned,
                                    Registration::Matrix& out) {
   // errors in variables are not information and correct nothing
@@ -163,7 +163,7 @@ namespace {
 
 }  // namespace
 
-/// Computes the errors of the unknowns after the registration: mapping.md (R41). The errors of the prior and the
+/// Computes the errors of the unknowns after the registration: mapping.md (R52). The errors of the prior and the
 /// gradient of the surfaces, with the measured score_covariance, pass through the same normal equations.
 Belief posterior(const Prediction& prediction, const Registration::Result& aligned) {
   Belief start{aligned.mean, aligned.covariance, Registration::Matrix::Zero()};

@@ -54,14 +54,14 @@ bool prior_is_trusted(const LidarInertialOdometry::Params& params, const Border&
 
 /// Posterior of a sweep without alignment: the prediction.
 Belief posterior(const Prediction& prediction);
-/// Posterior of an aligned sweep: mapping.md (R41).
+/// Posterior of an aligned sweep: mapping.md (R52).
 Belief posterior(const Prediction& prediction, const Registration::Result& aligned);
 
-/// See SweepReport::innovation; mapping.md (R51).
+/// See SweepReport::innovation; mapping.md (R62).
 double innovation(const Prediction& prediction, const Registration::Estimate& aligned);
 
 /// Returns whether a pose agrees with the prediction: within its covariance and within the matching distance, beyond
-/// which any nearby surface may match. `innovation` is the function's result above. mapping.md (R120).
+/// which any nearby surface may match. `innovation` is the function's result above. mapping.md (R67).
 bool is_expected(const LidarInertialOdometry::Params& params, const Prediction& prediction,
                  const Registration::Estimate& aligned, double innovation);
 
@@ -70,7 +70,7 @@ bool is_expected(const LidarInertialOdometry::Params& params, const Prediction& 
 void border_after(const LidarInertialOdometry::Params& params, const Belief& start, const MotionWindow& window,
                   const SweepTrajectory& trajectory, const Registration::Result* alignment, Border& border);
 
-/// Correlation of the saturation deficit between adjacent knots: mapping.md (R36).
+/// Correlation of the saturation deficit between adjacent knots: mapping.md (R46).
 double knot_correlation(const LidarInertialOdometry::Params& params, const SweepTrajectory& trajectory);
 
 }  // namespace tumble::mapping

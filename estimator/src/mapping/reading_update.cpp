@@ -58,7 +58,7 @@ class Sweep {
   }
 
   /// Evaluates the motion at a time within the sweep. The noise's standard deviations grow in proportion to time.
-  /// mapping.md (R107).
+  /// mapping.md (R34).
   Moment at(TimeNs time_ns, const Offsets& offsets) const {
     Moment out;
     const double t_s = seconds(time_ns - predicted_.state.time_ns);
@@ -104,7 +104,7 @@ Expected nothing() {
           Covariance::Zero(Size, Size)};
 }
 
-/// mapping.md (R108).
+/// mapping.md (R35).
 Expected expect(const VelocityReading& reading, const Sweep& sweep, const Offsets& offsets) {
   Expected out = nothing<3>();
   const Moment now = sweep.at(reading.time_ns, offsets);
@@ -118,7 +118,7 @@ Expected expect(const VelocityReading& reading, const Sweep& sweep, const Offset
   return out;
 }
 
-/// mapping.md (R109).
+/// mapping.md (R36).
 Expected expect(const MotionReading& reading, const Sweep& sweep, const Offsets& offsets) {
   Expected out = nothing<kMost>();
   const Moment from = sweep.at(reading.from_ns, offsets), to = sweep.at(reading.to_ns, offsets);
@@ -158,7 +158,7 @@ struct Work {
   Gain<kMotion> by_noise;    ///< for the noise since
 };
 
-/// Computes the gains at the current offsets: mapping.md (R110).
+/// Computes the gains at the current offsets: mapping.md (R37).
 bool find_gains(const MotionNoise& within, Work& work) {
   const Expected& expected = work.expected;
   work.by_start = work.at_start * expected.by_start.transpose();
@@ -190,7 +190,7 @@ bool find_gains(const MotionNoise& within, Work& work) {
   return true;
 }
 
-/// Applies the update, and its effect on the boundary's errors: mapping.md (R111).
+/// Applies the update, and its effect on the boundary's errors: mapping.md (R38).
 [[gnu::noinline]] void move(Work& work, Prediction& prediction) {
   Registration::Vector moved = work.offsets.start;
   u::segment(moved, u::motion) += work.offsets.noise;
@@ -202,7 +202,7 @@ bool find_gains(const MotionNoise& within, Work& work) {
   work.left.noalias() -= work.by_start * work.expected.by_start;
 }
 
-/// Adds the noise within the sweep, reduced by the gains, and that of the reading: mapping.md (R111).
+/// Adds the noise within the sweep, reduced by the gains, and that of the reading: mapping.md (R38).
 [[gnu::noinline]] void add_noise(const MotionNoise& within, Work& work, Prediction& prediction) {
   const Gain<kUnknowns>& K = work.by_start;
   Eigen::Matrix<double, kUnknowns, kMotion> left = -K * work.expected.by_noise;

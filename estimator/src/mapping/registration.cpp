@@ -28,7 +28,7 @@ Matrix information_of(const Matrix& covariance) {
 }
 
 /// Adds the prior's information and gradient to the normal equations over all unknowns: the prior's terms of mapping.md
-/// (R20), (R21).
+/// (R22), (R23).
 void add_prior(const Registration::Prior& prior, const Matrix& information, const Registration::Estimate& now,
                Matrix& H, Vector& g) {
   const auto held = std::make_unique<std::array<Matrix, 3>>();
@@ -42,7 +42,7 @@ void add_prior(const Registration::Prior& prior, const Matrix& information, cons
   g += J.transpose() * (information * away);
 }
 
-/// Returns whether the motion is within the prior's uncertainty: mapping.md (R59).
+/// Returns whether the motion is within the prior's uncertainty: mapping.md (R25).
 bool agrees(const Registration::Prior& prior, const Registration::Estimate& now) {
   constexpr int kMotion = Registration::kMotion;
   const Vector moved = now.minus(prior.mean);
@@ -164,7 +164,7 @@ Status Registration::iterate(const Problem& problem, Descent& at, SweepTrajector
   add_prior(problem.prior, problem.information, at.now, at.H, g);
   problem.unknowns.hold(at.H, g);
   dense::solve_semidefinite_vector(at.H, g);
-  const Vector step = -g;  // mapping.md (R21)
+  const Vector step = -g;  // mapping.md (R23)
   if (!step.allFinite()) {
     at.verdict = RegistrationVerdict::diverged;
     return {};
@@ -190,7 +190,7 @@ RegistrationVerdict Registration::judge(const Problem& problem, const Descent& a
 
 /// Computes mean, covariance and diagnostics of an accepted descent.
 Status Registration::conclude(const Problem& problem, const Descent& at, SweepTrajectory& trajectory, Result& result) {
-  Matrix posterior = Matrix::Identity();  // mapping.md (R22)
+  Matrix posterior = Matrix::Identity();  // mapping.md (R24)
   dense::solve_semidefinite(at.H, posterior);
   result.covariance = 0.5 * (posterior + posterior.transpose());
   problem.unknowns.clear_held(result.covariance);
@@ -203,7 +203,7 @@ Status Registration::conclude(const Problem& problem, const Descent& at, SweepTr
   return {};
 }
 
-/// mapping.md (R27), (R28).
+/// mapping.md (R30), (R31).
 void Registration::describe_shape(std::span<const SweepPoint> points, double kernel_m, const Sums& sum,
                                   Result& result) const {
   Eigen::Matrix<double, 6, 6> shape = Eigen::Matrix<double, 6, 6>::Zero();  // robustly weighted, without variances

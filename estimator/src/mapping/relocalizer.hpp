@@ -44,7 +44,7 @@ void judge(const LidarInertialOdometry::Params& params, const TrackingState& bef
            bool prior_trusted, const Attempt& attempt, Placed& placed);
 
 /// Computes start number `index` of a search: the prior itself, then shifts along each axis by its uncertainty, closest
-/// first, mapping.md (R54).
+/// first, mapping.md (R66).
 void move_start(const RelocalizationParams& params, int index, Registration::Prior& prior);
 
 }  // namespace tumble::mapping

@@ -64,7 +64,7 @@ float SightGrid::free_m(const Direction& towards) const {
   return nearest_m;
 }
 
-/// mapping.md (R122).
+/// mapping.md (R65).
 SightGrid::Verdict SightGrid::verdict(const Eigen::Vector3f& point_W_m, float sigma_m) const {
   const Eigen::Vector3f lever_m = point_W_m - from_W_m_;
   const float range_m = lever_m.norm();

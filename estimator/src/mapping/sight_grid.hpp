@@ -8,7 +8,7 @@
 namespace tumble::mapping {
 
 /// Free space of a sweep: the nearest return per direction, in bins of a cube around one position, axes of the world. A
-/// point closer than all returns around its direction is no longer there, mapping.md (R122). Directions with few
+/// point closer than all returns around its direction is no longer there, mapping.md (R65). Directions with few
 /// returns, and those at an edge of the cube, give no information.
 class SightGrid {
  public:

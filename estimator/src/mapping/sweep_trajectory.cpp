@@ -25,7 +25,7 @@ Eigen::Vector3d least_known(std::span<const MotionSample> samples, TimeNs end_ns
   return sigma;
 }
 
-/// Factors s_j of the saturation deficit for a sample: signed, in proportion to its uncertainty. mapping.md (R9).
+/// Factors s_j of the saturation deficit for a sample: signed, in proportion to its uncertainty. mapping.md (R8).
 Eigen::Vector3d signed_shares(const MotionSample& sample, const Eigen::Vector3d& least_known_rad_s) {
   Eigen::Vector3d share = Eigen::Vector3d::Zero();
   for (int axis = 0; axis < 3; ++axis) {
@@ -37,7 +37,7 @@ Eigen::Vector3d signed_shares(const MotionSample& sample, const Eigen::Vector3d&
   return share;
 }
 
-/// Weights of the knots at a fraction of the segment: linear between neighbours, mapping.md (R8).
+/// Weights of the knots at a fraction of the segment: linear between neighbours, mapping.md (R7).
 Eigen::Matrix<double, SweepTrajectory::kKnots, 1> knot_weights(double share) {
   Eigen::Matrix<double, SweepTrajectory::kKnots, 1> weights;
   const double place = std::clamp(share, 0.0, 1.0) * (SweepTrajectory::kKnots - 1);
@@ -106,7 +106,7 @@ Status SweepTrajectory::build(const MotionState& start, std::span<const MotionSa
     now.length_s = dt;
     now.deficit_share = share;
     now.knot_weight = knot_weights(duration_s_ > 0.0 ? (now.start_s + 0.5 * dt) / duration_s_ : 0.0);
-    // mapping.md (R8), (R5), (R4), (R6)
+    // mapping.md (R7), (R5), (R4), (R6)
     now.w_I = sample.w_WI_I_rad_s + share.cwiseProduct(deficit_rad_s * now.knot_weight);
     const Eigen::Matrix3d R = now.q_WI.toRotationMatrix();
     const Eigen::Matrix3d mean_rotation = R * so3::left_jacobian(now.w_I * dt);
@@ -118,7 +118,7 @@ Status SweepTrajectory::build(const MotionState& start, std::span<const MotionSa
     if (clipped_axes_ == 0) continue;
     now.deficit_a = -so3::hat(now.a_W) * now.deficit_attitude;
     next.deficit_attitude = now.deficit_attitude + gained_by_deficit(now, dt);
-    // the force rotates with the mean attitude error of the interval, mapping.md (R11)
+    // the force rotates with the mean attitude error of the interval, mapping.md (R10)
     const ByDeficit turn = -so3::hat(now.a_W) * (0.5 * (now.deficit_attitude + next.deficit_attitude));
     next.deficit_v = now.deficit_v + turn * dt;
     next.deficit_p = now.deficit_p + now.deficit_v * dt + turn * (0.5 * dt * dt);
@@ -154,7 +154,7 @@ SweepTrajectory::Instant SweepTrajectory::at(double t_s, const Eigen::Vector3d& 
   return {now.q_WI * turned, now.preintegrated_p + s * now.preintegrated_v + (0.5 * s * s) * now.a_W};
 }
 
-/// Attitude change by the deficit up to `s` seconds into an interval, per unit of each knot's axes: mapping.md (R10).
+/// Attitude change by the deficit up to `s` seconds into an interval, per unit of each knot's axes: mapping.md (R9).
 SweepTrajectory::ByDeficit SweepTrajectory::gained_by_deficit(const Interval& now, double s) {
   if (now.deficit_share.isZero(0.0)) return ByDeficit::Zero();
   const Eigen::Matrix3d gained =
@@ -164,7 +164,7 @@ SweepTrajectory::ByDeficit SweepTrajectory::gained_by_deficit(const Interval& no
   return out;
 }
 
-/// mapping.md (R10), (R11), within an interval.
+/// mapping.md (R9), (R10), within an interval.
 SweepTrajectory::DeficitDerivative SweepTrajectory::deficit_derivative(double t_s, std::size_t& hint) const {
   const double t = std::clamp(t_s, 0.0, duration_s_);
   const Interval& now = interval_at(t, hint);
@@ -192,7 +192,7 @@ MotionState SweepTrajectory::state(double t_s) const {
   return state;
 }
 
-/// mapping.md (R12).
+/// mapping.md (R11).
 SweepTrajectory::Transition SweepTrajectory::transition(double t_s) const {
   const double t = std::clamp(t_s, 0.0, duration_s_);
   std::size_t hint = 0;

@@ -21,7 +21,7 @@ struct Lost {
 };
 
 /// An unconfirmed relocalisation. Inertial prediction continues in parallel (DeadReckoning) and replaces it if a sweep
-/// contradicts it. mapping.md (R120), (R121).
+/// contradicts it. mapping.md (R67), (R68).
 struct FoundAgain {
   int after_sweeps = 0;  ///< rejected sweeps before it
   int failed_searches = 0;

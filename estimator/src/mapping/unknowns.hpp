@@ -28,7 +28,7 @@ inline constexpr Block<Registration::kCalibration + 7, 3> gravity;
 /// Variance of an unknown whose prior is exact, so that the prior can be inverted.
 inline constexpr double kLeastVariance = 1e-12;
 /// Bound of the squared Mahalanobis distance at which a sweep's motion agrees with its prior: the 95 % quantile of
-/// chi-square with nine degrees of freedom. mapping.md (R59), (R99).
+/// chi-square with nine degrees of freedom. mapping.md (R25), (R71).
 inline constexpr double kAgrees = 16.9;
 static_assert(SweepUnknowns::kMotion == 9);
 

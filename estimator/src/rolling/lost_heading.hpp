@@ -7,7 +7,7 @@
 
 /// Prevents false information about the heading, which contact does not determine. A whole run rotated about the
 /// vertical gives the same readings. A linearised filter with a large heading error still gains false information,
-/// because the linearisation points of successive updates differ: rolling.md (R37) to (R39).
+/// because the linearisation points of successive updates differ: rolling.md (R34) to (R36).
 namespace tumble::rolling {
 
 /// Standard deviation of the heading above which this correction is applied; the false information is quadratic in it.
@@ -18,13 +18,13 @@ inline bool lost_heading(const Covariance& P) {
 }
 
 /// Removes the effect of a rotation of the whole run from the derivative of the contact velocity. The true effect is
-/// zero while the contact point does not move. (R38)
+/// zero while the contact point does not move. (R35)
 inline void blind_to_heading(Contact& c) {
   c.H.col(kAttitude + 2) -= Eigen::Vector3d::UnitZ().cross(c.u_W_m_s);
 }
 
 /// Returns the change of the effect of a rotation about the vertical on velocity, position and slope, when the nominal
-/// moves by `x`. (R39)
+/// moves by `x`. (R36)
 inline Vector turned_by_heading(const Vector& x) {
   const auto turned = [](const auto& v) { return Eigen::Vector2d(-v.y(), v.x()); };
   Vector out = Vector::Zero();
@@ -34,7 +34,7 @@ inline Vector turned_by_heading(const Vector& x) {
   return out;
 }
 
-/// Transforms the covariance of errors about the old nominal to the new one: P <- T P T^T. (R39)
+/// Transforms the covariance of errors about the old nominal to the new one: P <- T P T^T. (R36)
 inline void move_errors(const Vector& turned, Covariance& P) {
   P += (turned * P.row(kAttitude + 2)).eval();
   P += (P.col(kAttitude + 2) * turned.transpose()).eval();

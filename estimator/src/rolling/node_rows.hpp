@@ -11,7 +11,7 @@
 namespace tumble::rolling {
 
 /// Rolling constraint: the contact point does not move (when slipping, it stays on the floor). An unknown velocity is
-/// assumed to be small: rolling.md (R16), (R19).
+/// assumed to be small: rolling.md (R17), (R20).
 template <class Take>
 void contact_rows(const RollingParams& params, const Contact& c, RollingMode mode, double node_s,
                   const Eigen::Vector3d& v_WI_m_s, const Vector& x, const Covariance& P, Take&& take) {
@@ -26,7 +26,7 @@ void contact_rows(const RollingParams& params, const Contact& c, RollingMode mod
   }
 }
 
-/// Rest: velocity and, unless the sphere spins in place, rate are zero. rolling.md (R27).
+/// Rest: velocity and, unless the sphere spins in place, rate are zero. rolling.md (R28).
 template <class Take>
 void rest_rows(const RollingParams& params, const RollingSums& sums, const RollingNominal& nominal, bool spins_in_place,
                Take&& take) {

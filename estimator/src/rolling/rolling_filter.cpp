@@ -141,7 +141,7 @@ void RollingFilter::detect_rest(State& state) const {
 }
 
 /// Returns whether a sphere at rest rotates slowly about its contact, by comparison with the known bias. rolling.md
-/// (R28).
+/// (R29).
 bool RollingFilter::spins_in_place(const State& state) const {
   const double averaged = params_.expert.node_s / (2.0 * kSlowRateTau_s);
   const Hypothesis& best = state.hypotheses[0];
@@ -153,7 +153,7 @@ bool RollingFilter::spins_in_place(const State& state) const {
 }
 
 /// Contribution of the other hypotheses to the position's covariance about the best one: sum of w d d^T over the sum of
-/// w, rolling.md (R26).
+/// w, rolling.md (R27).
 Eigen::Matrix3d RollingFilter::position_spread(const State& state) {
   const Eigen::Vector3d best = state.hypotheses[0].x.segment<3>(rolling::kPosition);
   Eigen::Matrix3d spread = Eigen::Matrix3d::Zero();

@@ -39,7 +39,7 @@ double log_normal(double value, double variance) {
   return -0.5 * (value * value / variance + std::log(2.0 * std::numbers::pi * variance));
 }
 
-/// Log density of a vertical change of u per node on a bump: rolling over it, or hitting it. m1 of rolling.md (R24).
+/// Log density of a vertical change of u per node on a bump: rolling over it, or hitting it. m1 of rolling.md (R25).
 double log_rise(double change) {
   const auto density = [&](double sigma) {
     return std::exp(-0.5 * change * change / (sigma * sigma)) / (sigma * std::sqrt(2.0 * std::numbers::pi));
@@ -48,7 +48,7 @@ double log_rise(double change) {
 }
 
 /// Log density of a horizontal change of u per node with squared length `square`: plateau, drift or jump. m2 of
-/// rolling.md (R23).
+/// rolling.md (R24).
 double log_change(double square) {
   double density = 0.0;
   for (const auto& [share, sigma] : {std::pair(kPlateauShare, kPlateau_m_s), std::pair(kSteadyShare, kSteady_m_s),
@@ -58,7 +58,7 @@ double log_change(double square) {
   return std::log(density + 1e-300);
 }
 
-/// Log density of a stationary contact point, for hypothesis `h` in mode `mode`: rolling.md (R22).
+/// Log density of a stationary contact point, for hypothesis `h` in mode `mode`: rolling.md (R23).
 double log_still(const rolling::Contact& c, const RollingFilter::Hypothesis& h, RollingMode mode,
                  const RollingParams& params) {
   RollingFilter::Vector x = h.x;
@@ -90,8 +90,8 @@ double log_still(const rolling::Contact& c, const RollingFilter::Hypothesis& h, 
   return -cost - 0.5 * (square + log_det + 3.0 * std::log(2.0 * std::numbers::pi));
 }
 
-/// Log density of a moving contact point, by the change of its velocity `u` since the last node: rolling.md (R23),
-/// (R24).
+/// Log density of a moving contact point, by the change of its velocity `u` since the last node: rolling.md (R24),
+/// (R25).
 double log_moving(const rolling::Contact& c, const RollingFilter::Hypothesis& h, RollingMode mode,
                   const Eigen::Vector3d& u, const RollingParams& params) {
   const Eigen::Vector3d change = u - h.u_W_m_s;
@@ -101,7 +101,7 @@ double log_moving(const rolling::Contact& c, const RollingFilter::Hypothesis& h,
   return horizontal + log_normal(u.z(), vertical);
 }
 
-/// rolling.md (R21).
+/// rolling.md (R22).
 double log_transition(const RollingParams& params, RollingMode from, RollingMode to, double h_s) {
   const auto& modes = params.expert.modes;
   const auto rate = [&](RollingMode a, RollingMode b) {
@@ -225,7 +225,7 @@ void rearrange(const Origins& from, std::size_t count, std::span<RollingFilter::
 
 }  // namespace
 
-/// rolling.md (R25).
+/// rolling.md (R26).
 void RollingFilter::choose_modes(const Eigen::Vector3d& rate_I_rad_s, bool lost_heading, State& state) const {
   rolling::Contact c = rolling::contact(params_, state.nominal, rate_I_rad_s, state.sums);
   if (lost_heading) rolling::blind_to_heading(c);
@@ -260,7 +260,7 @@ void RollingFilter::keep_first(std::size_t count, State& state) {
   state.count = static_cast<int>(count);
 }
 
-/// Updates every hypothesis with rest and grip: rolling.md (R27).
+/// Updates every hypothesis with rest and grip: rolling.md (R28).
 void RollingFilter::correct_at_rest(State& state) const {
   for (int k = 0; k < state.count; ++k) {
     Hypothesis& h = state.hypotheses[static_cast<std::size_t>(k)];

@@ -44,14 +44,14 @@ constexpr double kGapStep = 0.15;   // uncertain time of a rate change within a 
 
 }  // namespace
 
-/// rolling.md (R17), (R18).
+/// rolling.md (R18), (R19).
 Eigen::Vector3d contact_variance(const RollingParams& params, const Contact& c, RollingMode mode) {
   const double rough =
       mode == RollingMode::rough ? squared(params.expert.contact.rough_share * c.rolling_speed_m_s) : 0.0;
   return {c.grip_variance, c.grip_variance, squared(params.expert.contact.vertical_sigma_m_s) + rough + c.gap_variance};
 }
 
-/// rolling.md (R16).
+/// rolling.md (R17).
 Eigen::Vector3d Contact::velocity(const Vector& x) const {
   const Eigen::Vector2d change = x.segment<2>(kSlope);
   const double curved = upward(slope + change) - upward(slope) + slope.dot(change) / upward(slope);
@@ -102,7 +102,7 @@ struct RailedForce {
   Eigen::Vector3d least_m_s2 = Eigen::Vector3d::Zero();  ///< components for which the reading is a lower bound
 };
 
-/// Returns the reading, or the force that keeps the centre's velocity constant if it is larger. rolling.md (R7a).
+/// Returns the reading, or the force that keeps the centre's velocity constant if it is larger. rolling.md (R8).
 RailedForce railed_force(const ImuSample& sample, const Eigen::Vector3d& read_m_s2, const Eigen::Vector3d& kept_m_s2) {
   int largest = 0;
   sample.specific_force_m_s2.cwiseAbs().maxCoeff(&largest);
@@ -122,7 +122,7 @@ RailedForce railed_force(const ImuSample& sample, const Eigen::Vector3d& read_m_
 
 }  // namespace
 
-/// rolling.md (R2) to (R8).
+/// rolling.md (R2) to (R9).
 void integrate(const RollingParams& params, const ImuAverage& reading, RollingNominal& nominal, RollingSums& sums,
                Force known) {
   const ImuSample& sample = reading.mean;
@@ -211,12 +211,12 @@ ImuAverage gap_piece(const RollingParams& params, const ImuSample& before, const
   const double turning = std::max(before.angular_velocity_rad_s.norm(), after.angular_velocity_rad_s.norm());
   const double acceleration =
       kGapStill_rad_s2 + params.expert.gap.gap_acceleration_rad_s2 * std::min(1.0, turning / kGapRate_rad_s);
-  // a parabola between two known rates has the integral a T^3 / 12: rolling.md (R30)
+  // a parabola between two known rates has the integral a T^3 / 12: rolling.md (R31)
   const double off_rad = acceleration * gap_s * gap_s * gap_s / 12.0 + kGapStep * change.norm() * gap_s;
   doubt.rad2 = off_rad * off_rad / pieces;
-  // rolling.md (R31)
+  // rolling.md (R32)
   doubt.rate_rad2_s = squared(off_rad / gap_s) * gap_s;  // common to all pieces, hence a factor gap_s
-  doubt.speed_m2_s2 = squared(kGapTurned * params.radius_m * change.norm()) / pieces;  // rolling.md (R31a)
+  doubt.speed_m2_s2 = squared(kGapTurned * params.radius_m * change.norm()) / pieces;  // rolling.md (R33)
   ImuAverage piece;
   piece.add(sample, gap_s / pieces);
   return piece;
@@ -231,7 +231,7 @@ void integrate_gap(const RollingParams& params, const ImuAverage& piece, const G
   sums.gap_speed_m2_s2 += doubt.speed_m2_s2;
 }
 
-/// rolling.md (R9).
+/// rolling.md (R10).
 Moving transition(const RollingSums& sums) {
   Moving B = Moving::Zero();
   B.block<3, 3>(kAttitude, kGyroBias) = -sums.R_s;
@@ -245,7 +245,7 @@ Moving transition(const RollingSums& sums) {
   return B;
 }
 
-/// rolling.md (R10) to (R13).
+/// rolling.md (R11) to (R14).
 void predict(const RollingParams& params, const RollingSums& sums, const Moving& B, Vector& x, Covariance& P) {
   const double h = sums.node_s;
   x.head<9>() += (B * x).eval();
@@ -271,7 +271,7 @@ void predict(const RollingParams& params, const RollingSums& sums, const Moving&
   diagonal.segment<3>(kAccelBias).array() += squared(params.expert.noise.accel_bias_walk_m_s2_sqrts) * h;
 }
 
-/// rolling.md (R14), (R15), and the variance of (R17).
+/// rolling.md (R15), (R16), and the variance of (R18).
 Contact contact(const RollingParams& params, const RollingNominal& nominal, const Eigen::Vector3d& rate_I_rad_s,
                 const RollingSums& sums) {
   const Eigen::Matrix3d R = nominal.q_WI.toRotationMatrix();
@@ -309,13 +309,13 @@ Contact contact(const RollingParams& params, const RollingNominal& nominal, cons
     out.grip_variance += squared(r * params.expert.rails.recovered_rate_sigma_rad_s);
   }
   if (sums.gap_s > 0.0) {
-    out.gap_variance = squared(r) * sums.gap_rate_rad2_s / sums.node_s;  // rolling.md (R31)
+    out.gap_variance = squared(r) * sums.gap_rate_rad2_s / sums.node_s;  // rolling.md (R32)
     out.grip_variance += out.gap_variance;
   }
   return out;
 }
 
-/// rolling.md (R19).
+/// rolling.md (R20).
 std::optional<double> lost_velocity_variance(const RollingParams& params, double node_s, const Covariance& P) {
   if (P(kVelocity, kVelocity) + P(kVelocity + 1, kVelocity + 1) < squared(kUnsureSpeed_m_s)) return std::nullopt;
   return squared(params.expert.contact.speed_sigma_m_s) * kSpeedWindow_s / node_s;
@@ -325,7 +325,7 @@ bool forgets_slope(RollingMode from, RollingMode to) {
   return from != to && !slips(to);
 }
 
-/// rolling.md (R20).
+/// rolling.md (R21).
 void change_floor(const RollingParams& params, RollingMode from, RollingMode to, double h_s,
                   const RollingNominal& nominal, Vector& x, Covariance& P) {
   if (from == RollingMode::incline && to == from) {
@@ -341,7 +341,7 @@ void change_floor(const RollingParams& params, RollingMode from, RollingMode to,
   x.segment<2>(kSlope) = -nominal.slope;
 }
 
-/// rolling.md (R29).
+/// rolling.md (R30).
 bool reset_tilt(const RollingParams& params, const RollingSums& sums, bool at_rest, RollingNominal& nominal,
                 Covariance& P) {
   if (sums.force_clipped_s >= sums.node_s) return false;

@@ -52,7 +52,7 @@ rolling::Readings::Cursor start_cursor(const ImuSample& sample) {
   return cursor;
 }
 
-/// Covariance of (centre, attitude) from that of the reported states: rolling.md (R35).
+/// Covariance of (centre, attitude) from that of the reported states: rolling.md (R40).
 Eigen::Matrix<double, 6, 6> pose_covariance(const rolling::NodeRecord& node, const Eigen::Vector3d& arm_W) {
   Eigen::Matrix<double, 6, rolling::kReported> J = Eigen::Matrix<double, 6, rolling::kReported>::Zero();
   J.block<3, 3>(0, 0) = so3::hat(arm_W);

@@ -29,7 +29,7 @@ double current_yaw(const Eigen::Quaterniond& q) {
 }
 
 /// Published complementary step: rotates along the arc towards the accelerometer's roll and pitch at the current yaw,
-/// attitude.md (A16).
+/// attitude.md (A25).
 Eigen::Quaterniond towards_roll_and_pitch(const Eigen::Quaterniond& q, const Eigen::Vector3d& f, double share,
                                           bool keep_roll) {
   const double sin_pitch = 2.0 * (q.w() * q.y() - q.x() * q.z());
@@ -48,7 +48,7 @@ Autogain::Autogain(const Params& p) : params_(p) {
   require_within("upper_rad_s", p.upper_rad_s, p.lower_rad_s + 1e-9, 100.0);
 }
 
-/// attitude.md (A12), (A13), (A14).
+/// attitude.md (A21), (A22), (A23).
 AutogainGains Autogain::gains(const Eigen::Vector3d& w_I_rad_s, double dt_s) const {
   const double width = params_.upper_rad_s - params_.lower_rad_s;
   const auto risen = [&](double rate) { return std::clamp((rate - params_.lower_rad_s) / width, 0.0, 1.0); };

@@ -92,7 +92,7 @@ void PointwiseFilter::take(const Reading& reading) {
   }
 }
 
-/// mapping.md (R14), (R15): the first two rows, within an instant.
+/// mapping.md (R16), (R17): the first two rows, within an instant.
 bool PointwiseFilter::take(const SweepPoint& point) {
   const Eigen::Vector3d lever = q_WI_ * point.x_I_m.cast<double>();
   const Eigen::Vector3d position = p_m_ + lever;

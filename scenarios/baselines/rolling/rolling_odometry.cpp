@@ -36,7 +36,7 @@ Status RollingOdometry::step(TimeNs time_ns, const Eigen::Vector3d& w_I_rad_s, c
     if (const Status bad = elapsed(time_ns, state.last_time_ns, params_.gap_max_s, dt_s); !bad.ok()) return bad;
   }
   const Eigen::Vector3d w_W_rad_s = q_WI * w_I_rad_s;
-  // rolling.md (R14) with u = 0, of the centre
+  // rolling.md (R15) with u = 0, of the centre
   const Eigen::Vector3d v_WG_m_s = params_.radius_m * w_W_rad_s.cross(params_.normal_W);
   state.p_WG_m += 0.5 * dt_s * (state.v_WG_m_s + v_WG_m_s);
   state.v_WG_m_s = v_WG_m_s;

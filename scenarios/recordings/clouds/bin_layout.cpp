@@ -19,7 +19,7 @@ constexpr std::array<std::size_t, 8> kOtherFloats = {3, 5, 6, 7, 8, 9, 10, 12};
 constexpr std::array<std::size_t, 6> kDoubles = {3, 4, 5, 6, 7, 8};
 /// Numbers are taken from so many places of the file, so many in a row: a sweep in the order of its rings is seen
 /// whole.
-constexpr std::size_t kStretches = 4, kInRow = 6000;
+constexpr std::size_t kSections = 4, kInRow = 6000;
 constexpr std::size_t kPerColumnMin = 25;
 constexpr std::size_t kNumberBins = 16;
 /// Beyond these no coordinate in metres is, nor an intensity. Sines of 180 degrees times a range are 1e-16 or so.
@@ -36,12 +36,12 @@ struct NumberSample {
 
 template <class Number>
 NumberSample sample_of(std::span<const char> bytes) {
-  const std::size_t count = bytes.size() / sizeof(Number), stretch = count / kStretches;
+  const std::size_t count = bytes.size() / sizeof(Number), section = count / kSections;
   NumberSample out;
   std::size_t next = 0;
-  for (std::size_t place = 0; place < kStretches; ++place) {
-    const std::size_t end = count <= kStretches * kInRow ? count : place * stretch + kInRow;
-    for (next = std::max(next, place * stretch); next < end; ++next) {
+  for (std::size_t place = 0; place < kSections; ++place) {
+    const std::size_t end = count <= kSections * kInRow ? count : place * section + kInRow;
+    for (next = std::max(next, place * section); next < end; ++next) {
       Number value;
       std::memcpy(&value, bytes.data() + next * sizeof(value), sizeof(value));
       out.values.push_back(static_cast<double>(value));

@@ -152,7 +152,7 @@ TEST(RestGravity, ErrorsOfAClippedSegmentLastAsLongAsIt) {
 }
 
 // Whole turns: by the other sense, or twice as many, gravity is where it was. Turned back by such rates the force goes
-// round the axis a, and what is left in the mean is (a u) a: imu_merge.md (I22).
+// round the axis a, and what is left in the mean is (a u) a: imu_merge.md (I25).
 TEST(RestGravity, RatesThatMeetGravityByChanceLeaveAVelocity) {
   const RestGravity gravity({});
   const Eigen::Vector3d axis = Eigen::Vector3d(1.0, 0.4, -0.1).normalized();

@@ -7,7 +7,7 @@
 #include <optional>
 #include <span>
 
-#include "tumble/common/compiled_alike.hpp"  // IWYU pragma: keep
+#include "tumble/common/detail/compiled_alike.hpp"  // IWYU pragma: keep
 
 namespace tumble {
 

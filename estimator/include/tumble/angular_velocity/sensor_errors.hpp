@@ -91,7 +91,7 @@ struct SensorErrorEvidence {
 /// Reduces the evidence to `share` in the directions that a freely moving body does not determine. Such directions are
 /// a scale common to all axes of a triad, and a common rotation of both triads. In these directions the evidence comes
 /// from residuals of the motion model, which smaller motions reduce, and grows with the number of samples.
-/// rate_smoother.md (R37a).
+/// rate_smoother.md (R39).
 void discount_untold(double share, SensorErrorEvidence& evidence);
 
 /// Sensor errors estimated from the readings and the prior.

@@ -26,7 +26,7 @@ namespace tumble {
 /// - The density of the hand's acceleration adapts to the nodes that left the window, with the time constant
 ///   `hand_window_s` / 2, and not to later nodes.
 /// - Other numbers of revolutions are not tested. The covariance includes the deviation of an additional revolution,
-///   and segments that may contain one are counted (C43, C44 of carried.md).
+///   and segments that may contain one are counted (C42, C43 of carried.md).
 /// - Readings that have left the window were classified with the saturation levels known at that time.
 /// - The prior from the past uses the assumed jerk; covariances use the inflated one.
 ///
@@ -103,7 +103,7 @@ class CarriedStream {
   ///   whose signs changed are processed again.
   /// - `out`: rate of the sample that is `lag_s` old. Empty while the window fills, and if not `wanted`, which saves
   ///   most of the computation.
-  /// - `held`: repeated readings of the log. A repeated reading counts once, at the time when the sensor took it (R97
+  /// - `held`: repeated readings of the log. A repeated reading counts once, at the time when the sensor took it (R95
   ///   of rate_stream.md).
   Status push(const ImuSample& sample, const ClippedElements& known, State& state, std::optional<RateState>& out,
               bool wanted = true, const HoldWatch::State& held = {}) const;

@@ -107,7 +107,7 @@ class ImuPlausibility {
   double force_share(const State& state) const;
   /// Returns the fraction of the force's rotation that the gyro does not explain; 0 while unknown.
   double unexplained_share(const State& state) const;
-  /// Returns the slope of the force's rotation over the gyro's (I17); 1 while unknown.
+  /// Returns the slope of the force's rotation over the gyro's (I20); 1 while unknown.
   double rotation_slope(const State& state) const;
   /// Returns the correlation of the two rotations, -1 to 1. The correlation is 1 for a gyro of any scale, -1 for an
   /// inverted gyro, and about 0 for swapped axes. Pushes mistaken for gravity cause values between. 1 while the
@@ -117,7 +117,7 @@ class ImuPlausibility {
   /// while unknown.
   double force_rotated_share(const State& state) const;
   /// Returns the axis labels under which gravity rotates with the gyro, if they clearly differ from the current ones
-  /// (I18).
+  /// (I22).
   std::optional<AxisLabels> other_labels(const State& state) const;
   /// Returns the longest time for which the gyro or the accelerometer was frozen [s]; 0: never.
   double frozen_s(const State& state) const;

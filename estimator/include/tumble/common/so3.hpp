@@ -4,7 +4,7 @@
 #include <Eigen/Core>
 #include <Eigen/Geometry>
 
-#include "tumble/common/compiled_alike.hpp"  // IWYU pragma: keep
+#include "tumble/common/detail/compiled_alike.hpp"  // IWYU pragma: keep
 
 namespace tumble::so3 {
 

@@ -3,7 +3,7 @@
 
 #include <cstdint>
 
-#include "tumble/common/compiled_alike.hpp"  // IWYU pragma: keep
+#include "tumble/common/detail/compiled_alike.hpp"  // IWYU pragma: keep
 
 namespace tumble {
 

@@ -33,7 +33,7 @@ struct GivenCalibration {
   double mount_sigma_rad = 0.0, mount_sigma_m = 0.0, time_offset_sigma_s = 0.0;
 
   /// Returns the distance of `learnt` from the stated calibration in standard deviations: the largest of rotation,
-  /// translation and time offset. The distance is infinite if an exact part differs. mapping.md (R55). Gravity is
+  /// translation and time offset. The distance is infinite if an exact part differs. mapping.md (R69). Gravity is
   /// excluded because each run estimates it.
   double moved(const SweepCalibration& learnt) const;
   /// Returns `out_of_range` if `learnt` is more than `kBelieved` standard deviations away. The stated calibration is

@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "tumble/common/compiled_alike.hpp"  // IWYU pragma: keep
+#include "tumble/common/detail/compiled_alike.hpp"  // IWYU pragma: keep
 
 namespace tumble {
 

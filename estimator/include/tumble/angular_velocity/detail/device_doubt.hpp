@@ -9,7 +9,7 @@ namespace tumble {
 
 /// Computes the uncertainty of a device's sensor errors from growing evidence. The prior is a mixture of two devices:
 /// one that matches its data sheet, and one that is uncalibrated (SensorErrorSizes, all sizes together). A stream uses
-/// this class instead of fit_sensor_errors(), which costs more. rate_stream.md (R103), (R104).
+/// this class instead of fit_sensor_errors(), which costs more. rate_stream.md (R102), (R103).
 class DeviceDoubt {
  public:
   /// Weight of the samples' evidence about the errors. Sample errors are correlated, because errors of the flight model
@@ -35,11 +35,11 @@ class DeviceDoubt {
   void ask(const SensorErrorEvidence& evidence, Work& work, Open& open, bool unlike = false) const;
 
   /// Returns the likelihood ratio of synchronous triads, as the data sheet states, against asynchronous ones. `delay_s`
-  /// is a measured delay minus the known one, with its standard deviation. rate_stream.md (R109).
+  /// is a measured delay minus the known one, with its standard deviation. rate_stream.md (R106).
   double odds_of_sheet(double delay_s, double sigma_s) const;
 
   /// Returns the additional delay, beyond the one already corrected, that `evidence` implies for a device with any
-  /// delay within `reach_s`: rate_stream.md (R110). Returns 0 if the evidence is indefinite. O(1), no allocation.
+  /// delay within `reach_s`: rate_stream.md (R107). Returns 0 if the evidence is indefinite. O(1), no allocation.
   double further_delay_s(const SensorErrorEvidence& evidence, double reach_s) const;
 
   /// Resets to the prior.

@@ -12,7 +12,7 @@
 #include "tumble/common/imu.hpp"
 
 /// Interpolation for a gyro that is slower than its log, whose readings are repeated and refer to an earlier time.
-/// Cubic interpolation between the readings around a sample, each at its true time. docs/maths/rate_stream.md (R100).
+/// Cubic interpolation between the readings around a sample, each at its true time. docs/maths/rate_stream.md (R96).
 namespace tumble {
 
 /// A rate between two readings of the gyro, including its bias.

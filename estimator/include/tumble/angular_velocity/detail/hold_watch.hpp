@@ -28,7 +28,7 @@ struct HeldReading {
 
 /// Detects a log that is faster than its sensor, causally. HoldWatch is the causal form of find_held. HoldWatch does
 /// not estimate the phase of the sensor's clock, so a new reading has an age of 0.5 +- 0.29 samples.
-/// docs/maths/rate_stream.md (R97).
+/// docs/maths/rate_stream.md (R95).
 class HoldWatch {
  public:
   /// State of one triad.

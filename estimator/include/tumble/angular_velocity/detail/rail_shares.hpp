@@ -10,7 +10,7 @@ namespace tumble {
 inline constexpr double kStatedRailMin = 0.85;
 
 /// Margin below a saturation level, as a fraction. The margin covers the scale of the calibration, neighbours along a
-/// tilted plane, and motion. Readings further below are certainly free. rails.md (R54), (R75), rate_stream.md (R94).
+/// tilted plane, and motion. Readings further below are certainly free. rails.md (R54), (R75), rate_stream.md (R93).
 inline constexpr double kBesideRail = 0.02;
 
 /// Readings closer than this fraction of the level are equal, as in RailDetector.

@@ -49,7 +49,7 @@ struct RateStreamKnot {
   std::uint8_t near = 0;  ///< axes that may have been saturated for a part of the reading's window: rails.md (R76)
 };
 
-/// Delay of the accelerometer relative to the gyro: rate_stream.md (R107) to (R110).
+/// Delay of the accelerometer relative to the gyro: rate_stream.md (R104) to (R107).
 struct RateStreamDelay {
   StrokeSums strokes;
   double in_use_s = 0.0;           ///< delay that is applied; the prior until a delay is found
@@ -60,7 +60,7 @@ struct RateStreamDelay {
   bool operator==(const RateStreamDelay&) const = default;
 };
 
-/// Evidence about sensor errors from all samples that left the window, and its derivatives: rate_stream.md (R101).
+/// Evidence about sensor errors from all samples that left the window, and its derivatives: rate_stream.md (R100).
 struct RateStreamDevice {
   struct Work {
     arrow::BorderErrors border, of_rig;

@@ -13,7 +13,7 @@ struct TriadDelay {
 };
 
 /// Correlation of angular acceleration and force at impacts, for each tried delay: up to four samples to either side,
-/// in steps of an eighth. docs/maths/rate_smoother.md (R44).
+/// in steps of an eighth. docs/maths/rate_smoother.md (R45).
 struct StrokeSums {
   static constexpr int kMostSamples = 4, kPerSample = 8, kMost = kMostSamples * kPerSample, kTried = 2 * kMost + 1;
   using Tried = Eigen::Matrix<double, kTried, 1>;

@@ -13,7 +13,7 @@ namespace tumble {
 /// Finds the vertical after it was lost, for a body that continues to move. The method is the coarse alignment of
 /// inertial navigation. In axes propagated by the gyro, the integral of the specific force is the sum of gravity's
 /// integral and the change of velocity. Gravity's integral grows with time, the change of velocity does not.
-/// attitude.md (A10c), (A10d). Not linear: works from any initial attitude, including upside down. Not modelled: the
+/// attitude.md (A19), (A20). Not linear: works from any initial attitude, including upside down. Not modelled: the
 /// gyro's error (the caller adds it).
 struct CoarseAlignment {
   bool running = false;

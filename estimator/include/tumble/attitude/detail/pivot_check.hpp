@@ -71,7 +71,7 @@ struct PivotCheckParams {
 /// not, but would with relabelled or inverted gyro axes or with half or twice the rate, in many segments, the rates are
 /// wrong. If the pivot is near the sensor, as in hand-held motion, the gyro's scale is determined to a per cent.
 ///
-/// The equations are imu_merge.md (I24), (I25), (I26), (I27). Only measured rates count: a segment ends where the gyro
+/// The equations are imu_merge.md (I27), (I28), (I29), (I30). Only measured rates count: a segment ends where the gyro
 /// saturates. Not detected: a body that flies or rolls, which no alternative explains; rotation about one axis only,
 /// which several labels explain equally; an accelerometer with all three axes flipped, whose pivot is on the opposite
 /// side.

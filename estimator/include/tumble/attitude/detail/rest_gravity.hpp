@@ -21,7 +21,7 @@ namespace tumble {
 /// In addition, the velocity at a rest is zero. The forces of the span, rotated back by the rates, therefore integrate
 /// to gravity alone. Wrong rates that give the correct final direction by chance rarely satisfy this.
 ///
-/// The equations are imu_merge.md (I19), (I20), (I22), (I23). Not detected: a body that returns to its initial attitude
+/// The equations are imu_merge.md (I23), (I24), (I25), (I26). Not detected: a body that returns to its initial attitude
 /// (a pendulum), rotation about the vertical, an accelerometer with all axes flipped, less than two rests. A fall of a
 /// second without rotation and without any rest is mistaken for a force without gravity. A rest on the ground and
 /// another in a steadily moving vehicle are mistaken for wrong rates.

@@ -10,7 +10,7 @@ namespace tumble {
 
 /// Detects wrong axes common to all units: an axis of the gyros or of the accelerometers flipped, or two axes swapped.
 /// Uses force differences between units at different positions of one rigid body. Sums over a whole run. imu_merge.md
-/// (I7a).
+/// (I9).
 struct UnitSenses {
   static constexpr std::size_t kSenses = 12;  ///< x, y, z flipped; x y, y z, z x swapped; of gyros, then accelerometers
   static constexpr double kSizeMin_m2_s3 = 0.3;  ///< minimum effect of an alternative, above biases

@@ -22,7 +22,7 @@ struct InertialNoiseParams {
   /// As a fraction of the specific force: the velocity's uncertainty is this times the integral of the force. It
   /// matters at impacts.
   double force_share = 0.03;
-  /// Velocity and rate are random walks over a gap of the IMU, mapping.md (R99), (R100). For tumbling rigs and gaps of
+  /// Velocity and rate are random walks over a gap of the IMU, mapping.md (R43), (R44). For tumbling rigs and gaps of
   /// 0.05 to 0.5 s, the true values are 2.4 to 4.1. For a rate that is known at both ends they are 3 to 11.
   double gap_velocity_walk_m_s_sqrt_s = 3.0;
   double gap_rate_walk_rad_s_sqrt_s = 9.0;

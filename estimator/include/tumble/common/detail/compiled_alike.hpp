@@ -4,8 +4,8 @@
 #include <Eigen/Core>
 #include <cstddef>
 
-/// A program must lay out Eigen's matrices and the standard library's containers as the library was compiled to do, else
-/// both read each other's memory wrongly. CMake's targets see to this. A program that changes it after all, by
+/// A program must lay out Eigen's matrices and the standard library's containers as the library was compiled to do,
+/// else both read each other's memory wrongly. CMake's targets see to this. A program that changes it after all, by
 /// EIGEN_MAX_STATIC_ALIGN_BYTES, EIGEN_DONT_VECTORIZE, _GLIBCXX_DEBUG or the like, does not link: the linker misses
 /// CompiledAlike<...>::linked, whose arguments are what the program was compiled with.
 namespace tumble::detail {
