@@ -227,15 +227,16 @@ TEST(HostileHeldReadings, BeyondWhatIsHeldAreRefused) {
     spoil(spoiled.stream.readings.back().gyro, spoiled.holds.memory[0]);
     return std::string(load_state<CarriedLive>(save_state<CarriedLive>(params, spoiled), params, loaded).field);
   };
-  using Memory = HoldWatch::Memory;
-  EXPECT_EQ(field_with([](HeldReading&, Memory&) {}), "") << "negative control";
-  EXPECT_EQ(field_with([](HeldReading& held, Memory&) { held.age_samples = 1e300; }), "held.age_samples");
-  EXPECT_EQ(field_with([](HeldReading& held, Memory&) { held.age_samples = -1.0; }), "held.age_samples");
-  EXPECT_EQ(field_with([](HeldReading& held, Memory&) { held.period_samples = 11.0; }), "held.period_samples");
-  EXPECT_EQ(field_with([](HeldReading& held, Memory&) { held.period_samples = 0.0; }), "held.period_samples");
-  EXPECT_EQ(field_with([](HeldReading&, Memory& memory) { memory.said = -1e300; }), "hold.said");
-  EXPECT_EQ(field_with([](HeldReading&, Memory& memory) { memory.moving = 1e300; }), "hold.moving");
-  EXPECT_EQ(field_with([](HeldReading&, Memory& memory) { memory.repeated = memory.moving + 1.0; }), "hold.repeated");
+  using Memory = RepeatDetector::Memory;
+  EXPECT_EQ(field_with([](RepeatedReading&, Memory&) {}), "") << "negative control";
+  EXPECT_EQ(field_with([](RepeatedReading& held, Memory&) { held.age_samples = 1e300; }), "held.age_samples");
+  EXPECT_EQ(field_with([](RepeatedReading& held, Memory&) { held.age_samples = -1.0; }), "held.age_samples");
+  EXPECT_EQ(field_with([](RepeatedReading& held, Memory&) { held.period_samples = 11.0; }), "held.period_samples");
+  EXPECT_EQ(field_with([](RepeatedReading& held, Memory&) { held.period_samples = 0.0; }), "held.period_samples");
+  EXPECT_EQ(field_with([](RepeatedReading&, Memory& memory) { memory.run_samples = -1e300; }), "hold.run_samples");
+  EXPECT_EQ(field_with([](RepeatedReading&, Memory& memory) { memory.moving = 1e300; }), "hold.moving");
+  EXPECT_EQ(field_with([](RepeatedReading&, Memory& memory) { memory.repeated = memory.moving + 1.0; }),
+            "hold.repeated");
 }
 
 /// A second pass that is under way in a run that has not moved: what it counts from is not there.
@@ -244,7 +245,7 @@ TEST(HostileSecondPass, WithoutAMotionIsRefused) {
   TumblingOdometry::Params params;
   params.imu.rate_hz = body.imu_hz;
   params.lever_arm_I_m = body.lever_arm_I_m;
-  params.expert.again.after_s = 0.9;
+  params.expert.second_pass.after_s = 0.9;
   TumblingOdometry door(params);
   const std::vector<ImuSample> imu = body.imu();
   const std::vector<test::ThrownBody::Sweep> sweeps = body.sweeps();
@@ -255,7 +256,7 @@ TEST(HostileSecondPass, WithoutAMotionIsRefused) {
       ASSERT_TRUE(door.add_sweep(sweeps[next].start_ns, sweeps[next].end_ns, sweeps[next].points).ok());
     while (door.take()) continue;
   }
-  ASSERT_FALSE(door.passed_again());
+  ASSERT_FALSE(door.second_pass_applied());
   const Bytes saved = door.save();
   std::size_t refused = 0;
   for (std::size_t k = 115; k < 140; ++k) {
@@ -269,7 +270,7 @@ TEST(HostileSecondPass, WithoutAMotionIsRefused) {
       made_up.resize(made_up.size() + 8);
       made_up.insert(made_up.end(), at + 16, saved.end());
       reseal(made_up);
-      refused += std::string(TumblingOdometry(params).load(made_up).field) == "again.moves_ns";
+      refused += std::string(TumblingOdometry(params).load(made_up).field) == "second_pass.moves_ns";
     }
   }
   EXPECT_EQ(refused, 1u);

@@ -81,7 +81,7 @@ void expect_mapped(const ThrownBody& body, double lidar_from_s) {
   const auto lost = std::count_if(run.sweeps.begin(), run.sweeps.end(),
                                   [](const auto& sweep) { return sweep.report.verdict == SweepVerdict::rejected; });
   EXPECT_EQ(lost, 0);
-  EXPECT_TRUE(odometry.doubt().ok()) << odometry.doubt().message();
+  EXPECT_TRUE(odometry.health().ok()) << odometry.health().message();
   const EndError error = end_error(body, run);
   EXPECT_LT(error.m, 0.03);
   EXPECT_LT(error.rad, 0.01);
@@ -164,7 +164,7 @@ TEST(AccelerometerUnit, IsDoubtedByTumblingOdometryWithinTwoSeconds) {
     SCOPED_TRACE(unit_m_s2);
     TumblingOdometry odometry(test::params_of({}));
     for (const ImuSample& sample : at_rest(unit_m_s2, 2.0)) ASSERT_TRUE(odometry.add_imu(sample).ok());
-    const Status status = odometry.doubt();
+    const Status status = odometry.health();
     EXPECT_EQ(status.trouble, Trouble::out_of_range);
     EXPECT_STREQ(status.field, kUnit);
     EXPECT_NEAR(status.value * unit_m_s2, 1.0, 0.01);
@@ -181,8 +181,8 @@ TEST(AccelerometerUnit, IsDoubtedByRollingOdometryWithinTwoSeconds) {
     params.units.front().sheet.rate_hz = 100.0;
     RollingOdometry odometry(params);
     for (const ImuSample& sample : at_rest(unit_m_s2, 2.0)) (void)odometry.add_imu(sample);
-    EXPECT_EQ(odometry.doubt().trouble, Trouble::out_of_range);
-    EXPECT_STREQ(odometry.doubt().field, kUnit);
+    EXPECT_EQ(odometry.health().trouble, Trouble::out_of_range);
+    EXPECT_STREQ(odometry.health().field, kUnit);
   }
 }
 
@@ -190,12 +190,12 @@ TEST(AccelerometerUnit, IsNotDoubtedOfASoundOneOrInMotion) {
   TumblingOdometry at_rest_odometry(test::params_of({})), thrown(test::params_of({}));
   for (const double scale : {0.9, 1.0, 1.1}) {
     for (const ImuSample& sample : at_rest(scale, 3.0)) (void)at_rest_odometry.add_imu(sample);
-    EXPECT_TRUE(at_rest_odometry.doubt().ok());
+    EXPECT_TRUE(at_rest_odometry.health().ok());
     at_rest_odometry = TumblingOdometry(test::params_of({}));
   }
   for (const ImuSample& sample : ThrownBody().imu()) {
     ASSERT_TRUE(thrown.add_imu(sample).ok());
-    EXPECT_TRUE(thrown.doubt().ok()) << thrown.doubt().message();
+    EXPECT_TRUE(thrown.health().ok()) << thrown.health().message();
   }
 }
 

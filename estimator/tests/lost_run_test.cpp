@@ -36,10 +36,10 @@ TEST(TumblingOdometry, DoubtsAPlaceThatInertiaAloneHasFound) {
   ThrownBody body;
   TumblingOdometry seeing(params_of(body)), lost(params_of(body));
   run(body, 0.0, 0.0, seeing);
-  EXPECT_TRUE(seeing.doubt().ok()) << seeing.doubt().message();
+  EXPECT_TRUE(seeing.health().ok()) << seeing.health().message();
   body.end_s = 9.0;
   run(body, 1.0, body.end_s, lost);
-  const Status doubt = lost.doubt();
+  const Status doubt = lost.health();
   EXPECT_STREQ(doubt.field, "deviation of a sweep's position");
   EXPECT_GT(doubt.value, doubt.bound);
   EXPECT_EQ(doubt.bound, params_of(body).expert.mapping.expert.matching.distance_m);
@@ -47,7 +47,7 @@ TEST(TumblingOdometry, DoubtsAPlaceThatInertiaAloneHasFound) {
   TumblingOdometry awake(params_of(body));
   const Status loaded = awake.load(lost.save());
   ASSERT_TRUE(loaded.ok()) << loaded.message();
-  EXPECT_EQ(awake.doubt().message(), doubt.message());
+  EXPECT_EQ(awake.health().message(), doubt.message());
 }
 
 /// A mounting that is ten degrees off what was given, of one that stays within what was given.
@@ -57,14 +57,14 @@ TEST(TumblingOdometry, DoubtsACalibrationThatMovedFurtherThanWasGiven) {
   params.T_IL.linear() = Eigen::AngleAxisd(0.5 * params.mount_sigma_rad, Eigen::Vector3d::UnitX()).toRotationMatrix();
   TumblingOdometry near(params);
   run(body, 0.0, 0.0, near);
-  EXPECT_TRUE(near.doubt().ok()) << near.doubt().message();
+  EXPECT_TRUE(near.health().ok()) << near.health().message();
   params.T_IL.linear() = Eigen::AngleAxisd(0.17, Eigen::Vector3d::UnitX()).toRotationMatrix();
   TumblingOdometry far(params);
   run(body, 0.0, 0.0, far);
-  const Status doubt = far.doubt();
+  const Status doubt = far.health();
   EXPECT_EQ(doubt.trouble, Trouble::out_of_range);
   EXPECT_NE(doubt.message().find("calibration of lidar and IMU"), std::string::npos) << doubt.message();
-  EXPECT_GT(doubt.value, GivenCalibration::kBelieved);
+  EXPECT_GT(doubt.value, StatedCalibration::kMaxDeviations);
 }
 
 }  // namespace

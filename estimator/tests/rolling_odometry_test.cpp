@@ -138,12 +138,12 @@ TEST(RollingOdometry, AUnitOfWhichAnAxisFreezesIsLeftOutAndNamed) {
   RollingOdometry sound(params_of(positions_m)), harmed(params_of(positions_m));
   for (std::size_t k = 0; k < units[0].size(); ++k) {
     ASSERT_TRUE(sound.add_imus(std::vector<ImuSample>{units[0][k], units[1][k], units[2][k]}).ok());
-    EXPECT_TRUE(sound.doubt().ok()) << sound.doubt().message();
+    EXPECT_TRUE(sound.health().ok()) << sound.health().message();
   }
   units[1] = frozen_y(units[1]);
   for (std::size_t k = 0; k < units[0].size(); ++k)
     ASSERT_TRUE(harmed.add_imus(std::vector<ImuSample>{units[0][k], units[1][k], units[2][k]}).ok());
-  EXPECT_NE(harmed.doubt().message().find("unit 2's gyro y"), std::string::npos) << harmed.doubt().message();
+  EXPECT_NE(harmed.health().message().find("unit 2's gyro y"), std::string::npos) << harmed.health().message();
   EXPECT_NEAR(sound.newest()->pose.p_WA_m.x(), kPathLength_m, 0.02 * kPathLength_m);
   EXPECT_NEAR(harmed.newest()->pose.p_WA_m.x(), kPathLength_m, 0.05 * kPathLength_m);
 }
@@ -156,7 +156,7 @@ TEST(RollingOdometry, TheOnlyUnitIsRefusedWithTheNameOfItsFrozenAxis) {
   }
   EXPECT_EQ(status.trouble, Trouble::out_of_range);
   EXPECT_NE(status.message().find("unit 1's gyro y"), std::string::npos) << status.message();
-  EXPECT_EQ(odometry.doubt().message(), status.message());
+  EXPECT_EQ(odometry.health().message(), status.message());
 }
 
 TEST(RollingOdometry, TroubleIsAValue) {

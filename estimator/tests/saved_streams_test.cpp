@@ -56,7 +56,7 @@ TYPED_TEST(SavedStreams, BytesTellTheirParameters) {
   if constexpr (std::is_same_v<TypeParam, RateStream>) {
     params.rails.stated_gyro_rad_s = 10.0;
     params.model.calibration.emplace().constants.lever_arm_m.x() = 0.1;
-    params.learnt_errors = std::make_shared<KnownSensorErrors>();
+    params.calibrated_errors = std::make_shared<KnownSensorErrors>();
   }
   if constexpr (std::is_same_v<TypeParam, CarriedLive>) params.rails.clipping.upright_rails.stated_gyro_rad_s = 10.0;
   if constexpr (std::is_same_v<TypeParam, RollingFilter>) params.q_WI_start = Eigen::Quaterniond(0.6, 0.8, 0.0, 0.0);

@@ -128,7 +128,7 @@ void expect_splits(const TumblingOdometry::Params& params, const Heard& heard, c
 
 TumblingOdometry::Params one_pass(const ThrownBody& body) {
   TumblingOdometry::Params params = params_of(body);
-  params.expert.again.after_s = 0.0;
+  params.expert.second_pass.after_s = 0.0;
   return params;
 }
 
@@ -149,10 +149,10 @@ TEST(SavedTumblingOdometry, GoesOnInTheMiddleOfTheSecondPass) {
   const ThrownBody body;
   TumblingOdometry::Params params = one_pass(body);
   params.lever_arm_I_m += Eigen::Vector3d(0.006, -0.006, 0.006);
-  params.expert.again.after_s = 0.9;
+  params.expert.second_pass.after_s = 0.9;
   expect_splits(params, heard(body),
-                {{200, [](const TumblingOdometry& o) { return !o.passed_again(); }},
-                 {255, [](const TumblingOdometry& o) { return !o.passed_again(); }}});
+                {{200, [](const TumblingOdometry& o) { return !o.second_pass_applied(); }},
+                 {255, [](const TumblingOdometry& o) { return !o.second_pass_applied(); }}});
 }
 
 TEST(SavedTumblingOdometry, GoesOnWhileItIsLost) {

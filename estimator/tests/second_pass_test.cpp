@@ -23,7 +23,7 @@ TumblingOdometry::Params measured_badly(const ThrownBody& body, double after_s,
   const Eigen::Vector3d axis = side.cwiseProduct(Eigen::Vector3d(1.0, -2.0, 2.0)).normalized();
   params.T_IL.linear() = Eigen::AngleAxisd(0.015, axis).toRotationMatrix();
   params.T_IL.translation() = Eigen::Vector3d(0.005, -0.005, 0.005);
-  params.expert.again.after_s = after_s;
+  params.expert.second_pass.after_s = after_s;
   return params;
 }
 
@@ -69,7 +69,7 @@ void live(const ThrownBody& body, std::size_t from, std::size_t to, TumblingOdom
     }
     take_all(body, odometry, run);
   }
-  run.taken_live = odometry.passed_again();
+  run.taken_live = odometry.second_pass_applied();
 }
 
 Outcome outcome_of(const ThrownBody& body, double after_s, const Eigen::Vector3d& side) {
@@ -130,8 +130,8 @@ TEST(SecondPass, CatchesUpWhereTheClocksDifferByMoreThanWasKnown) {
       }
       while (odometry.take()) continue;
     }
-    EXPECT_TRUE(odometry.passed_again()) << off_ns;
-    EXPECT_EQ(odometry.refused_samples(), 0u) << off_ns;
+    EXPECT_TRUE(odometry.second_pass_applied()) << off_ns;
+    EXPECT_EQ(odometry.rejected_samples(), 0u) << off_ns;
     const double learnt_s = odometry.mapper().calibration().time_offset_s;
     EXPECT_NEAR(learnt_s, 1e-9 * double(off_ns), 0.002) << "else this test asks nothing";
   }
@@ -145,7 +145,7 @@ TEST(SecondPass, ACopyMadeWhileItIsUnderWayGoesOnWithTheSameBits) {
     Outcome parts;
     TumblingOdometry first(measured_badly(body, 0.9));
     live(body, 0, split, first, parts);
-    EXPECT_FALSE(first.passed_again());
+    EXPECT_FALSE(first.second_pass_applied());
     TumblingOdometry second(first);
     live(body, split, count, second, parts);
     second.finish();
@@ -169,7 +169,7 @@ TEST(SecondPass, BeginsAtOnceWhereTheFirstIsLost) {
   EXPECT_TRUE(found.taken_live);
   EXPECT_LT(found.end_m, 0.2);  // measured 0.11
 
-  params.expert.again.lost_s = 0.0;
+  params.expert.second_pass.lost_s = 0.0;
   Outcome without;
   TumblingOdometry waits(params);
   live(body, 0, count, waits, without, blind);
@@ -199,7 +199,7 @@ TEST(SecondPass, AGapOfTheImuEndsIt) {
   for (const ImuSample& sample : imu) (void)odometry.add_imu(sample);
   odometry.finish();
   EXPECT_EQ(odometry.gaps(), 1u);
-  EXPECT_FALSE(odometry.passed_again());
+  EXPECT_FALSE(odometry.second_pass_applied());
 }
 
 TEST(SecondPass, ALagBeyondTheRatesWindowIsThatWindow) {
@@ -207,25 +207,25 @@ TEST(SecondPass, ALagBeyondTheRatesWindowIsThatWindow) {
   body.imu_hz = 2000.0;
   TumblingOdometry::Params params = measured_badly(body, 0.9);
   params.expert.rate.rate.step_s = 0.05;
-  params.expert.again.lag_s = 3.0;  // 6000 samples
+  params.expert.second_pass.lag_s = 3.0;  // 6000 samples
   TumblingOdometry odometry(params);
   Outcome run;
   live(body, 0, body.imu().size(), odometry, run);
   odometry.finish();
-  EXPECT_TRUE(odometry.passed_again());
+  EXPECT_TRUE(odometry.second_pass_applied());
 }
 
 TEST(SecondPass, RefusesParametersOutOfTheirBounds) {
   TumblingOdometry::Params stated;
   stated.lever_arm_I_m.setZero();
   TumblingOdometry::Params params = stated;
-  params.expert.again.sweeps = 1;  // would never catch up
+  params.expert.second_pass.sweeps = 1;  // would never catch up
   EXPECT_THROW(TumblingOdometry{params}, InvalidParams);
   params = stated;
-  params.expert.again.inflation = 0.5;
+  params.expert.second_pass.inflation = 0.5;
   EXPECT_THROW(TumblingOdometry{params}, InvalidParams);
   params = stated;
-  params.expert.again.lost_s = -0.1;
+  params.expert.second_pass.lost_s = -0.1;
   EXPECT_THROW(TumblingOdometry{params}, InvalidParams);
 }
 

@@ -47,10 +47,10 @@ TEST(Stamps, ThatJitterMoveNoRate) {
   TumblingOdometry without(as_they_are);
   const std::vector<RateState> expected = rates_of(own_clock, exact), found = rates_of(host_clock, stamped),
                                control = rates_of(without, stamped);
-  EXPECT_FALSE(own_clock.mended_jitter_s());
-  ASSERT_TRUE(host_clock.mended_jitter_s());
-  EXPECT_NEAR(*host_clock.mended_jitter_s(), 1.15e-3, 0.3e-3);  // of the uniform distribution
-  EXPECT_FALSE(without.mended_jitter_s());
+  EXPECT_FALSE(own_clock.estimated_jitter_s());
+  ASSERT_TRUE(host_clock.estimated_jitter_s());
+  EXPECT_NEAR(*host_clock.estimated_jitter_s(), 1.15e-3, 0.3e-3);  // of the uniform distribution
+  EXPECT_FALSE(without.estimated_jitter_s());
   ASSERT_EQ(found.size(), expected.size());
   double moved_ns = 0.0, left_as_stamped_ns = 0.0;
   int turning = 0;
@@ -82,7 +82,7 @@ TEST(Stamps, ThatAreRefusedHaveNoPartInTheClock) {
 
 struct Rolled {
   double worst_m = 0.0;  ///< of the live poses from where the sphere was at their times, from the start of the roll on
-  std::optional<double> mended_jitter_s;
+  std::optional<double> estimated_jitter_s;
 };
 
 Rolled rolled(const std::vector<ImuSample>& samples, double jitter_max) {
@@ -99,7 +99,7 @@ Rolled rolled(const std::vector<ImuSample>& samples, double jitter_max) {
         out.worst_m = std::max(out.worst_m, std::abs(pose->pose.p_WA_m.x() - x_m));
     }
   }
-  out.mended_jitter_s = odometry.mended_jitter_s();
+  out.estimated_jitter_s = odometry.estimated_jitter_s();
   return out;
 }
 
@@ -108,10 +108,10 @@ TEST(Stamps, ThatJitterMoveNoSphere) {
   const Rolled own = rolled(exact, 0.15), mended = rolled(stamped, 0.15), as_they_are = rolled(stamped, 0.0);
   EXPECT_LT(mended.worst_m, own.worst_m + 3e-4);          // 1.7 m/s at most, for a tenth of the jitter
   EXPECT_GT(as_they_are.worst_m, mended.worst_m + 2e-4);  // negative control
-  EXPECT_FALSE(own.mended_jitter_s);
-  ASSERT_TRUE(mended.mended_jitter_s);
-  EXPECT_NEAR(*mended.mended_jitter_s, 0.46e-3, 0.15e-3);  // of the uniform distribution
-  EXPECT_FALSE(as_they_are.mended_jitter_s);
+  EXPECT_FALSE(own.estimated_jitter_s);
+  ASSERT_TRUE(mended.estimated_jitter_s);
+  EXPECT_NEAR(*mended.estimated_jitter_s, 0.46e-3, 0.15e-3);  // of the uniform distribution
+  EXPECT_FALSE(as_they_are.estimated_jitter_s);
 }
 
 }  // namespace

@@ -143,7 +143,7 @@ TEST(StateMembers, AllOfAMapper) {
   EXPECT_LT(marks.longest_hole(&impl, sizeof impl), padding_below<Impl>);
   expect_whole(mapping::Tracking{}, "tracking");
   expect_whole(mapping::Lost{}, "lost");
-  expect_whole(mapping::FoundAgain{}, "found again");
+  expect_whole(mapping::Relocalised{}, "found again");
   expect_whole(mapping::KnownVelocity{}, "known");
   expect_whole(VelocityReading{}, "velocity");
   expect_whole(MotionReading{}, "motion");

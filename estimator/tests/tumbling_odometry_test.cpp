@@ -207,7 +207,7 @@ TEST(TumblingOdometry, GoesOnAfterAGapBeyondTheStreamsBound) {
   ASSERT_TRUE(odometry.add_imu(imu[151]).ok());
   EXPECT_EQ(odometry.gaps(), 1u);
   feed_as_they_end(imu, sweeps, 152, imu.size(), odometry, heard);
-  EXPECT_EQ(odometry.refused_samples(), 0u);
+  EXPECT_EQ(odometry.rejected_samples(), 0u);
   odometry.finish();
   while (std::optional<TumblingOdometry::Sweep> sweep = odometry.take()) heard.sweeps.push_back(std::move(*sweep));
   EXPECT_EQ(heard.sweeps.size(), sweeps.size());
@@ -235,7 +235,7 @@ TEST(TumblingOdometry, GoesOnAfterItWasFinished) {
   odometry.finish();
   while (std::optional<TumblingOdometry::Sweep> sweep = odometry.take()) heard.sweeps.push_back(std::move(*sweep));
   EXPECT_EQ(heard.sweeps.size(), sweeps.size());
-  EXPECT_EQ(odometry.refused_samples(), 0u);
+  EXPECT_EQ(odometry.rejected_samples(), 0u);
   EXPECT_LT(position_error_m(body, heard.sweeps.back().report.pose), 0.1);
 }
 
@@ -344,8 +344,9 @@ TEST(TumblingOdometry, TellsAnAccelerometerOfTheOtherSense) {
     sample.specific_force_m_s2 *= -1.0;
     ASSERT_TRUE(mirrored.add_imu(sample).ok());
   }
-  EXPECT_TRUE(sound.doubt().ok()) << sound.doubt().message();
-  EXPECT_NE(mirrored.doubt().message().find("flipped accelerometer"), std::string::npos) << mirrored.doubt().message();
+  EXPECT_TRUE(sound.health().ok()) << sound.health().message();
+  EXPECT_NE(mirrored.health().message().find("flipped accelerometer"), std::string::npos)
+      << mirrored.health().message();
 }
 
 // Its reading stands still from within the flight on, as that of a sensor that has died.
@@ -361,19 +362,19 @@ TEST(TumblingOdometry, NamesAnAxisThatFrozeAndNoLongerStatesToKnowIt) {
     if (k > from) imu[k].angular_velocity_rad_s.x() = imu[from].angular_velocity_rad_s.x();
     ASSERT_TRUE(odometry.add_imu(imu[k]).ok());
     if (k < from) {
-      EXPECT_TRUE(odometry.doubt().ok()) << odometry.doubt().message();
+      EXPECT_TRUE(odometry.health().ok()) << odometry.health().message();
     }
     if (const auto& rate = odometry.smoothed_rate())
       widest_rad_s = std::max(widest_rad_s, std::sqrt(rate->covariance_rad2_s2(0, 0)));
   }
-  const Status doubt = odometry.doubt();
+  const Status doubt = odometry.health();
   EXPECT_EQ(doubt.trouble, Trouble::out_of_range);
   EXPECT_NE(doubt.message().find("gyro x"), std::string::npos) << doubt.message();
   EXPECT_GT(widest_rad_s, 2.0);
   TumblingOdometry sound(params);  // negative control
   for (const ImuSample& sample : test::noisy(body.imu(), body.rail_rad_s)) {
     ASSERT_TRUE(sound.add_imu(sample).ok());
-    EXPECT_TRUE(sound.doubt().ok());
+    EXPECT_TRUE(sound.health().ok());
   }
 }
 

@@ -23,18 +23,18 @@ void run(const tumble::sim::Sensors& sensors) {
     throw std::runtime_error(status.message());
   }
   tumble::TumblingOdometry odometry(rig());
-  const auto tell = [](const tumble::Status& status) {
+  const auto report = [](const tumble::Status& status) {
     if (!status.ok()) std::fprintf(stderr, "%s\n", status.message().c_str());
   };
   std::size_t next = 0;
   const std::size_t sweeps = sensors.lidars.empty() ? 0 : bridge::sweep_count(sensors.lidars.front());
   std::optional<bridge::Sweep> sweep;
   for (const tumble::ImuSample& sample : samples) {
-    tell(odometry.add_imu(sample));
+    report(odometry.add_imu(sample));
     while (sweep || next < sweeps) {
       if (!sweep) sweep = bridge::sweep(sensors.lidars.front(), next++);
       if (sweep->end_ns > sample.time_ns) break;
-      tell(odometry.add_sweep(sweep->start_ns, sweep->end_ns, sweep->points));
+      report(odometry.add_sweep(sweep->start_ns, sweep->end_ns, sweep->points));
       sweep.reset();
     }
     while (const auto done = odometry.take()) driver::print(*done);

@@ -46,7 +46,7 @@ void bind_report(nb::module_& m) {
       .def_prop_ro("saturation_deficit_rad_s",
                    [](const Report& r) { return whole<3>(r.saturation_deficit_rad_s.data()); })
       .def_ro("points_used", &Report::points_used)
-      .def_ro("points_alone", &Report::points_alone)
+      .def_ro("lone_points", &Report::lone_points)
       .def_ro("points_registered", &Report::points_registered)
       .def_ro("map_points_added", &Report::map_points_added);
   using C = SweepCalibration;
@@ -166,8 +166,8 @@ void bind_mapping(nb::module_& m) {
           },
           nb::arg("time_ns"), "Pose at any time within the window of sweeps.")
       .def(
-          "open_trajectory",
-          [](Object& self) { return joined(self.run([](auto& mapper) { return mapper.open_trajectories(); })); },
+          "window_trajectory",
+          [](Object& self) { return joined(self.run([](auto& mapper) { return mapper.window_trajectories(); })); },
           "Poses of the sweeps in the window that have not had their last word yet.")
       .def(
           "map", [](Object& self) { return MapPoints{self.run([](auto& mapper) { return mapper.map(); })}; },

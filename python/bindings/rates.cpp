@@ -131,7 +131,7 @@ void bind_batch(nb::module_& m) {
       .def_ro("bounded_only", &RateReport::bounded_only)
       .def_ro("flight_share", &RateReport::flight_share)
       .def_prop_ro(
-          "doubted_axes", [](const RateReport& r) { return owned(r.doubted_axes); }, nb::rv_policy::automatic,
+          "suspect_axes", [](const RateReport& r) { return owned(r.suspect_axes); }, nb::rv_policy::automatic,
           "(N,) uint8, bit j: axis j may stand at a rail that was not seen");
   nb::class_<RateSmoother>(
       m, "RateSmoother",
@@ -248,12 +248,12 @@ auto bind_stream(nb::module_& m, const char* name, const char* doc,
           },
           "What has been learnt of the rig.")
       .def(
-          "doubt",
+          "health",
           [rate, rate_state](Object& self) {
-            return doubt_of(
-                self.run([&](Streaming<Stream>& at) { return rate(at.filter).doubt(rate_state(*at.state)); }));
+            return health_of(
+                self.run([&](Streaming<Stream>& at) { return rate(at.filter).health(rate_state(*at.state)); }));
           },
-          nb::sig("def doubt(self) -> tumble.errors.TumbleError | None"), kDoubt);
+          nb::sig("def health(self) -> tumble.errors.TumbleError | None"), kHealth);
   bind_keeping<Stream>(bound);
   return bound;
 }

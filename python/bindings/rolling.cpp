@@ -272,8 +272,8 @@ void bind_door(nb::module_& m) {
           "take", [](Object& self) { return self.run([](Door& door) { return taken(door.odometry); }); },
           "The poses that have become known since the last call, each once: lag_s old, or live ones without a lag.")
       .def(
-          "doubt", [](Object& self) { return doubt_of(self.run([](Door& door) { return door.odometry.doubt(); })); },
-          nb::sig("def doubt(self) -> tumble.errors.TumbleError | None"), kDoubt)
+          "health", [](Object& self) { return health_of(self.run([](Door& door) { return door.odometry.health(); })); },
+          nb::sig("def health(self) -> tumble.errors.TumbleError | None"), kHealth)
       .def(
           "finish", [](Object& self) { self.run([](Door& door) { door.odometry.finish(); }); },
           "Smooths what is still within the lag: the run has ended, until reset(). take() gives it.")
@@ -285,8 +285,8 @@ void bind_door(nb::module_& m) {
           [](Object& self) { return self.run([](Door& door) { return door.odometry.rejected_readings(); }); },
           "number of readings that were rejected because they are wild, over all units")
       .def_prop_ro(
-          "mended_jitter_s",
-          [](Object& self) { return self.run([](Door& door) { return door.odometry.mended_jitter_s(); }); },
+          "estimated_jitter_s",
+          [](Object& self) { return self.run([](Door& door) { return door.odometry.estimated_jitter_s(); }); },
           "standard deviation of the stamps about a regular clock, while that clock's times count for them; else None")
       .def_prop_ro(
           "units",

@@ -95,7 +95,7 @@ void require(const Status& status, std::span<const ImuSample> samples) {
   require(status);
 }
 
-nb::object doubt_of(const Status& status) {
+nb::object health_of(const Status& status) {
   if (status.ok()) return nb::none();
   return error_class()(status.message().c_str(), to_string(status.trouble), status.field, status.value, status.bound);
 }

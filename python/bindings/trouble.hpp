@@ -34,9 +34,9 @@ void require(const Status& status, std::optional<std::size_t> index = std::nullo
 /// The same of a whole recording, which is refused with all its samples: looks for the one that the status means.
 void require(const Status& status, std::span<const ImuSample> samples);
 
-/// What doubt() of an estimator gives: nothing where all can be believed, else a TumbleError that is not raised.
-nb::object doubt_of(const Status& status);
-inline constexpr const char* kDoubt =
+/// What health() of an estimator gives: nothing where all can be believed, else a TumbleError that is not raised.
+nb::object health_of(const Status& status);
+inline constexpr const char* kHealth =
     "Whether it can be believed just now: None, or what speaks against a sensor or the place on the map, as a\n"
     "TumbleError that is not raised (field, value, bound; str() says it). The estimator goes on either way.";
 

@@ -156,9 +156,9 @@ void bind_talk(Class& bound) {
           },
           "(N, N), of its errors; 0 where not estimated.")
       .def(
-          "open_trajectory",
+          "window_trajectory",
           [](TumblingDoor& self) {
-            return joined(self.run([](TumblingOdometry& odometry) { return odometry.mapper().open_trajectories(); }));
+            return joined(self.run([](TumblingOdometry& odometry) { return odometry.mapper().window_trajectories(); }));
           },
           "Poses of the sweeps in the window that have not had their last word yet.")
       .def(
@@ -168,19 +168,19 @@ void bind_talk(Class& bound) {
           },
           "The map within mapping_map_radius_m of the sensor.")
       .def(
-          "doubt",
+          "health",
           [](TumblingDoor& self) {
-            return doubt_of(self.run([](TumblingOdometry& odometry) { return odometry.doubt(); }));
+            return health_of(self.run([](TumblingOdometry& odometry) { return odometry.health(); }));
           },
-          nb::sig("def doubt(self) -> tumble.errors.TumbleError | None"), kDoubt)
+          nb::sig("def health(self) -> tumble.errors.TumbleError | None"), kHealth)
       .def_prop_ro(
           "gaps",
           [](TumblingDoor& self) { return self.run([](TumblingOdometry& odometry) { return odometry.gaps(); }); },
           "of the IMU, after which the rates began anew")
       .def_prop_ro(
-          "refused_samples",
+          "rejected_samples",
           [](TumblingDoor& self) {
-            return self.run([](TumblingOdometry& odometry) { return odometry.refused_samples(); });
+            return self.run([](TumblingOdometry& odometry) { return odometry.rejected_samples(); });
           },
           "that the mapper did not take with their rates: 0 unless something is wrong")
       .def_prop_ro(
@@ -194,9 +194,9 @@ void bind_talk(Class& bound) {
           [](TumblingDoor& self) { return self.run([](TumblingOdometry& odometry) { return odometry.newest_ns(); }); },
           "time of the newest sample that was taken in; None before the first")
       .def_prop_ro(
-          "mended_jitter_s",
+          "estimated_jitter_s",
           [](TumblingDoor& self) {
-            return self.run([](TumblingOdometry& odometry) { return odometry.mended_jitter_s(); });
+            return self.run([](TumblingOdometry& odometry) { return odometry.estimated_jitter_s(); });
           },
           "standard deviation of the IMU's stamps about a regular clock, while that clock's times count for them; else "
           "None")
@@ -207,9 +207,9 @@ void bind_talk(Class& bound) {
           },
           "by how much the lidar's ranges are longer than the IMU has it, as far as the motion told")
       .def_prop_ro(
-          "passed_again",
+          "second_pass_applied",
           [](TumblingDoor& self) {
-            return self.run([](TumblingOdometry& odometry) { return odometry.passed_again(); });
+            return self.run([](TumblingOdometry& odometry) { return odometry.second_pass_applied(); });
           },
           "whether map and pose are those of the second pass")
       .def_prop_ro(

@@ -18,20 +18,20 @@ def test_stamps_of_a_host_are_mended_and_told(hill, slip):
              (lambda: tumble.RollingOdometry(units=[(tumble.sheets.phidget1044(), np.eye(4))], radius_m=0.145), unit, 800_000)]
     for make, samples, most_ns in doors:
         own_clock, host_clock = make(), make()
-        assert own_clock.mended_jitter_s is None
+        assert own_clock.estimated_jitter_s is None
         own_clock.add_imu(samples.time_ns, samples.gyro, samples.accel)
-        assert own_clock.mended_jitter_s is None
+        assert own_clock.estimated_jitter_s is None
         host_clock.add_imu(as_a_host_stamps(samples.time_ns, most_ns), samples.gyro, samples.accel)
-        assert host_clock.mended_jitter_s == pytest.approx(1e-9 * most_ns / np.sqrt(3.0), rel=0.3)
+        assert host_clock.estimated_jitter_s == pytest.approx(1e-9 * most_ns / np.sqrt(3.0), rel=0.3)
 
 
 def test_a_tumbling_door_tells_what_it_took(hill):
     door = tumble.TumblingOdometry(**tumble.tumbling_options(hill))
-    assert door.newest_ns is None and door.refused_samples == 0
+    assert door.newest_ns is None and door.rejected_samples == 0
     assert np.isinf(door.sweep_scale.sigma) and door.sweep_scale.changes == 0 and not door.sweep_scale.is_off
     assert door.calibration_covariance().shape == (10, 10) and not door.calibration_covariance().any(), "nothing is estimated yet"
     door = tumble.tumbling(hill).odometry
-    assert door.newest_ns == hill.imus[0].time_ns[-1] and door.refused_samples == 0
+    assert door.newest_ns == hill.imus[0].time_ns[-1] and door.rejected_samples == 0
     after = door.calibration_covariance()
     assert np.allclose(after, after.T) and np.all(np.linalg.eigvalsh(after) > 0.0)
     assert 0.9 < door.sweep_scale.scale < 1.1

@@ -352,14 +352,14 @@ def test_doubt_names_what_cannot_be_believed(hill, slip):
     for make in (lambda: tumble.TumblingOdometry(**tumble.tumbling_options(hill)), STREAMS["rate"], STREAMS["regime"]):
         sound, harmed = make(), make()
         sound.add_imu(imu.time_ns, imu.gyro, imu.accel)
-        assert sound.doubt() is None
+        assert sound.health() is None
         harmed.add_imu(imu.time_ns, frozen, imu.accel)
-        doubt = harmed.doubt()
+        doubt = harmed.health()
         assert isinstance(doubt, tumble.TumbleError) and doubt.trouble == "out_of_range" and "gyro x" in str(doubt)
         assert doubt.value > doubt.bound
     sphere = tumble.RollingOdometry(units=[(tumble.sheets.phidget1044(), np.eye(4))], radius_m=0.145)
     sphere.add_imu(unit.time_ns, unit.gyro, unit.accel)
-    assert sphere.doubt() is None
+    assert sphere.health() is None
 
 
 def test_mapper_alone(hill):

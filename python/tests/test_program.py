@@ -93,7 +93,7 @@ def test_tumbling(hill, estimates):
     assert [int(s.verdict) for s in own.sweeps] == told.sweeps["verdict"].astype(int).tolist()
     assert [s.iterations for s in own.sweeps] == told.sweeps["iterations"].astype(int).tolist()
     assert [s.inlier_share for s in own.sweeps] == told.sweeps["inlier_share"].tolist()
-    assert len(own.map) > 10000 and own.odometry.passed_again == bool(told.health["passed_again"])
+    assert len(own.map) > 10000 and own.odometry.second_pass_applied == bool(told.health["second_pass_applied"])
     assert own.odometry.rig().covariance.shape == (20, 20)
 
 

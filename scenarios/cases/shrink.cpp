@@ -80,7 +80,7 @@ class Shrinking {
     failure_.emplace(options.failure, shrunk_.drawn);
     shrunk_.failure = failure_->describe();
     shrunk_.controlled = options.control && !options.failure.holds(run.outcome(*options.control, options.timeout_s));
-    tell("as drawn", true, shrunk_.drawn);
+    report("as drawn", true, shrunk_.drawn);
   }
 
   Shrunk run() {
@@ -98,7 +98,7 @@ class Shrinking {
 
  private:
   /// Returns true if a simpler draw fails like the first, and then continues from it. Empty if the budget is used up.
-  std::optional<bool> try_out(const Scenario& simpler, const std::string& what, Outcome* told = nullptr) {
+  std::optional<bool> try_out(const Scenario& simpler, const std::string& what, Outcome* outcome_out = nullptr) {
     if (shrunk_.runs >= options_.budget) return std::nullopt;
     bool fails = false;
     Outcome outcome;
@@ -118,12 +118,12 @@ class Shrinking {
       shrunk_.scenario = simpler;
       shrunk_.left = outcome;
     }
-    if (told != nullptr) *told = outcome;
-    tell(what, fails, outcome);
+    if (outcome_out != nullptr) *outcome_out = outcome;
+    report(what, fails, outcome);
     return fails;
   }
 
-  void tell(const std::string& what, bool kept, const Outcome& outcome) {
+  void report(const std::string& what, bool kept, const Outcome& outcome) {
     ++shrunk_.runs;
     if (options_.on_trial) options_.on_trial({shrunk_.runs, what, kept, outcome});
   }

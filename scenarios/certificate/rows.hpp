@@ -85,10 +85,10 @@ struct ImuNoiseSetup {
 std::vector<CertificateEntry> certify_imu_noise(const CertificateInput& input, const ImuNoiseSetup& setup = {});
 
 /// Planes fitted to the clipped readings of IMUs with tilted sensing elements compared with the drawn ones.
-/// `believed_tilt` is added to one entry of the matrix in the closed form.
+/// `assumed_tilt` is added to one entry of the matrix in the closed form.
 struct TiltedRailSetup {
   double misalignment = 0.02;  ///< distribution of the elements; scales use half of it, offsets 0.5 % of the limit
-  double believed_tilt = 0.0;
+  double assumed_tilt = 0.0;
   int devices = 5;
 };
 std::vector<CertificateEntry> certify_tilted_rail(const CertificateInput& input, const TiltedRailSetup& setup = {});

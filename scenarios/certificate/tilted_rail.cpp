@@ -35,14 +35,14 @@ struct PlaneErrors {
   int samples = 0;  ///< for the element and sign with the fewest
 };
 
-void compare_planes(const SensedTriad& triad, int j, double believed_tilt, PlaneErrors& errors) {
+void compare_planes(const SensedTriad& triad, int j, double assumed_tilt, PlaneErrors& errors) {
   int samples = 0;
   const ClippedPlane fitted = fit_clipped_plane(triad, j, samples);
   errors.samples = std::min(errors.samples, samples);
   if (samples < kFewestClipped) return;
-  Eigen::Matrix3d believed = triad.axes;
-  believed(j, (j + 1) % 3) += believed_tilt;
-  const ClippedPlane drawn = plane_of(believed, triad.offset, triad.rail, j);
+  Eigen::Matrix3d assumed = triad.axes;
+  assumed(j, (j + 1) % 3) += assumed_tilt;
+  const ClippedPlane drawn = plane_of(assumed, triad.offset, triad.rail, j);
   for (const double off : {fitted.first_slope - drawn.first_slope, fitted.second_slope - drawn.second_slope})
     errors.slope = larger(errors.slope, std::abs(off));
   for (const double off : {fitted.distance - drawn.distance, fitted.offset - drawn.offset})
@@ -65,8 +65,8 @@ std::vector<CertificateEntry> certify_tilted_rail(const CertificateInput& input,
     const SensedTriad rates = sensed_rates(record, truth, gyro_rail);
     const SensedTriad forces = sensed_forces(record, truth, accel_rail);
     for (int j = 0; j < 3; ++j) {
-      compare_planes(rates, j, setup.believed_tilt, gyro);
-      compare_planes(forces, j, setup.believed_tilt, accel);
+      compare_planes(rates, j, setup.assumed_tilt, gyro);
+      compare_planes(forces, j, setup.assumed_tilt, accel);
     }
   }
   std::vector<CertificateEntry> entries;

@@ -25,7 +25,7 @@ constexpr std::size_t kLeastPairs = 12;
 /// has an error of about a tenth.
 constexpr double kAgrees = 0.3;
 /// An explanation must reduce the error at least by these factors.
-constexpr double kTells = 0.5, kDelayTells = 0.6;
+constexpr double kConclusive = 0.5, kDelayConclusive = 0.6;
 constexpr double kDegreesPerRadian = 57.29577951308232;
 constexpr double kDelayMost_s = 0.5, kDelayStep_s = 0.01, kDelaySaid_s = 0.03;
 constexpr std::int64_t kGap_ns = 100'000'000;
@@ -209,11 +209,11 @@ std::string delay_text(const RotationAgreement& found) {
 }
 
 std::string axes_text(const RotationAgreement& found) {
-  if (found.error_as_read <= kAgrees && kTells * found.error_as_read <= found.axes_error) {
+  if (found.error_as_read <= kAgrees && kConclusive * found.error_as_read <= found.axes_error) {
     return fmt::format(
         "the lidar's rotation equals the gyro's{}, within {}{}", pairs_text(found), percent(found.error_as_read),
-        kTells * found.next_error > found.axes_error ? ": units, signs and axes agree"
-                                                     : ": units agree; this motion cannot distinguish all axes");
+        kConclusive * found.next_error > found.axes_error ? ": units, signs and axes agree"
+                                                          : ": units agree; this motion cannot distinguish all axes");
   }
   const std::string off =
       fmt::format("caution: the lidar's rotation differs from the gyro's{} (difference {}); it would agree if ",
@@ -273,7 +273,7 @@ std::optional<RotationAgreement> rotation_agreement(const sim::ImuRecord& imu, c
     if (step == 0) fit_unit(pairs, delay_s, at_once, at_once_error);
   }
   // one of a hundred delays fits slightly better by chance
-  RotationAgreement out = delayed_error < kDelayTells * at_once_error ? delayed : at_once;
+  RotationAgreement out = delayed_error < kDelayConclusive * at_once_error ? delayed : at_once;
   if (out.unit_error > kAgrees) return std::nullopt;
   fit_axes(pairs_at(integral, R_IL, seen, std::llround(1e9 * out.delay_s)), out);
   // When tracking fails in a tumble, rotation angles alone may agree by chance.

@@ -44,7 +44,7 @@ Estimate run_sphere(const sim::Sensors& sensors, const sim::Values& parameters) 
     estimate.attitudes.push_back({sample.time_ns, state.q_WI, TumbleAttitude::attitude_covariance_rad2(state)});
     if (state.slipping) estimate.health["samples_slip"] += 1.0;
   }
-  tell_unknown_attitude(estimate);
+  report_unknown_attitude(estimate);
   return estimate;
 }
 
@@ -55,7 +55,7 @@ Estimate run_rig(const sim::Sensors& sensors, const sim::Values& parameters) {
   estimate.status = bridge::primary_imu_samples(sensors, samples);
   if (!estimate.status.ok()) return estimate;
   (void)check_imu(sensors, samples, estimate);  // Only a warning: constant external pushes can cause the same readings.
-  tell_frozen_axes(sensors, samples, estimate);
+  report_frozen_axes(sensors, samples, estimate);
   const std::vector<ImuSample> read = samples;
   const RecoveredRates recovered = recover_in_time(sensors, samples, estimate.health);
   (void)check_flights(sensors, read, recovered.carried.share, estimate);
@@ -74,7 +74,7 @@ Estimate run_rig(const sim::Sensors& sensors, const sim::Values& parameters) {
     turned[k].covariance_rad2_s2 = recovered.covariances_rad2_s2[k];
     turned[k].source = recovered.sources[k];
   }
-  tell_unknown_attitude(estimate);
+  report_unknown_attitude(estimate);
   (void)check_rotation_between_rests(sensors, read, turned, estimate);
   (void)check_rotation_about_pivots(sensors, read, turned, estimate);
   return estimate;
@@ -89,7 +89,7 @@ const Settings<TumbleAttitude::Params>& attitude_tumble_settings() {
   return all;
 }
 
-void tell_unknown_attitude(Estimate& estimate) {
+void report_unknown_attitude(Estimate& estimate) {
   constexpr double kUnknown_rad = 0.5;
   double unknown_s = 0.0;
   for (std::size_t k = 1; k < estimate.attitudes.size(); ++k) {

@@ -19,6 +19,6 @@ Estimate run_attitude_tumble(const sim::Sensors& sensors, const sim::Values& par
 
 /// Reports for how long the inclination is unknown to 0.5 rad (2σ within a quarter turn), for example after an IMU gap
 /// in a tumble. Adds a doubt and the health value `attitude_unknown_s`.
-void tell_unknown_attitude(Estimate& estimate);
+void report_unknown_attitude(Estimate& estimate);
 
 }  // namespace tumble::scenarios

@@ -40,13 +40,13 @@ Status run_thrown(const sim::Sensors& sensors, const sim::Values& parameters, co
 /// Checks the smoother's input rates against gravity at the rests. Its output cannot be checked: the smoother itself
 /// aligns gravity at the rests.
 void check_readings(const sim::Sensors& sensors, const std::vector<ImuSample>& samples,
-                    const std::vector<ImuSample>& recovered, const RecoveredRates& told, Estimate& estimate) {
-  std::vector<RateState> read(told.sources.size());
+                    const std::vector<ImuSample>& recovered, const RecoveredRates& recovery, Estimate& estimate) {
+  std::vector<RateState> read(recovery.sources.size());
   for (std::size_t k = 0; k < read.size(); ++k) {
     read[k].time_ns = recovered[k].time_ns;
     read[k].w_WI_I_rad_s = recovered[k].angular_velocity_rad_s;
-    read[k].covariance_rad2_s2 = told.covariances_rad2_s2[k];
-    read[k].source = told.sources[k];
+    read[k].covariance_rad2_s2 = recovery.covariances_rad2_s2[k];
+    read[k].source = recovery.sources[k];
   }
   (void)check_rotation_between_rests(sensors, samples, read, estimate);
 }
@@ -57,20 +57,21 @@ Estimate run_attitude_tumble_batch(const sim::Sensors& sensors, const sim::Value
   estimate.status = bridge::primary_imu_samples(sensors, samples);
   if (!estimate.status.ok()) return estimate;
   (void)check_imu(sensors, samples, estimate);  // Only a warning, as in the filters.
-  tell_frozen_axes(sensors, samples, estimate);
+  report_frozen_axes(sensors, samples, estimate);
   std::vector<ImuSample> recovered = samples;
-  RecoveredRates told;
-  if (sensors.sphere_radius_m <= 0.0) told = recover_clipped(sensors, recovered, estimate.health);
-  (void)check_flights(sensors, samples, told.carried.share, estimate);
+  RecoveredRates recovery;
+  if (sensors.sphere_radius_m <= 0.0) recovery = recover_clipped(sensors, recovered, estimate.health);
+  (void)check_flights(sensors, samples, recovery.carried.share, estimate);
   std::vector<RateState> rates;
-  if (told.answered && told.carried.clipped_max < kCarried) {
-    estimate.status = run_thrown(sensors, parameters, samples, recovered, told.covariances_rad2_s2, rates, estimate);
+  if (recovery.answered && recovery.carried.clipped_max < kCarried) {
+    estimate.status =
+        run_thrown(sensors, parameters, samples, recovered, recovery.covariances_rad2_s2, rates, estimate);
   } else {
     estimate.status = run_carried(sensors, parameters, rates, estimate.attitudes, estimate.health);
   }
   if (!estimate.status.ok()) return estimate;
-  tell_unknown_attitude(estimate);
-  check_readings(sensors, samples, recovered, told, estimate);
+  report_unknown_attitude(estimate);
+  check_readings(sensors, samples, recovered, recovery, estimate);
   (void)check_rotation_about_pivots(sensors, samples, rates, estimate);
   return estimate;
 }

@@ -45,7 +45,7 @@ Estimate run(const sim::Sensors& sensors, const sim::Values& parameters, const O
     if (!estimate.status.ok()) return estimate;
     estimate.attitudes.push_back({sample.time_ns, state.q_WI, TumbleAttitude::attitude_covariance_rad2(state)});
   }
-  tell_unknown_attitude(estimate);
+  report_unknown_attitude(estimate);
   return estimate;
 }
 

@@ -2,8 +2,8 @@
 #include "scenarios/methods/carried.hpp"
 
 #include "scenarios/methods/bridge.hpp"
-#include "scenarios/methods/rails_told.hpp"
 #include "scenarios/methods/rate_baseline.hpp"
+#include "scenarios/methods/report_rails.hpp"
 #include "tumble/angular_velocity/clipping_finder.hpp"
 
 namespace tumble::scenarios {
@@ -18,7 +18,7 @@ CarriedElements find_clipped(const sim::ImuRecord& record, std::span<const ImuSa
   ClippingFinder::Params params;
   params.upright_rails = stated_rails(record);
   const ClippingFinder::Found found = ClippingFinder(params).find(samples);
-  tell_rails(found.rails, health);
+  report_rails(found.rails, health);
   return carried_elements(samples, found);
 }
 

@@ -20,7 +20,7 @@ namespace tumble::scenarios {
 const Settings<CarriedSmoother::Params>& carried_settings();
 
 /// Returns which sensing elements of each sample are saturated, from the stated ranges and from the readings. Adds the
-/// detected saturation limits to `health` (rails_told.hpp).
+/// detected saturation limits to `health` (report_rails.hpp).
 CarriedElements find_clipped(const sim::ImuRecord& record, std::span<const ImuSample> samples,
                              std::map<std::string, double>& health);
 

@@ -83,7 +83,7 @@ bool has_doubt(const Doubt& doubt, const Estimate& estimate) {
                      [&](const Doubt& known) { return known.about == doubt.about && known.unit == doubt.unit; });
 }
 
-void tell_undoubted(Doubt::About about, Estimate& estimate) {
+void report_no_doubt(Doubt::About about, Estimate& estimate) {
   estimate.health[row_name(about)] = about == Doubt::About::place ? 1.0 : 0.0;
 }
 

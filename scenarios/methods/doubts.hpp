@@ -15,7 +15,7 @@ struct Estimate;
 struct Doubt {
   enum class About {
     readings,        ///< IMU readings contradict each other or gravity
-    rates,           ///< all rates (Estimate::doubted_rad2_s2), because of `readings`
+    rates,           ///< all rates (Estimate::suspect_rad2_s2), because of `readings`
     flights,         ///< specific forces in flight contradict the angular rates; value: duration [s]
     stamps,          ///< stamps rounded more coarsely than the IMU period; value: rounding [s]
     rate_unit,       ///< rates are possibly not in rad/s
@@ -54,7 +54,7 @@ void add_doubt(const Doubt& doubt, Estimate& estimate);
 bool has_doubt(const Doubt& doubt, const Estimate& estimate);
 
 /// Records in the health that a check passed.
-void tell_undoubted(Doubt::About about, Estimate& estimate);
+void report_no_doubt(Doubt::About about, Estimate& estimate);
 
 /// Restores the doubts of an estimate from its health, for estimates that were read from a file.
 std::vector<Doubt> doubts_in(const std::map<std::string, double>& health);

@@ -358,8 +358,8 @@ std::string estimated_sensors(const std::filesystem::path& path) {
   if (!std::filesystem::is_directory(path)) return "";
   std::ifstream file(path / "estimate.json");
   const json header = json::parse(file, nullptr, false);
-  const bool told = header.is_object() && header.contains("sensors_digest") && header["sensors_digest"].is_string();
-  return told ? header["sensors_digest"].get<std::string>() : "";
+  const bool reported = header.is_object() && header.contains("sensors_digest") && header["sensors_digest"].is_string();
+  return reported ? header["sensors_digest"].get<std::string>() : "";
 }
 
 Estimate read_estimate(const std::filesystem::path& path, Kind& kind, std::string& method, Frame tum_frame) {

@@ -29,7 +29,7 @@ constexpr double kSlopeRight = 0.02, kSlopeAgreed = 0.99;
 // most 0.25, mostly below 0.6 with wrong axes (hill, throw, twirl, swing, seeds 99101 and 99102).
 constexpr double kHeldShare = 0.8;
 
-Status told(Status status, Estimate& estimate) {
+Status reported(Status status, Estimate& estimate) {
   if (!status.ok()) add_doubt({Doubt::About::readings}, estimate);
   return status;
 }
@@ -48,28 +48,28 @@ double fastest_rad_s(std::span<const ImuSample> samples) {
 }
 
 /// Adds to the covariance of rate `k`.
-void doubt_rate(std::size_t k, const Eigen::Matrix3d& by_rad2_s2, Estimate& estimate) {
-  estimate.doubted_rad2_s2.resize(estimate.rates.size(), Eigen::Matrix3d::Zero());
-  estimate.doubted_rad2_s2[k] += by_rad2_s2;
+void inflate_rate(std::size_t k, const Eigen::Matrix3d& by_rad2_s2, Estimate& estimate) {
+  estimate.suspect_rad2_s2.resize(estimate.rates.size(), Eigen::Matrix3d::Zero());
+  estimate.suspect_rad2_s2[k] += by_rad2_s2;
   estimate.rates[k].covariance_rad2_s2 += by_rad2_s2;
 }
 
 /// Increases the covariance of all rates by the squared rate. A flipped sign gives an error of twice the rate, half the
 /// scale an error of half the rate.
-void doubt_rates(Estimate& estimate) {
+void inflate_rates(Estimate& estimate) {
   for (std::size_t k = 0; k < estimate.rates.size(); ++k)
-    doubt_rate(k, estimate.rates[k].w_WI_I_rad_s.squaredNorm() * Eigen::Matrix3d::Identity(), estimate);
+    inflate_rate(k, estimate.rates[k].w_WI_I_rad_s.squaredNorm() * Eigen::Matrix3d::Identity(), estimate);
   add_doubt({Doubt::About::rates}, estimate);
 }
 
 /// Increases the covariance of rates whose gyro axis is frozen.
-void doubt_frozen_rates(const FrozenAxis& frozen, double sigma_rad_s, Estimate& estimate) {
+void inflate_frozen_rates(const FrozenAxis& frozen, double sigma_rad_s, Estimate& estimate) {
   if (frozen.triad != Triad::gyro) return;
   Eigen::Matrix3d by_rad2_s2 = Eigen::Matrix3d::Zero();
   by_rad2_s2(frozen.axis, frozen.axis) = sigma_rad_s * sigma_rad_s;
   for (std::size_t k = 0; k < estimate.rates.size(); ++k) {
     const TimeNs time_ns = estimate.rates[k].time_ns;
-    if (time_ns >= frozen.from_ns && time_ns <= frozen.to_ns) doubt_rate(k, by_rad2_s2, estimate);
+    if (time_ns >= frozen.from_ns && time_ns <= frozen.to_ns) inflate_rate(k, by_rad2_s2, estimate);
   }
 }
 
@@ -85,7 +85,7 @@ Status check_rest_force(const sim::Sensors& sensors, std::span<const ImuSample> 
   RestGravity::State state;
   for (const ImuSample& sample : samples) gravity.step(sample, {}, state);
   estimate.health["imu_rest_force_share"] = gravity.size_share(state);
-  return told(gravity.size_verdict(state), estimate);
+  return reported(gravity.size_verdict(state), estimate);
 }
 
 /// Runs check_imu(); also returns whether the rotation of gravity confirms the gyro scale.
@@ -98,7 +98,7 @@ Status check_turning(const sim::Sensors& sensors, std::span<const ImuSample> sam
   params.gravity_m_s2 = sensors.gravity_m_s2;
   // The merged units of a sphere report rates beyond the range.
   const double range_rad_s = sensors.imus.front().stated_gyro_range_rad_s;
-  if (sensors.sphere_radius_m <= 0.0 && range_rad_s > 0.0) params.gyro_range_rad_s = sure_range(range_rad_s);
+  if (sensors.sphere_radius_m <= 0.0 && range_rad_s > 0.0) params.gyro_range_rad_s = unsaturated_range(range_rad_s);
   const ImuPlausibility plausibility(params);
   ImuPlausibility::State state;
   for (const ImuSample& sample : samples) plausibility.step(sample, state);
@@ -114,7 +114,7 @@ Status check_turning(const sim::Sensors& sensors, std::span<const ImuSample> sam
     for (std::size_t j = 0; j < 3; ++j) estimate.health[kKeys[labels->axis[j]]] = labels->sign[j] * (1.0 + double(j));
     if (labels->gyro_flipped) estimate.health["imu_gyro_flipped"] = 1.0;
   }
-  const Status said = told(plausibility.verdict(state), estimate);
+  const Status said = reported(plausibility.verdict(state), estimate);
   return said.ok() ? of_rest : said;
 }
 
@@ -136,7 +136,7 @@ Status check_imus(const sim::Sensors& sensors, const MergedImus& imus, Estimate&
   estimate.health["imu_arm_share"] = *imus.arm_share;
   if (std::abs(*imus.arm_share - 1.0) > kArmShareOff && !gyros_right) add_doubt({Doubt::About::readings}, estimate);
   if (!own.ok() || *imus.arm_share >= kArmShareMin) return own;
-  return told(
+  return reported(
       {Trouble::out_of_range,
        "difference between the forces of the IMUs, relative to the value predicted from rotation and lever arms",
        *imus.arm_share, kArmShareMin},
@@ -150,11 +150,11 @@ Status check_flights(const sim::Sensors& sensors, std::span<const ImuSample> sam
   params.lever_arm_m = bridge::lever_arm_I_m(sensors.imus.front());
   params.gyro_range_rad_s = sensors.imus.front().stated_gyro_range_rad_s;
   const bool thrown = carried_share && *carried_share < kHeldShare;
-  params.body = thrown ? FlightSense::Body::thrown : FlightSense::Body::perhaps_held;
+  params.body = thrown ? FlightSense::Body::thrown : FlightSense::Body::may_be_hand_held;
   const FlightSense sense(params);
   FlightSense::State state;
   for (const ImuSample& sample : samples) sense.step(sample, state);
-  const Status status = told(sense.verdict(state), estimate);
+  const Status status = reported(sense.verdict(state), estimate);
   if (!status.ok()) add_doubt({Doubt::About::flights, status.value}, estimate);
   return status;
 }
@@ -168,7 +168,7 @@ Status check_rotation_between_rests(const sim::Sensors& sensors, std::span<const
   estimate.health["rest_gravity_missed_sigma_rad"] = state.miss_sigma_rad;
   estimate.health["rest_velocity_share"] = state.velocity_share;
   estimate.health["rest_velocity_allowed_share"] = state.velocity_allowed_share;
-  return told(gravity.verdict(state), estimate);
+  return reported(gravity.verdict(state), estimate);
 }
 
 Status check_rotation_about_pivots(const sim::Sensors& sensors, std::span<const ImuSample> samples,
@@ -184,7 +184,7 @@ Status check_rotation_about_pivots(const sim::Sensors& sensors, std::span<const 
     estimate.health["pivot_scale"] = found.scale;
     estimate.health["pivot_scale_sigma"] = found.scale_sigma;
   }
-  return told(pivots.verdict(found), estimate);
+  return reported(pivots.verdict(found), estimate);
 }
 
 void check_rates(const sim::Sensors& sensors, std::span<const ImuSample> samples, std::optional<double> carried_share,
@@ -194,16 +194,16 @@ void check_rates(const sim::Sensors& sensors, std::span<const ImuSample> samples
   const Status of_rates = check_rotation_between_rests(sensors, samples, estimate.rates, estimate);
   const Status of_pivots = check_rotation_about_pivots(sensors, samples, estimate.rates, estimate);
   if (of_flights.ok() && of_readings.ok() && of_rates.ok() && of_pivots.ok()) return;
-  doubt_rates(estimate);
+  inflate_rates(estimate);
 }
 
-void tell_frozen_axes(const sim::Sensors& sensors, std::span<const ImuSample> samples, Estimate& estimate) {
+void report_frozen_axes(const sim::Sensors& sensors, std::span<const ImuSample> samples, Estimate& estimate) {
   for (const FrozenAxis& frozen : find_frozen_axes(sensors.imus.front(), samples)) {
     const Doubt doubt{Doubt::About::unit_frozen, seconds(frozen.from_ns - samples.front().time_ns),
                       sensors.imus.front().name + "_" + to_string(frozen)};
     if (!has_doubt(doubt, estimate)) add_doubt(doubt, estimate);  // keep the earliest time
     add_doubt({Doubt::About::readings}, estimate);
-    doubt_frozen_rates(frozen, fastest_rad_s(samples), estimate);
+    inflate_frozen_rates(frozen, fastest_rad_s(samples), estimate);
   }
 }
 

@@ -50,6 +50,6 @@ Status check_flights(const sim::Sensors& sensors, std::span<const ImuSample> sam
 /// Reports frozen axes of the primary IMU: `imu_implausible`, and the start as `imu_gyro_z_frozen_since_s`. While a
 /// gyro axis is frozen, its rate is only bounded by the largest reading of the run; the covariance of the estimate's
 /// rates grows accordingly. O(N).
-void tell_frozen_axes(const sim::Sensors& sensors, std::span<const ImuSample> samples, Estimate& estimate);
+void report_frozen_axes(const sim::Sensors& sensors, std::span<const ImuSample> samples, Estimate& estimate);
 
 }  // namespace tumble::scenarios

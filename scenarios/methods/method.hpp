@@ -48,7 +48,7 @@ struct Estimate {
   std::vector<MapPoint> map;                               ///< kind slam
   std::vector<Doubt> doubts;                               ///< failed health checks (add_doubt)
   /// Covariance added to each of `rates` by failed health checks; empty if none (imu_check.hpp).
-  std::vector<Eigen::Matrix3d> doubted_rad2_s2;
+  std::vector<Eigen::Matrix3d> suspect_rad2_s2;
   std::map<std::string, double> health;      ///< named counters: "rejected_samples", "sweeps_rejected"
   std::map<std::string, double> parameters;  ///< parameters that the user set by name
   std::string transcript;                    ///< output of an external program; not scored

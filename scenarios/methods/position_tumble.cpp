@@ -165,7 +165,7 @@ RollingMode claimed_mode(const RollingFilter::State& state, double claimed_from)
 }
 
 /// Reports problems with the sample times and the start.
-void tell_of_samples(const RollingFilter::State& state, Estimate& estimate) {
+void report_samples(const RollingFilter::State& state, Estimate& estimate) {
   if (state.gaps > 0) {
     estimate.health["gaps_bridged"] = static_cast<double>(state.gaps);
     estimate.health["gap_longest_s"] = state.gap_longest_s;
@@ -193,7 +193,7 @@ Estimate run_live(const sim::Sensors& sensors, const sim::Values& parameters, co
     add_contact(claimed_mode(*state, params.slip_claimed_from), state->at_rest, state->uncertain,
                 params.filter.radius_m, sample, estimate);
   }
-  tell_of_samples(*state, estimate);
+  report_samples(*state, estimate);
   return estimate;
 }
 
@@ -267,14 +267,14 @@ void smooth(const RollingSmoother::Params& params, const MergedImus& imus, std::
   } else {
     smoother.finish(known, *state, take);
   }
-  tell_of_samples(state->live, estimate);
+  report_samples(state->live, estimate);
   // The lever arm was stated from the centre of mass, so its error gives the position of the sphere's centre.
-  estimate.centre_B_m = -state->learnt.lever_arm_error_m;
+  estimate.centre_B_m = -state->constants.lever_arm_error_m;
   estimate.health["centre_x_m"] = estimate.centre_B_m.x();
   estimate.health["centre_y_m"] = estimate.centre_B_m.y();
   estimate.health["centre_z_m"] = estimate.centre_B_m.z();
   if (params.filter.radius_sigma_m > 0.0) {
-    estimate.health["radius_m"] = params.filter.radius_m + state->learnt.radius_error_m;
+    estimate.health["radius_m"] = params.filter.radius_m + state->constants.radius_error_m;
     estimate.health["radius_sigma_m"] = state->radius_sigma_m;
   }
 }

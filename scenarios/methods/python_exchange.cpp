@@ -161,7 +161,7 @@ class Answer {
     first_ = aligned(sizeof(length) + length);
   }
 
-  std::optional<std::string> told(const char* key) const {
+  std::optional<std::string> text_of(const char* key) const {
     if (!text_.contains(key) || !text_[key].is_string()) return std::nullopt;
     return text_[key].get<std::string>();
   }
@@ -266,8 +266,8 @@ void write_sensors(const sim::Sensors& sensors, SharedMemory& memory) {
 Estimate read_answer(const SharedMemory& memory, Kind kind, Frame frame, const sim::Sensors& sensors) {
   const AnswerBounds bounds(sensors);
   const Answer answer(memory, bounds);
-  if (const auto raised = answer.told("raised")) throw NoAnswer(NoAnswer::Why::crashed, *raised);
-  if (const auto refused = answer.told("refused")) throw BadInput(*refused);
+  if (const auto raised = answer.text_of("raised")) throw NoAnswer(NoAnswer::Why::crashed, *raised);
+  if (const auto refused = answer.text_of("refused")) throw BadInput(*refused);
   Estimate estimate;
   estimate.frame = frame;
   if (kind == Kind::rate) {

@@ -28,7 +28,7 @@ Status auxiliary_imu(const sim::ImuRecord& primary, const sim::ImuRecord& other,
   out.p_I_m = T_IO.translation();
   out.specific_force_m_s2.assign(primary.time_ns.size(),
                                  Eigen::Vector3d::Constant(std::numeric_limits<double>::quiet_NaN()));
-  const double rail = sure_range(other.stated_accel_range_m_s2);
+  const double rail = unsaturated_range(other.stated_accel_range_m_s2);
   if (there.size() < 2) return {};
   ImuInterpolation interpolation(there);
   for (std::size_t k = 0; k < primary.time_ns.size(); ++k) {

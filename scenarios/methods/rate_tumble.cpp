@@ -11,10 +11,10 @@
 #include "scenarios/errors.hpp"
 #include "scenarios/methods/bridge.hpp"
 #include "scenarios/methods/imu_check.hpp"
-#include "scenarios/methods/rails_told.hpp"
 #include "scenarios/methods/rate_baseline.hpp"
 #include "scenarios/methods/rate_regimes.hpp"
 #include "scenarios/methods/rate_tumble.hpp"
+#include "scenarios/methods/report_rails.hpp"
 #include "scenarios/methods/sample_times.hpp"
 #include "tumble/angular_velocity/detail/rate_model.hpp"
 
@@ -67,12 +67,12 @@ Status auxiliary_readings(const sim::Sensors& sensors, std::span<const ImuSample
 namespace {
 
 /// Reports the smoother's check of a unit, failed or passed.
-void report_unit(Doubt::About unit, bool suspect, Estimate& told) {
-  suspect ? add_doubt({unit}, told) : tell_undoubted(unit, told);
+void report_unit(Doubt::About unit, bool suspect, Estimate& result) {
+  suspect ? add_doubt({unit}, result) : report_no_doubt(unit, result);
 }
 
-void report_health(const RateReport& report, Estimate& told) {
-  std::map<std::string, double>& health = told.health;
+void report_health(const RateReport& report, Estimate& result) {
+  std::map<std::string, double>& health = result.health;
   health["iterations"] = report.iterations;
   health["converged"] = report.converged ? 1.0 : 0.0;
   health["restarts"] = report.restarts;
@@ -85,21 +85,21 @@ void report_health(const RateReport& report, Estimate& told) {
   constexpr int kDelay = SensorErrors::kDelay;
   health["accel_delay_s"] = report.sensor_errors.errors.accel_delay_s;
   health["accel_delay_sigma_s"] = std::sqrt(report.sensor_errors.covariance(kDelay, kDelay));
-  health["device_calibrated"] = report.calibrated;
-  health["triads_together"] = report.together;
+  health["device_calibrated"] = report.in_sheet_probability;
+  health["triads_together"] = report.synchronous_probability;
   health["error_rounds"] = report.error_rounds;
   health["gyro_update_s"] = report.gyro_update_s;
   health["accel_update_s"] = report.accel_update_s;
-  health["rails_upright"] = report.rails_upright ? 1.0 : 0.0;
-  report_unit(Doubt::About::rate_unit, report.rate_unit_suspect, told);
-  report_unit(Doubt::About::force_unit, report.force_unit_suspect, told);
+  health["rails_upright"] = report.rails_axis_aligned ? 1.0 : 0.0;
+  report_unit(Doubt::About::rate_unit, report.rate_unit_suspect, result);
+  report_unit(Doubt::About::force_unit, report.force_unit_suspect, result);
   const char* const names[] = {"x", "y", "z"};
   for (int j = 0; j < 3; ++j) {
     const std::string axis = names[j];
     health["learnt_lever_arm_" + axis + "_m"] = report.calibration.constants.lever_arm_m[j];
     health["learnt_lever_arm_sigma_" + axis + "_m"] = std::sqrt(report.calibration.covariance(j, j));
   }
-  tell_rails(report, health);
+  report_rails(report, health);
 }
 
 constexpr double kTrust = 4.0;
@@ -167,13 +167,13 @@ namespace {
 
 /// Compares a stored calibration with one from a run that did not use it. Returns false and adds a doubt if they belong
 /// to different rigs.
-bool may_be_of_this_rig(const LearntRig& given, const std::optional<LearntRig>& fresh, Estimate& told) {
+bool may_be_of_this_rig(const LearntRig& given, const std::optional<LearntRig>& fresh, Estimate& result) {
   constexpr double kDistanceMax = 2.0;  // see distance_of_rigs
-  tell_undoubted(Doubt::About::learnt_rig, told);
+  report_no_doubt(Doubt::About::learnt_rig, result);
   if (!fresh || fresh->rails_alone) return true;
   const double distance = distance_of_rigs(given.calibration, fresh->calibration, kTrust);
   if (distance <= kDistanceMax) return true;
-  add_doubt({Doubt::About::learnt_rig, distance}, told);
+  add_doubt({Doubt::About::learnt_rig, distance}, result);
   return false;
 }
 
@@ -212,16 +212,16 @@ Method learning_method(const Method& method, Learning& learning) {
 }
 
 Status tumble_rates(const sim::Sensors& sensors, std::span<const ImuSample> samples, RateSmoother::Params params,
-                    SmoothedRates& out, Estimate& told) {
+                    SmoothedRates& out, Estimate& result) {
   out = {};
   std::vector<std::vector<AuxiliaryReading>> auxiliary_imus;
   Status status = auxiliary_readings(sensors, samples, params.model, auxiliary_imus);
   out.auxiliary_imus = auxiliary_imus.size();
   if (status.ok()) status = RateSmoother(params).estimate(samples, auxiliary_imus, out.rates, out.report);
   if (status.ok()) {
-    report_health(out.report, told);
+    report_health(out.report, result);
     // Further IMUs determine the rate even if the body is hand-held; the hand-held smoother does not use them.
-    if (auxiliary_imus.empty()) out.carried = join_regimes(sensors, samples, out.report, out.rates, told.health);
+    if (auxiliary_imus.empty()) out.carried = join_regimes(sensors, samples, out.report, out.rates, result.health);
   }
   return status;
 }
@@ -237,7 +237,7 @@ void learn(const RateReport& report, const LearntRig* given, const RateModelPara
   }
   KnownRails rails;
   rails.planes = report.planes;
-  rails.upright = report.rails_upright;
+  rails.upright = report.rails_axis_aligned;
   rails.accel_planes = report.accel_planes;
   if (std::optional<LearntRig> rig = with_rails(known_before(given, model), rails)) found = std::move(rig);
 }
@@ -255,7 +255,7 @@ Estimate rates_of_batch(const sim::Sensors& sensors, const sim::Values& paramete
     estimate.rates = std::move(smoothed.rates);
     if (estimate.status.ok()) {
       check_rates(sensors, samples, smoothed.carried.share, estimate);
-      tell_frozen_axes(sensors, samples, estimate);
+      report_frozen_axes(sensors, samples, estimate);
     }
     estimate.health["imus"] = 1.0 + static_cast<double>(smoothed.auxiliary_imus);
     if (estimate.status.ok() && found != nullptr) learn(smoothed.report, given, params.model, *found);

@@ -40,9 +40,9 @@ struct SmoothedRates {
 };
 
 /// Smooths the rates of `samples`, which may differ from the recording's readings. Adds the smoother's report to the
-/// health and doubts of `told`.
+/// health and doubts of `result`.
 Status tumble_rates(const sim::Sensors& sensors, std::span<const ImuSample> samples, RateSmoother::Params params,
-                    SmoothedRates& out, Estimate& told);
+                    SmoothedRates& out, Estimate& result);
 
 /// Adds the readings of other IMUs on the same body, at the stamps of `samples`. Uses the first further IMUs except
 /// `imu_reference`, at most kAuxiliaryImusMax, with their calibrated mountings in `model`. Errors: those of a record.

@@ -8,9 +8,9 @@
 
 #include "scenarios/methods/bridge.hpp"
 #include "scenarios/methods/imu_check.hpp"
-#include "scenarios/methods/rails_told.hpp"
 #include "scenarios/methods/rate_tumble.hpp"
 #include "scenarios/methods/registry.hpp"
+#include "scenarios/methods/report_rails.hpp"
 #include "scenarios/methods/sample_times.hpp"
 #include "tumble/angular_velocity/rate_stream.hpp"
 #include "tumble/attitude/regime_stream.hpp"
@@ -56,7 +56,7 @@ RegimeStream::Params stream_params(const sim::Sensors& sensors, const sim::Value
   rate.rails = batch.rails;
   rate.expert.planes = batch.expert.planes;
   rate.expert.accel_planes = batch.expert.accel_planes;
-  if (batch.learnt_errors) rate.learnt_errors = std::make_shared<KnownSensorErrors>(*batch.learnt_errors);
+  if (batch.calibrated_errors) rate.calibrated_errors = std::make_shared<KnownSensorErrors>(*batch.calibrated_errors);
   return params;
 }
 
@@ -137,10 +137,10 @@ Estimate rates_of_stream(const sim::Sensors& sensors, const sim::Values& paramet
   estimate.health["accel_delay_s"] = device.errors.accel_delay_s;
   estimate.health["accel_delay_sigma_s"] = std::sqrt(device.covariance(kDelay, kDelay));
   estimate.health["steps_skipped"] = static_cast<double>(state.failures);
-  tell_rails(state.rails.known, estimate.health);
+  report_rails(state.rails.known, estimate.health);
   std::optional<double> carried_share;
-  if (all.given > 0) {
-    const double each = 1.0 / static_cast<double>(all.given);
+  if (all.reported > 0) {
+    const double each = 1.0 / static_cast<double>(all.reported);
     estimate.health["regime_flight_share"] = each * all.sum.flight;
     estimate.health["regime_contact_share"] = each * all.sum.contact;
     carried_share = each * all.sum.carried;
@@ -155,7 +155,7 @@ Estimate rates_of_stream(const sim::Sensors& sensors, const sim::Values& paramet
   }
   if (estimate.status.ok()) {
     check_rates(sensors, samples, carried_share, estimate);
-    tell_frozen_axes(sensors, samples, estimate);
+    report_frozen_axes(sensors, samples, estimate);
   }
   count_sources(estimate.rates, estimate.health);
   return estimate;

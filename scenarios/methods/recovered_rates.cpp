@@ -10,7 +10,7 @@
 
 #include "scenarios/methods/carried.hpp"
 #include "scenarios/methods/rate_tumble.hpp"
-#include "tumble/angular_velocity/detail/held_rates.hpp"
+#include "tumble/angular_velocity/detail/interpolated_rates.hpp"
 
 namespace tumble::scenarios {
 
@@ -100,11 +100,11 @@ RecoveredRates recover_in_time(const sim::Sensors& sensors, std::vector<ImuSampl
   const Recovery recovery = recovery_of(sensors, samples, is_read, health);
   std::vector<std::uint8_t> hidden(samples.size(), 0);
   for (std::size_t k = 0; k < recovery.rates.size(); ++k) hidden[k] = is_read(recovery.rates[k]) ? 0 : 1;
-  const std::vector<std::optional<HeldRate>> told = rates_between_readings(samples, hidden);
+  const std::vector<std::optional<InterpolatedRate>> interpolated = rates_between_readings(samples, hidden);
   RecoveredRates out = recover(recovery, is_read, samples, health);
-  for (std::size_t k = 0; k < told.size(); ++k) {
-    if (told[k]) {
-      samples[k].angular_velocity_rad_s = told[k]->rate_rad_s;
+  for (std::size_t k = 0; k < interpolated.size(); ++k) {
+    if (interpolated[k]) {
+      samples[k].angular_velocity_rad_s = interpolated[k]->rate_rad_s;
       out.covariances_rad2_s2[k].setZero();
     } else if (!recovery.rates.empty()) {
       recovery.put(k, samples, out.covariances_rad2_s2);

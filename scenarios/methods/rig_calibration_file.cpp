@@ -134,7 +134,7 @@ constexpr double kToleranceShare = 2e-3;
 
 // Returns true if the intercept of a plane is known: two standard deviations are within the tolerance of the next run.
 // If two elements only clip together, the slope between them is unknown, and so is the level elsewhere.
-bool level_told(const RailPlane& plane, int sign) {
+bool reported_level(const RailPlane& plane, int sign) {
   const Eigen::Vector4d cut(0.0, 0.0, sign, 1.0);
   const double variance = cut.dot(plane.covariance * cut), most = 0.5 * kToleranceShare * plane.distance_rad_s;
   return variance <= most * most;
@@ -145,7 +145,7 @@ bool level_told(const RailPlane& plane, int sign) {
 LearntRig learnt(const RateReport& report) {
   LearntRig out{report.calibration, report.rail};
   out.device_errors = report.sensor_errors;
-  if (!report.rails_upright) out.keep(report.planes);
+  if (!report.rails_axis_aligned) out.keep(report.planes);
   out.keep(report.accel_planes, Triad::accelerometer);
   return out;
 }
@@ -162,7 +162,7 @@ void LearntRig::keep(const RailPlanes& planes, Triad triad) {
       continue;
     }
     for (const int sign : {-1, 1}) {
-      if (plane && plane->seen(sign) && level_told(*plane, sign)) {
+      if (plane && plane->seen(sign) && reported_level(*plane, sign)) {
         kept[j][sign > 0 ? 1 : 0] = plane->offset_rad_s + sign * plane->distance_rad_s;
       }
     }
@@ -259,8 +259,8 @@ void start_from(const LearntRig& rig, double trust, RateSmoother::Params& params
     }
   }
   if (rig.device_errors) {
-    params.learnt_errors = rig.device_errors;
-    params.learnt_errors->covariance *= trust;
+    params.calibrated_errors = rig.device_errors;
+    params.calibrated_errors->covariance *= trust;
   }
   if (const auto rail = lowest(rig, 0)) params.rails.stated_gyro_rad_s = rail;
   if (const auto rail = lowest(rig, 3)) params.rails.stated_accel_m_s2 = rail;

@@ -18,12 +18,12 @@ namespace {
 /// reject.
 struct SampleTimes {
   std::vector<std::int64_t> times_ns;
-  double mended_s = 0.0;
+  double corrected_jitter_s = 0.0;
 };
 
 SampleTimes sample_times(const sim::ImuRecord& record) {
   SampleTimes out{.times_ns = record.time_ns};
-  (void)to_sample_times(SampleClock({}), out.times_ns, out.mended_s);
+  (void)to_sample_times(SampleClock({}), out.times_ns, out.corrected_jitter_s);
   return out;
 }
 
@@ -68,15 +68,15 @@ Estimate without_outliers(const sim::Sensors& sensors, const std::function<Estim
 
 Estimate with_sample_times(const sim::Sensors& sensors, const std::function<Estimate(const sim::Sensors&)>& run) {
   std::vector<SampleTimes> times;
-  double mended_s = 0.0;
+  double corrected_jitter_s = 0.0;
   for (const sim::ImuRecord& record : sensors.imus)
-    mended_s = std::max(mended_s, times.emplace_back(sample_times(record)).mended_s);
-  if (mended_s == 0.0) return run(sensors);
+    corrected_jitter_s = std::max(corrected_jitter_s, times.emplace_back(sample_times(record)).corrected_jitter_s);
+  if (corrected_jitter_s == 0.0) return run(sensors);
   sim::Sensors timed = sensors;
   for (std::size_t i = 0; i < times.size(); ++i) timed.imus[i].time_ns = std::move(times[i].times_ns);
   Estimate estimate = run(timed);
   restore_stamps(timed.imus.front(), sensors.imus.front(), estimate.rates);
-  estimate.health["stamps_mended_s"] = mended_s;
+  estimate.health["stamps_mended_s"] = corrected_jitter_s;
   return estimate;
 }
 

@@ -22,7 +22,7 @@ namespace tumble::scenarios {
 
 namespace {
 
-constexpr double kBelieved = GivenCalibration::kBelieved;
+constexpr double kMaxDeviations = StatedCalibration::kMaxDeviations;
 constexpr int kSearches = 3;  // additional runs for a calibration that moves further
 
 LidarInertialOdometry::Params odometry_params(const sim::Sensors& sensors, const SlamStage& stage,
@@ -32,7 +32,7 @@ LidarInertialOdometry::Params odometry_params(const sim::Sensors& sensors, const
   odometry.T_IL = bridge::T_IL(sensors.imus.front(), sensors.lidars.front());
   odometry.expert.gravity_m_s2 = sensors.gravity_m_s2;
   const double accel_range_m_s2 = sensors.imus.front().stated_accel_range_m_s2;
-  if (accel_range_m_s2 > 0.0) odometry.expert.rails.accel_m_s2 = sure_range(accel_range_m_s2);
+  if (accel_range_m_s2 > 0.0) odometry.expert.rails.accel_m_s2 = unsaturated_range(accel_range_m_s2);
   if (chain.along) {
     odometry.expert.gravity_m_s2 = chain.along->gravity_m_s2;
     odometry.expert.matching.correction_max_m = chain.along->correction_max_m;
@@ -85,7 +85,7 @@ class SweepFeed {
 
   /// Finishes the recording.
   void finish() {
-    for (std::vector<PoseState>& open : odometry_.open_trajectories()) apply_next(std::move(open));
+    for (std::vector<PoseState>& open : odometry_.window_trajectories()) apply_next(std::move(open));
   }
 
  private:
@@ -161,9 +161,9 @@ void report_calibration(const LidarInertialOdometry& odometry, const sim::Sensor
 }
 
 /// Returns the initial calibration of a run with its stated uncertainty.
-GivenCalibration given_calibration(const LidarInertialOdometry::Params& started,
-                                   const LidarInertialOdometry::Params& given) {
-  GivenCalibration out;
+StatedCalibration stated_calibration(const LidarInertialOdometry::Params& started,
+                                     const LidarInertialOdometry::Params& given) {
+  StatedCalibration out;
   out.calibration.T_IL = started.T_IL;
   out.calibration.time_offset_s = started.time_offset_s;
   out.mount_sigma_rad = given.mount_sigma_rad;
@@ -173,7 +173,7 @@ GivenCalibration given_calibration(const LidarInertialOdometry::Params& started,
 }
 
 /// Returns true if few enough sweeps were rejected to use the run's calibration.
-bool tells_calibration(const Estimate& run) {
+bool determines_calibration(const Estimate& run) {
   const auto rejected = std::count_if(run.sweeps.begin(), run.sweeps.end(),
                                       [](const auto& sweep) { return sweep.verdict == SweepVerdict::rejected; });
   return 5 * static_cast<std::size_t>(rejected) <= run.sweeps.size();
@@ -201,13 +201,13 @@ Estimate run_passes(const sim::LidarRecord& lidar, std::span<const ImuSample> sa
     params.T_IL = learnt.T_IL;
     params.time_offset_s = learnt.time_offset_s;
   };
-  while (run.status.ok() && tells_calibration(run)) {
-    mahalanobis = given_calibration(params, given).moved(odometry.calibration());
-    if (mahalanobis <= kBelieved || passes > kSearches) break;
+  while (run.status.ok() && determines_calibration(run)) {
+    mahalanobis = stated_calibration(params, given).deviations(odometry.calibration());
+    if (mahalanobis <= kMaxDeviations || passes > kSearches) break;
     start_from(odometry.calibration());
     again();
   }
-  const bool converged = run.status.ok() && tells_calibration(run) && mahalanobis <= kBelieved;
+  const bool converged = run.status.ok() && determines_calibration(run) && mahalanobis <= kMaxDeviations;
   if (converged) {
     const auto sigma = odometry.calibration_weight().diagonal().cwiseSqrt().eval();
     start_from(odometry.calibration());
@@ -217,7 +217,7 @@ Estimate run_passes(const sim::LidarRecord& lidar, std::span<const ImuSample> sa
     again();
   }
   if (passes > 1) run.health["passes"] = passes;
-  verdict = {given_calibration(given, given).moved(odometry.calibration()), converged};
+  verdict = {stated_calibration(given, given).deviations(odometry.calibration()), converged};
   run.health["lidar_calibration_mahalanobis"] = verdict.moved;
   run.health["calibration_unconverged"] = converged ? 0.0 : 1.0;
   return run;
@@ -256,7 +256,7 @@ Estimate begin_with_rates(const sim::Sensors& sensors, std::vector<ImuSample>& s
   estimate.status = bridge::primary_imu_samples(sensors, samples);
   if (estimate.status.ok()) estimate.status = rates(estimate);
   if (!estimate.status.ok()) return estimate;
-  tell_frozen_axes(sensors, samples, estimate);
+  report_frozen_axes(sensors, samples, estimate);
   flag_railed_forces(sensors.imus.front(), samples);
   return estimate;
 }

@@ -65,7 +65,7 @@ void report_scale(const SweepScale& scale, Estimate& estimate) {
 /// uncertainty, and lidar ranges and motion have the same scale. A wrong scale gives a map of the wrong size even if
 /// all sweeps agree.
 bool is_localised(const CalibrationVerdict& calibration, const Localisation& localisation, const SweepScale* scale) {
-  if (!calibration.converged && calibration.moved > GivenCalibration::kBelieved) return false;
+  if (!calibration.converged && calibration.moved > StatedCalibration::kMaxDeviations) return false;
   return localisation.verdict().ok() && !(scale && scale->is_off());
 }
 
@@ -91,7 +91,7 @@ bool conclude(const LidarInertialOdometry& odometry, const CalibrationVerdict& c
   if (!estimate.sweeps.empty()) {
     report_end(localisation, estimate);
     localised = is_localised(calibration, localisation, scale);
-    localised ? tell_undoubted(Doubt::About::place, estimate) : add_doubt({Doubt::About::place, 0.0}, estimate);
+    localised ? report_no_doubt(Doubt::About::place, estimate) : add_doubt({Doubt::About::place, 0.0}, estimate);
   }
   if (scale) report_scale(*scale, estimate);
   estimate.map = odometry.map();
@@ -99,9 +99,9 @@ bool conclude(const LidarInertialOdometry& odometry, const CalibrationVerdict& c
   return localised && estimate.status.ok();
 }
 
-void conclude_sweeps(const LidarInertialOdometry& odometry, const GivenCalibration& given, const SweepScale& scale,
+void conclude_sweeps(const LidarInertialOdometry& odometry, const StatedCalibration& given, const SweepScale& scale,
                      const Localisation& localisation, Estimate& estimate) {
-  const CalibrationVerdict calibration{given.moved(odometry.calibration()), false};
+  const CalibrationVerdict calibration{given.deviations(odometry.calibration()), false};
   estimate.health["lidar_calibration_mahalanobis"] = calibration.moved;
   conclude(odometry, calibration, localisation, &scale, estimate);
 }

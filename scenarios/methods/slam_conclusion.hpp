@@ -28,7 +28,7 @@ bool conclude(const LidarInertialOdometry& odometry, const CalibrationVerdict& c
 
 /// The same for one pass. A calibration that moved by more than five of its stated standard deviations was wrong
 /// (health `lidar_calibration_mahalanobis`).
-void conclude_sweeps(const LidarInertialOdometry& odometry, const GivenCalibration& given, const SweepScale& scale,
+void conclude_sweeps(const LidarInertialOdometry& odometry, const StatedCalibration& given, const SweepScale& scale,
                      const Localisation& localisation, Estimate& estimate);
 
 }  // namespace tumble::scenarios

@@ -28,7 +28,7 @@ const Settings<baselines::PointwiseFilter::Params>& slam_pointwise_reject_settin
 void run_filter(const sim::Sensors& sensors, std::span<const ImuSample> samples, baselines::PointwiseFilter& filter,
                 Estimate& estimate) {
   const sim::LidarRecord& lidar = sensors.lidars.front();
-  const double rail = sure_range(sensors.imus.front().stated_accel_range_m_s2);
+  const double rail = unsaturated_range(sensors.imus.front().stated_accel_range_m_s2);
   std::size_t next = 0;
   // The IMU must reach a sample at or after the sweep's end.
   const auto covers = [&](const bridge::Sweep& sweep) {

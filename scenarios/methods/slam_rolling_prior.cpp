@@ -41,7 +41,7 @@ struct AlongParams {
   double moving_m_s = 0.03;
   double correction_m = 0.03, correction_rad = 0.015, loose_correction_m = 0.1;
   double segment_m = 0.5, segment_sigma_m = 3e-3;
-  double mended_sigmas = 4.0, mended_share = 0.01;
+  double corrected_sigmas = 4.0, corrected_share = 0.01;
 
   template <class Self, class Visitor>
   static void fields(Self& p, Visitor& visit) {
@@ -70,12 +70,13 @@ struct AlongParams {
           {"along_segment_m", "m", 0.01, 100.0, "length of the rolled path over which the lidar measures the radius"});
     visit(p.segment_sigma_m, {"along_segment_sigma_m", "m", 1e-6, 10.0,
                               "least standard deviation of this length, from the centre and the registration"});
-    visit(p.mended_sigmas, {"along_mended_sigmas", "1", 0.0, 1e3,
-                            "difference between the lidar's and the stated radius, in standard deviations, above which "
-                            "the lidar's radius is used"});
-    visit(p.mended_share, {"along_mended_share", "1", 0.0, 1.0,
-                           "least difference between the lidar's and the stated radius, as a share, above which the "
-                           "lidar's radius is used"});
+    visit(p.corrected_sigmas,
+          {"along_corrected_sigmas", "1", 0.0, 1e3,
+           "difference between the lidar's and the stated radius, in standard deviations, above which "
+           "the lidar's radius is used"});
+    visit(p.corrected_share, {"along_corrected_share", "1", 0.0, 1.0,
+                              "least difference between the lidar's and the stated radius, as a share, above which the "
+                              "lidar's radius is used"});
   }
 };
 
@@ -242,11 +243,11 @@ Estimate run_rolling_prior(const sim::Sensors& sensors, const sim::Values& param
   if (!estimate.status.ok()) return estimate;
   const std::optional<Radius> radius = radius_by_lidar(rolled, estimate, sensors, radius_m, params);
   const double off_m = radius ? std::abs(radius->m - radius_m) : 0.0;
-  const bool mended = radius && radius->m > 0.0 &&
-                      off_m > std::max(params.mended_sigmas * radius->sigma_m, params.mended_share * radius_m);
-  if (mended) rolled = roll(sensors, parameters, radius->m);
+  const bool corrected = radius && radius->m > 0.0 &&
+                         off_m > std::max(params.corrected_sigmas * radius->sigma_m, params.corrected_share * radius_m);
+  if (corrected) rolled = roll(sensors, parameters, radius->m);
   estimate = register_along(rolled, sensors, raw, parameters, false);
-  if (mended) estimate.health["radius_mended"] = 1.0;
+  if (corrected) estimate.health["radius_mended"] = 1.0;
   if (radius) {
     estimate.health["radius_m"] = radius->m;
     estimate.health["radius_sigma_m"] = radius->sigma_m;

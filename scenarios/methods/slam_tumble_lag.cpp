@@ -7,8 +7,8 @@
 
 #include "scenarios/methods/bridge.hpp"
 #include "scenarios/methods/imu_check.hpp"
-#include "scenarios/methods/rails_told.hpp"
 #include "scenarios/methods/registry.hpp"
+#include "scenarios/methods/report_rails.hpp"
 #include "scenarios/methods/robot_presets.hpp"
 #include "scenarios/methods/settings.hpp"
 #include "scenarios/methods/slam_conclusion.hpp"
@@ -70,12 +70,12 @@ class Listener {
  public:
   Listener(Word word, const TumblingOdometry::Params& params, Estimate& estimate)
       : word_(word),
-        given_(params.given_calibration()),
+        given_(params.stated_calibration()),
         localisation_(params.expert.mapping.expert.matching.distance_m),
         estimate_(estimate) {}
 
   /// Called after each processed sample.
-  void heard(const TumblingOdometry& odometry) {
+  void observe(const TumblingOdometry& odometry) {
     PoseState pose;
     if (word_ != Word::live || !odometry.newest(pose).ok()) return;
     // while a sample is held the newest pose stays that of the sample before
@@ -96,7 +96,7 @@ class Listener {
   }
   /// Called at the end of the run.
   void conclude(const TumblingOdometry& odometry) {
-    for (std::vector<PoseState>& open : odometry.mapper().open_trajectories()) apply_next(std::move(open));
+    for (std::vector<PoseState>& open : odometry.mapper().window_trajectories()) apply_next(std::move(open));
     if (word_ == Word::live) speak_live();
     conclude_sweeps(odometry.mapper(), given_, odometry.sweep_scale(), localisation_, estimate_);
   }
@@ -122,7 +122,7 @@ class Listener {
   }
 
   Word word_;
-  GivenCalibration given_;
+  StatedCalibration given_;
   Localisation localisation_;
   Estimate& estimate_;
   std::size_t smoothed_ = 0;
@@ -130,8 +130,8 @@ class Listener {
 };
 
 /// Feeds the recording in real-time order: each sample at the end of its window, each sweep after its last point.
-Status live_through(const sim::Sensors& sensors, std::span<const ImuSample> samples, TumblingOdometry& odometry,
-                    Listener& listener) {
+Status replay(const sim::Sensors& sensors, std::span<const ImuSample> samples, TumblingOdometry& odometry,
+              Listener& listener) {
   const sim::LidarRecord& lidar = sensors.lidars.front();
   const std::size_t sweeps = bridge::sweep_count(lidar);
   std::optional<bridge::Sweep> present;
@@ -145,7 +145,7 @@ Status live_through(const sim::Sensors& sensors, std::span<const ImuSample> samp
         return status;
       present.reset();
     }
-    listener.heard(odometry);
+    listener.observe(odometry);
     listener.take(odometry);
   }
   odometry.finish();
@@ -165,18 +165,18 @@ Estimate run_slam_tumble_lag(const sim::Sensors& sensors, const sim::Values& par
   }
   (void)check_imu(sensors, samples, estimate);  // Only a warning, as for attitudes.
   (void)check_flights(sensors, samples, std::nullopt, estimate);
-  tell_frozen_axes(sensors, samples, estimate);
+  report_frozen_axes(sensors, samples, estimate);
   const TumblingOdometry::Params params = stated_params(sensors, parameters);
   TumblingOdometry odometry(params);
   Listener listener(word, params, estimate);
-  estimate.status = live_through(sensors, samples, odometry, listener);
+  estimate.status = replay(sensors, samples, odometry, listener);
   if (!estimate.status.ok()) return estimate;
-  tell_rails(odometry.rails(), estimate.health);
+  report_rails(odometry.rails(), estimate.health);
   const std::size_t left_out = sensors.imus.front().time_ns.size() - samples.size();
   estimate.health["rejected_readings"] = static_cast<double>(left_out + odometry.rejected_readings());
   if (odometry.early_sweeps() > 0) estimate.health["sweeps_before_imu"] = static_cast<double>(odometry.early_sweeps());
   estimate.health["gaps"] = static_cast<double>(odometry.gaps());
-  estimate.health["passed_again"] = odometry.passed_again() ? 1.0 : 0.0;
+  estimate.health["second_pass_applied"] = odometry.second_pass_applied() ? 1.0 : 0.0;
   listener.conclude(odometry);
   return estimate;
 }

@@ -21,9 +21,9 @@ namespace tumble::scenarios {
 
 namespace {
 
-constexpr double kSilentMaxS = 0.05;  // a unit without readings for longer is absent
-constexpr double kEdgeShare = 0.9;    // fraction of a sample period over which end readings are extrapolated
-constexpr double kSilentToldS = 0.5;  // a longer silence is reported
+constexpr double kSilentMaxS = 0.05;      // a unit without readings for longer is absent
+constexpr double kEdgeShare = 0.9;        // fraction of a sample period over which end readings are extrapolated
+constexpr double kSilentReportedS = 0.5;  // a longer silence is reported
 // Elements without an observed saturation plane are assumed aligned and exact. With a slope uncertainty of 0.03, three
 // clipped units would no longer determine the rate (slip_long, seeds 4, 30 and 42).
 constexpr double kUnknownSlope = 0.0;
@@ -63,12 +63,12 @@ void judge(const sim::ImuRecord& record, std::vector<ImuSample>& samples, Elemen
   ClippingFinder::Params params;
   params.upright_rails = stated_rails(record);
   const ClippingFinder::Found found = ClippingFinder(params).find(samples);
-  const HeardRails heard{.gyro = found.rails.planes_in_use(),
-                         .accel = found.rails.planes_in_use(Triad::accelerometer),
-                         .gyro_range_rad_s = record.stated_gyro_range_rad_s,
-                         .accel_range_m_s2 = record.stated_accel_range_m_s2};
+  const CertainRails certain{.gyro = found.rails.planes_in_use(),
+                             .accel = found.rails.planes_in_use(Triad::accelerometer),
+                             .gyro_range_rad_s = record.stated_gyro_range_rad_s,
+                             .accel_range_m_s2 = record.stated_accel_range_m_s2};
   for (std::size_t k = 0; k < samples.size(); ++k)
-    samples[k].device_clip_flags = heard.flags(samples[k], found.clippings[k]);
+    samples[k].device_clip_flags = certain.flags(samples[k], found.clippings[k]);
   gyro = found.rails.rows(Triad::gyro, kUnknownSlope);
   accel = found.rails.rows(Triad::accelerometer, kUnknownSlope);
 }
@@ -90,9 +90,9 @@ std::vector<ImuSample> at_times_of(const std::vector<ImuSample>& primary, const 
     const double before_s = seconds(sample.time_ns - own[near.before].time_ns);
     const double after_s = seconds(own[near.after].time_ns - sample.time_ns);
     const bool read_here = before_s == 0.0 || after_s == 0.0;
-    const bool told = read_here || (std::max(std::abs(before_s), std::abs(after_s)) <= kSilentMaxS &&
-                                    (near.between() || std::min(std::abs(before_s), std::abs(after_s)) < edge_s));
-    out.push_back(told ? unit.at(sample.time_ns, near) : absent(sample.time_ns));
+    const bool available = read_here || (std::max(std::abs(before_s), std::abs(after_s)) <= kSilentMaxS &&
+                                         (near.between() || std::min(std::abs(before_s), std::abs(after_s)) < edge_s));
+    out.push_back(available ? unit.at(sample.time_ns, near) : absent(sample.time_ns));
   }
   return out;
 }
@@ -206,7 +206,7 @@ std::optional<TimeNs> silent_since(const std::vector<ImuSample>& unit) {
     const bool here = k < unit.size() && !is_finite(unit[k]);
     if (here && from == unit.size()) from = k;
     if (here || from == unit.size()) continue;
-    if (seconds(unit[k - 1].time_ns - unit[from].time_ns) >= kSilentToldS) return unit[from].time_ns;
+    if (seconds(unit[k - 1].time_ns - unit[from].time_ns) >= kSilentReportedS) return unit[from].time_ns;
     from = unit.size();
   }
   return std::nullopt;
@@ -225,7 +225,7 @@ Status frozen_in_all(const FrozenAxis& axis) {
 
 /// Marks readings as absent while an axis of their unit is frozen, and reports this. Returns an error if no unit
 /// remains.
-Status leave_out_frozen(Units& units, std::vector<Doubt>& out) {
+Status exclude_frozen(Units& units, std::vector<Doubt>& out) {
   const TimeNs start_ns = units.samples[0].front().time_ns;
   std::optional<FrozenAxis> any;
   for (std::size_t unit = 0; unit < units.names.size(); ++unit) {
@@ -238,22 +238,22 @@ Status leave_out_frozen(Units& units, std::vector<Doubt>& out) {
   }
   if (!any) return {};
   for (std::size_t k = 0; k < units.samples[0].size(); ++k) {
-    const bool heard = std::any_of(units.samples.begin(), units.samples.end(),
-                                   [&](const std::vector<ImuSample>& unit) { return is_finite(unit[k]); });
-    if (!heard) return frozen_in_all(*any);
+    const bool any_reading = std::any_of(units.samples.begin(), units.samples.end(),
+                                         [&](const std::vector<ImuSample>& unit) { return is_finite(unit[k]); });
+    if (!any_reading) return frozen_in_all(*any);
   }
   return {};
 }
 
 /// Sets the ranges stated for the first unit's device.
 void give_ranges(const sim::ImuRecord& primary, MergedImus& out, ImuMerge::Params& params) {
-  if (primary.stated_gyro_range_rad_s > 0.0) out.gyro_range_rad_s = sure_range(primary.stated_gyro_range_rad_s);
-  if (primary.stated_accel_range_m_s2 > 0.0) out.accel_range_m_s2 = sure_range(primary.stated_accel_range_m_s2);
+  if (primary.stated_gyro_range_rad_s > 0.0) out.gyro_range_rad_s = unsaturated_range(primary.stated_gyro_range_rad_s);
+  if (primary.stated_accel_range_m_s2 > 0.0) out.accel_range_m_s2 = unsaturated_range(primary.stated_accel_range_m_s2);
   params.gyro_range_rad_s = out.gyro_range_rad_s;
   params.accel_range_m_s2 = out.accel_range_m_s2;
 }
 
-void tell_silent(const Units& units, std::vector<Doubt>& out) {
+void report_silent(const Units& units, std::vector<Doubt>& out) {
   const TimeNs start_ns = units.samples[0].front().time_ns;
   for (std::size_t k = 0; k < units.names.size(); ++k) {
     const std::optional<TimeNs> since_ns = silent_since(units.samples[k]);
@@ -291,11 +291,11 @@ bool leave_out_found(const ImuMerge::State& state, Units& units, std::vector<Dou
 }
 
 /// Reports the estimated calibration of the units, and of the merged unit's position between them.
-void tell_units(const ImuMerge& merge, const ImuMerge::State& state, const Units& units, MergedImus& out) {
+void report_units(const ImuMerge& merge, const ImuMerge::State& state, const Units& units, MergedImus& out) {
   out.units = static_cast<int>(units.names.size());
   out.lever_arm_m = merge.p_C_m();
   out.arm_share = ImuMerge::arm_share(state);
-  out.other_sense = state.senses.told();
+  out.other_sense = state.senses.detected();
   for (std::size_t unit = 0; unit < units.names.size(); ++unit) {
     const ImuMerge::Unit& learnt = state.units[unit];
     out.left_out += static_cast<double>(learnt.left_out);
@@ -318,8 +318,8 @@ Status merge_imus(const sim::Sensors& sensors, MergedImus& out) {
   ImuMerge::Params params;
   params.gap_max_s = bridge::kGapMaxS;
   give_ranges(sensors.imus.front(), out, params);
-  tell_silent(units, out.out);
-  if (Status status = leave_out_frozen(units, out.out); !status.ok()) return status;
+  report_silent(units, out.out);
+  if (Status status = exclude_frozen(units, out.out); !status.ok()) return status;
 
   give_units(units, params);
   auto state = std::make_unique<ImuMerge::State>();
@@ -331,7 +331,7 @@ Status merge_imus(const sim::Sensors& sensors, MergedImus& out) {
     *state = {};
     if (Status status = run(merge, units, *state, out.samples); !status.ok()) return status;
   }
-  tell_units(merge, *state, units, out);
+  report_units(merge, *state, units, out);
   return {};
 }
 

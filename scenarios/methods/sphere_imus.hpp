@@ -27,13 +27,13 @@ struct MergedImus {
   Eigen::Vector3d lever_arm_m = Eigen::Vector3d::Zero();  ///< from the centre of mass, body axes
   double gyro_range_rad_s = 1e3, accel_range_m_s2 = 1e5;  ///< readings from this value on count as saturated
   int units = 0;
-  double left_out = 0.0;                        ///< number of ignored readings
-  double beyond_range = 0.0;                    ///< number of further ignored readings beyond the device's range
-  int resampled = 0;                            ///< number of units whose stamps differ from the primary unit's
-  double offset_max_s = 0.0;                    ///< largest time offset of a unit from the mean
-  std::vector<Unit> each;                       ///< units in use
-  std::optional<double> arm_share;              ///< ImuMerge::arm_share
-  std::optional<UnitSenses::Told> other_sense;  ///< detected wrong axes of the units
+  double left_out = 0.0;                            ///< number of ignored readings
+  double beyond_range = 0.0;                        ///< number of further ignored readings beyond the device's range
+  int resampled = 0;                                ///< number of units whose stamps differ from the primary unit's
+  double offset_max_s = 0.0;                        ///< largest time offset of a unit from the mean
+  std::vector<Unit> each;                           ///< units in use
+  std::optional<double> arm_share;                  ///< ImuMerge::arm_share
+  std::optional<UnitSenses::Detected> other_sense;  ///< detected wrong axes of the units
   std::vector<Doubt> out;  ///< units not used, or not all the time: frozen, silent (NaN, no readings), or inconsistent
 };
 

@@ -79,7 +79,7 @@ Process::Process(const std::function<void(int, int)>& work, bool own_group) : ow
     throw;
   }
   close(ends[0]);
-  told_fd_ = ends[1];
+  input_fd_ = ends[1];
 }
 
 void Process::start(const std::function<void(int)>& work) {
@@ -110,19 +110,19 @@ Process::~Process() {
     wait();
   }
   if (fd_ >= 0) close(fd_);
-  if (told_fd_ >= 0) close(told_fd_);
+  if (input_fd_ >= 0) close(input_fd_);
 }
 
 Process::Process(Process&& other) noexcept
     : pid_(std::exchange(other.pid_, -1)),
       fd_(std::exchange(other.fd_, -1)),
-      told_fd_(std::exchange(other.told_fd_, -1)),
+      input_fd_(std::exchange(other.input_fd_, -1)),
       own_group_(other.own_group_) {}
 
-bool Process::tell(const std::string& text) {
+bool Process::write_text(const std::string& text) {
   std::size_t done = 0;
   while (done < text.size()) {
-    const ssize_t count = send(told_fd_, text.data() + done, text.size() - done, MSG_NOSIGNAL);
+    const ssize_t count = send(input_fd_, text.data() + done, text.size() - done, MSG_NOSIGNAL);
     if (count < 0 && errno == EINTR) continue;
     if (count <= 0) return false;
     done += static_cast<std::size_t>(count);

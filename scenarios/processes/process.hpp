@@ -26,7 +26,7 @@ class Process {
   /// Forks and runs `work(write_end)` in the child, in a separate process group if `own_group`. An exception in `work`
   /// ends the child with exit status 1. Throws std::system_error if no process can be started.
   explicit Process(const std::function<void(int)>& work, bool own_group);
-  /// The same with input: `work(read_end, write_end)` reads what `tell` writes.
+  /// The same with input: `work(read_end, write_end)` reads what `write_text` writes.
   explicit Process(const std::function<void(int, int)>& work, bool own_group);
   /// Kills the process (or its group) and waits for it.
   ~Process();
@@ -35,7 +35,7 @@ class Process {
 
   int read_end() const { return fd_; }
   /// Writes all of `text` to the child's input; false if it no longer reads.
-  bool tell(const std::string& text);
+  bool write_text(const std::string& text);
   /// Appends the pipe's content; false at its end.
   bool read_available(std::string& buffer);
   /// Waits until the child has ended; false at the deadline (of now_s()). Collect the result with wait().
@@ -48,7 +48,7 @@ class Process {
 
   pid_t pid_ = -1;
   int fd_ = -1;
-  int told_fd_ = -1;  ///< our end of the child's input socket
+  int input_fd_ = -1;  ///< our end of the child's input socket
   bool own_group_ = false;
 };
 

@@ -111,7 +111,7 @@ Imported import_broad(const std::filesystem::path& path);
 /// These defects are detected, corrected and noted:
 /// - coarsely printed stamps are regularised within their rounding (steady_stamps.hpp);
 /// - sample and hold: repeated readings are dropped, the others put on the gyro's rate. A slower accelerometer is
-///   interpolated between its own readings (held_readings.hpp);
+///   interpolated between its own readings (repeated_readings.hpp);
 /// - glitches of the optical reference are removed (reference_glitches.hpp);
 /// - delay, rotation and tilt between reference and IMU are estimated (align_reference.hpp). If `align` is set, they
 ///   are removed, so that the truth is the IMU's attitude in a world with z up.

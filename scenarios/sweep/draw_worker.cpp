@@ -45,7 +45,7 @@ DrawWorker::DrawWorker(const WorkerTerms& terms)
     : plan_(terms.plan), process_([&](int tasks, int fd) { serve(terms, tasks, fd); }, true) {}
 
 bool DrawWorker::give(const DrawTask& task, double deadline_s) {
-  if (!process_.tell(plan_.to_line(task))) return false;
+  if (!process_.write_text(plan_.to_line(task))) return false;
   draw_ = task;
   deadline_s_ = deadline_s;
   busy_ = true;
@@ -82,7 +82,7 @@ void DrawWorker::take_up(const Message& message) {
 }
 
 Process::End DrawWorker::dismiss() {
-  if (!busy_) process_.tell("\n");
+  if (!busy_) process_.write_text("\n");
   return process_.wait();
 }
 

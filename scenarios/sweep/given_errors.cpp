@@ -99,7 +99,7 @@ void stated_rail(sim::Sensors& sensors, const sim::Truth& truth, const sim::Situ
 }
 
 /// Sets the saturation limit of methods with such a parameter.
-void tell_rail(std::span<const sim::Parameter> known, double size, sim::Values& given) {
+void report_rail(std::span<const sim::Parameter> known, double size, sim::Values& given) {
   for (const sim::Parameter& parameter : known) {
     if (parameter.name != "saturation_point_rad_s") continue;
     given.set(std::string(parameter.name), parameter.default_value * (1.0 + size));
@@ -133,7 +133,7 @@ std::span<const GivenError> given_errors() {
                   "error of the stated gyro range, as a share of the true rail; the device's clip flags are withheld"},
                  false,
                  stated_rail,
-                 tell_rail},
+                 report_rail},
   };
   return kErrors;
 }

@@ -22,9 +22,9 @@ namespace {
 constexpr char kBetween = '\t';  // separates the input's name from its outcome; no name contains a tab
 
 /// Runs in the draw's process: writes each row as a line, then an empty line or an error.
-void tell_rows(const DataRoot& data, const Scenario& scenario, std::uint64_t seed, const Method& method,
-               const SuiteTriageOptions& options, int fd) {
-  const auto tell_trouble = [&](const std::string& why) {
+void report_rows(const DataRoot& data, const Scenario& scenario, std::uint64_t seed, const Method& method,
+                 const SuiteTriageOptions& options, int fd) {
+  const auto report_trouble = [&](const std::string& why) {
     write_all(fd, std::string(1, kBetween) + one_line(why) + "\n");
   };
   limit_memory(options.memory_mib);
@@ -35,9 +35,9 @@ void tell_rows(const DataRoot& data, const Scenario& scenario, std::uint64_t see
     triage(data, scenario, seed, method, telling);
     write_all(fd, "\n");
   } catch (const std::bad_alloc&) {
-    tell_trouble("not enough memory for the method");
+    report_trouble("not enough memory for the method");
   } catch (const std::exception& error) {
-    tell_trouble(error.what());
+    report_trouble(error.what());
   }
 }
 
@@ -143,7 +143,7 @@ std::vector<DrawTriage> triage_draws(const DataRoot& data, std::span<const DrawN
     while (next < draws.size() && workers.size() < static_cast<std::size_t>(options.jobs)) {
       const DrawName& draw = draws[next];
       const Scenario& scenario = scenarios.at(draw.scenario);
-      const auto work = [&](int fd) { tell_rows(data, scenario, draw.seed, method, options, fd); };
+      const auto work = [&](int fd) { report_rows(data, scenario, draw.seed, method, options, fd); };
       if (!begin(workers, next, now_s() + draw_s, work)) break;
       all[next++].draw = draw;
     }

@@ -11,8 +11,8 @@ using scenarios::Doubt;
 TEST(VerdictLines, AnEstimateWithoutTroubleSaysNothing) {
   scenarios::Estimate estimate;
   estimate.health = {{"imu_force_share", 1.0}, {"samples_slip", 12.0}, {"imu_2_time_offset_s", 0.003}};
-  tell_undoubted(Doubt::About::place, estimate);
-  tell_undoubted(Doubt::About::rate_unit, estimate);
+  report_no_doubt(Doubt::About::place, estimate);
+  report_no_doubt(Doubt::About::rate_unit, estimate);
   EXPECT_TRUE(verdict_lines(estimate).empty());
   EXPECT_EQ(estimate.health.at("localised"), 1.0);
   EXPECT_EQ(estimate.health.at("rate_unit_suspect"), 0.0);

@@ -58,7 +58,7 @@ Axis height_axis(std::span<const DependenceClass> classes) {
 }  // namespace
 
 std::string dependence_svg(std::span<const DependenceClass> classes,
-                           const std::function<std::string(const DependenceClass&)>& told) {
+                           const std::function<std::string(const DependenceClass&)>& label_of) {
   const auto is_finite = [](const DependenceClass& part) { return std::isfinite(part.centre.value); };
   if (classes.size() < 2 || std::none_of(classes.begin(), classes.end(), is_finite)) return "";
   const Axis along{classes.front().low, classes.back().high, kPlotMargin, kWidth - kPlotMargin, false};
@@ -73,7 +73,7 @@ std::string dependence_svg(std::span<const DependenceClass> classes,
     out += fmt::format(
         "<g><title>{}</title><rect x=\"{:.1f}\" y=\"{:.1f}\" width=\"{:.1f}\" height=\"{:.1f}\"/>"
         "<path d=\"M{:.1f} {:.1f}h{:.1f}\"/></g>",
-        html::escaped(told(part)), from, top, width, std::max(bottom - top, 1.0), from, up.place(part.centre.value),
+        html::escaped(label_of(part)), from, top, width, std::max(bottom - top, 1.0), from, up.place(part.centre.value),
         width);
   }
   return out + "</svg>";

@@ -45,7 +45,7 @@ std::vector<Fact> versions(const scenarios::Results& results, const Summary& sum
 }
 
 /// Describes each method of the results.
-std::vector<Fact> methods_told(const Summary& summary) {
+std::vector<Fact> listed_methods(const Summary& summary) {
   std::vector<Fact> out;
   for (const scenarios::Section& section : summary.sections) {
     for (const scenarios::MethodSummary& method : section.methods) {
@@ -180,7 +180,7 @@ PageContent report_content(ReportInput input, const ReportOptions& options) {
   content.rejected = results.rejected();
   content.sensitivity = std::move(input.sensitivity);
   content.sensitivity_note = std::move(input.sensitivity_note);
-  content.methods = methods_told(summary);
+  content.methods = listed_methods(summary);
   content.versions = versions(results, summary, options);
   content.commands = commands(results, options);
   content.certificates = results.certificates();

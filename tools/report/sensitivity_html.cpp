@@ -35,14 +35,14 @@ std::string strength_cell(double strength) {
 /// Draws the score as a function of the number.
 std::string dependence_cell(const Sensitivity& row, const Influence& each) {
   const bool is_share = row.metric == kFailure || scenarios::metric_info(row.metric).unit == scenarios::Unit::verdict;
-  const auto told = [&](const scenarios::DependenceClass& part) {
+  const auto label_of = [&](const scenarios::DependenceClass& part) {
     const std::string centre =
         is_share ? fmt::format("{:.0f} % of runs [{:.0f}, {:.0f}]", 100.0 * part.centre.value, 100.0 * part.centre.low,
                                100.0 * part.centre.high)
                  : styled_value(row.metric, part.centre.value, true) + " " + styled_interval(row.metric, part.centre);
     return fmt::format("{} {:.4g} to {:.4g}: {}, {} draws", each.number, part.low, part.high, centre, part.draws);
   };
-  return "<td>" + dependence_svg(each.dependence, told) + "</td>";
+  return "<td>" + dependence_svg(each.dependence, label_of) + "</td>";
 }
 
 std::string influence_cells(const Sensitivity& row, const Influence& each) {
@@ -69,7 +69,7 @@ std::string row_html(const Sensitivity& row) {
 }
 
 // two classes are the minimum for a trend
-constexpr auto kToldFrom = static_cast<std::int64_t>(scenarios::kSensitivityDrawsMin);
+constexpr auto kDrawsMin = static_cast<std::int64_t>(scenarios::kSensitivityDrawsMin);
 constexpr auto kDrawnFrom = static_cast<std::int64_t>(2 * scenarios::kDependenceDrawsMin);
 
 }  // namespace
@@ -81,10 +81,10 @@ std::string draws_needed_text(const std::map<std::string, std::int64_t>& draws) 
     out += out.empty() ? fmt::format(
                              "A scenario needs {} draws for the influence of its numbers, and {} for a plot of the "
                              "score over a number. Missing draws: ",
-                             kToldFrom, kDrawnFrom)
+                             kDrawsMin, kDrawnFrom)
                        : "; ";
     out += scenario + " ";
-    if (count < kToldFrom) out += fmt::format("{}, and ", kToldFrom - count);
+    if (count < kDrawsMin) out += fmt::format("{}, and ", kDrawsMin - count);
     out += fmt::format("{} for the plot", kDrawnFrom - count);
   }
   return out.empty() ? out : out + ". ";

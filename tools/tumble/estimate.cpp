@@ -100,8 +100,8 @@ int run_estimate(const Session& session, const EstimateOptions& options) {
   }
   LearntFile learnt(options.learnt);
   const scenarios::Method learning = learnt.wrap(method);
-  const scenarios::MethodPointer told[] = {scenarios::unowned(learning)};
-  const std::vector<scenarios::Method> methods = scenarios::with_parameters(told, options.parameters);
+  const scenarios::MethodPointer selected[] = {scenarios::unowned(learning)};
+  const std::vector<scenarios::Method> methods = scenarios::with_parameters(selected, options.parameters);
   scenarios::OutputFolder folder(options.folder);
   learnt.require_place();
   scenarios::Estimate estimate = run_of(methods.front(), sensors);

@@ -23,11 +23,11 @@ struct ExportOptions {
 
 /// Returns the requested format, or the one that corresponds to the output's extension.
 std::string format_of(const ExportOptions& options) {
-  const std::string told = options.format.empty() ? scenarios::format_of_ending(options.out) : options.format;
-  if (told.empty())
+  const std::string format_name = options.format.empty() ? scenarios::format_of_ending(options.out) : options.format;
+  if (format_name.empty())
     throw scenarios::BadInput(options.out.string() +
                               ": --format is missing; only the extensions .mcap, .bag and .tum imply a format");
-  return told;
+  return format_name;
 }
 
 /// Reports what was written, and where.

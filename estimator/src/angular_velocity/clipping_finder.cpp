@@ -33,8 +33,8 @@ std::uint8_t clip_flags(const Clipping& clipping) {
   return static_cast<std::uint8_t>(clipping.gyro | clipping.missing_gyro | clipping.accel << kAccelFirst);
 }
 
-std::uint8_t HeardRails::flags(const ImuSample& sample, const Clipping& judged) const {
-  const auto heard = [](double reading, double range, const std::optional<RailPlane>& plane) {
+std::uint8_t CertainRails::flags(const ImuSample& sample, const Clipping& judged) const {
+  const auto certain = [](double reading, double range, const std::optional<RailPlane>& plane) {
     return range > 0.0 ? std::abs(reading) >= kStatedRailMin * range : plane.has_value();
   };
   const unsigned clipped = clip_flags(judged);
@@ -42,8 +42,8 @@ std::uint8_t HeardRails::flags(const ImuSample& sample, const Clipping& judged) 
   for (int axis = 0; axis < 3; ++axis) {
     const auto j = static_cast<std::size_t>(axis);
     const double rate = sample.angular_velocity_rad_s[axis], force = sample.specific_force_m_s2[axis];
-    if (heard(rate, gyro_range_rad_s, gyro.element[j])) out |= clipped & static_cast<unsigned>(kClipGyroX << axis);
-    if (heard(force, accel_range_m_s2, accel.element[j])) out |= clipped & static_cast<unsigned>(kClipAccelX << axis);
+    if (certain(rate, gyro_range_rad_s, gyro.element[j])) out |= clipped & static_cast<unsigned>(kClipGyroX << axis);
+    if (certain(force, accel_range_m_s2, accel.element[j])) out |= clipped & static_cast<unsigned>(kClipAccelX << axis);
   }
   return static_cast<std::uint8_t>(out);
 }

@@ -11,9 +11,9 @@ namespace tumble {
 
 namespace {
 
-// kTold: a slope with a smaller standard deviation is known. kNil: a slope of smaller magnitude, up to its uncertainty,
-// is zero.
-constexpr double kTold = 2e-3, kNil = 3e-3;
+// kKnownSlopeSigma: a slope with a smaller standard deviation is known. kNil: a slope of smaller magnitude, up to its
+// uncertainty, is zero.
+constexpr double kKnownSlopeSigma = 2e-3, kNil = 3e-3;
 // Maximum relative difference between the levels of the two signs if the device clips its digital output, where both
 // are equal.
 constexpr double kLopsidedShare = 1e-4;
@@ -97,7 +97,7 @@ bool are_upright(std::span<const Eigen::Vector3d> readings, const RailPlanes& pl
       const double slope = rail->row[static_cast<Eigen::Index>((j + 1 + static_cast<std::size_t>(i)) % 3)];
       const double sigma = std::sqrt(rail->covariance(i, i));
       if (std::abs(slope) > kNil + 4.0 * sigma) return false;
-      nil += sigma < kTold ? 1 : 0;
+      nil += sigma < kKnownSlopeSigma ? 1 : 0;
     }
   }
   return nil >= 2;
@@ -157,29 +157,29 @@ void mark_subsample_saturation(const RailPlanes& planes, const RailDetector& rai
 }
 
 // Uses the covariance of rails.md (R59).
-std::optional<ToldSlopes> told_slopes(const RailPlanes& planes, bool upright, int element,
-                                      const Eigen::Matrix2d& before) {
+std::optional<EstimatedSlopes> estimated_slopes(const RailPlanes& planes, bool upright, int element,
+                                                const Eigen::Matrix2d& before) {
   if (upright) {
-    return ToldSlopes{Eigen::Vector2d::Zero(), kUprightSigma * kUprightSigma * Eigen::Matrix2d::Identity()};
+    return EstimatedSlopes{Eigen::Vector2d::Zero(), kUprightSigma * kUprightSigma * Eigen::Matrix2d::Identity()};
   }
   const auto& rail = planes.element[static_cast<std::size_t>(element)];
   if (!rail) return std::nullopt;
-  const Eigen::Matrix2d told =
+  const Eigen::Matrix2d estimated =
       rail->covariance.topLeftCorner<2, 2>() + kSlopeSigmaMin * kSlopeSigmaMin * Eigen::Matrix2d::Identity();
-  if (told.trace() >= before.trace()) return std::nullopt;
-  return ToldSlopes{{rail->row[(element + 1) % 3], rail->row[(element + 2) % 3]}, told};
+  if (estimated.trace() >= before.trace()) return std::nullopt;
+  return EstimatedSlopes{{rail->row[(element + 1) % 3], rail->row[(element + 2) % 3]}, estimated};
 }
 
 RigCalibration with_planes(const RateModel& before, const RailPlanes& planes, bool upright) {
   RigCalibration out{before.prior_constants(), before.prior_covariance()};
   for (int j = 0; j < 3; ++j) {
     const Eigen::Index first = RigConstants::kElements + 2 * j;
-    const auto told = told_slopes(planes, upright, j, out.covariance.block<2, 2>(first, first));
-    if (!told) continue;
-    out.constants.elements.segment<2>(first - RigConstants::kElements) = told->slopes;
+    const auto estimated = estimated_slopes(planes, upright, j, out.covariance.block<2, 2>(first, first));
+    if (!estimated) continue;
+    out.constants.elements.segment<2>(first - RigConstants::kElements) = estimated->slopes;
     out.covariance.middleRows<2>(first).setZero();
     out.covariance.middleCols<2>(first).setZero();
-    out.covariance.block<2, 2>(first, first) = told->covariance;
+    out.covariance.block<2, 2>(first, first) = estimated->covariance;
   }
   return out;
 }

@@ -50,12 +50,12 @@ void mark_subsample_saturation(const RailPlanes& planes, const RailDetector& rai
                                const ImuSample* after);
 
 /// Information of saturation planes about the slopes of an element, in the order of RigConstants::elements.
-struct ToldSlopes {
+struct EstimatedSlopes {
   Eigen::Vector2d slopes;
   Eigen::Matrix2d covariance;
 };
-std::optional<ToldSlopes> told_slopes(const RailPlanes& planes, bool upright, int element,
-                                      const Eigen::Matrix2d& before);
+std::optional<EstimatedSlopes> estimated_slopes(const RailPlanes& planes, bool upright, int element,
+                                                const Eigen::Matrix2d& before);
 
 /// Returns the prior calibration, updated by the planes' information about RigConstants::elements.
 RigCalibration with_planes(const RateModel& before, const RailPlanes& planes, bool upright);

@@ -15,7 +15,7 @@ namespace {
 
 // Minimum duration of flight for a half-scale gyro. Hand-held motion can look like flight at twice the rate for 0.05 s;
 // real flights last longer.
-constexpr double kHalvedRun_s = 0.08;
+constexpr double kHalfScaleRun_s = 0.08;
 constexpr double kAcross = 0.05;    // of the lever arm squared: minimum across an axis for recovering its rate
 constexpr double kBelowRail = 0.1;  // tolerance by which a recovered rate may be below the saturation level
 
@@ -36,7 +36,7 @@ constexpr Axes kAsRead{{0, 1, 2}, {1, 1, 1}}, kXFlipped{{0, 1, 2}, {-1, 1, 1}}, 
 /// How readings have to be converted under an alternative.
 struct Sense {
   Axes force, rate;
-  const char* told;
+  const char* name;
 };
 
 constexpr std::array<Sense, FlightSense::kSenses> kSensors = {{
@@ -97,10 +97,10 @@ bool flies(const Sense& sense, const std::array<FlightSense::Reading, 3>& readin
 }
 
 /// Returns whether an alternative is tested; for a body that may be hand-held, only the clearest ones are.
-bool is_asked(std::size_t sense, FlightSense::Body body) {
+bool is_tested(std::size_t sense, FlightSense::Body body) {
   constexpr std::size_t kSound = 0, kFlippedForce = 1;
   return body == FlightSense::Body::thrown || sense == kSound || sense == kFlippedForce ||
-         sense == FlightSense::kHalved;
+         sense == FlightSense::kHalfScaleGyro;
 }
 
 }  // namespace
@@ -151,30 +151,32 @@ void FlightSense::take(const Reading& now, State& state) const {
   }
   const double dt_s = seconds(now.time_ns - first.time_ns);
   for (std::size_t sense = 0; sense < kSenses; ++sense) {
-    if (!is_asked(sense, params_.body)) continue;
+    if (!is_tested(sense, params_.body)) continue;
     if (!flies(kSensors[sense], {first, middle, now}, params_)) {
       state.run_s[sense] = 0.0;
       continue;
     }
     state.run_s[sense] += 0.5 * dt_s;
-    if (state.run_s[sense] >= (sense == kHalved ? std::max(kHalvedRun_s, params_.run_s) : params_.run_s))
+    if (state.run_s[sense] >= (sense == kHalfScaleGyro ? std::max(kHalfScaleRun_s, params_.run_s) : params_.run_s))
       state.flown_s[sense] += 0.5 * dt_s;
   }
 }
 
 Status FlightSense::verdict(const State& state) const {
   const bool thrown = params_.body == Body::thrown;
-  const double sound_s = (thrown ? params_.thrown_with : params_.against_with) * state.flown_s[0];
+  const double sound_s =
+      (thrown ? params_.thrown_evidence_ratio : params_.alternative_evidence_ratio) * state.flown_s[0];
   std::size_t longest = 0;
   double most_s = 0.0;
   for (std::size_t sense = 1; sense < kSenses; ++sense) {
-    const double bound_s = std::max(sense == kHalved ? params_.halved_s : params_.against_s, sound_s);
+    const double bound_s =
+        std::max(sense == kHalfScaleGyro ? params_.half_scale_flight_s : params_.alternative_flight_s, sound_s);
     if (state.flown_s[sense] <= bound_s || state.flown_s[sense] <= state.flown_s[longest]) continue;
     longest = sense;
     most_s = bound_s;
   }
   if (longest == 0) return {};
-  return {Trouble::out_of_range, kSensors[longest].told, state.flown_s[longest], most_s};
+  return {Trouble::out_of_range, kSensors[longest].name, state.flown_s[longest], most_s};
 }
 
 }  // namespace tumble

@@ -35,12 +35,12 @@ std::array<double, 6> readings(const ImuSample& sample) {
   return {w.x(), w.y(), w.z(), f.x(), f.y(), f.z()};
 }
 
-void begin_hold(std::size_t channel, const std::array<double, 6>& now, TimeNs time_ns, FrozenAxes::Axis& axis) {
+void begin_repeat(std::size_t channel, const std::array<double, 6>& now, TimeNs time_ns, FrozenAxes::Axis& axis) {
   axis.reading = now[channel];
   axis.since_ns = time_ns;
-  axis.held_s = axis.samples = axis.still_s = 0.0;
+  axis.repeated_s = axis.samples = axis.stationary_s = 0.0;
   axis.flagged = axis.frozen = false;
-  axis.still_at = now;
+  axis.stationary_reference = now;
   for (std::size_t k = 0; k < 2; ++k) {
     axis.other_low[k] = axis.other_high[k] = now[other(channel, k)];
     axis.other_changes[k] = 0.0;
@@ -69,17 +69,17 @@ void FrozenAxes::step(const ImuSample& sample, State& state) const {
   const double dt_s = state.started ? seconds(sample.time_ns - state.last_time_ns) : 0.0;
   for (std::size_t c = 0; c < now.size(); ++c) {
     Axis& axis = state.axes[c];
-    if (!state.started) axis.lowest = axis.highest = now[c];
-    axis.lowest = std::min(axis.lowest, now[c]);
-    axis.highest = std::max(axis.highest, now[c]);
+    if (!state.started) axis.min_reading = axis.max_reading = now[c];
+    axis.min_reading = std::min(axis.min_reading, now[c]);
+    axis.max_reading = std::max(axis.max_reading, now[c]);
     if (!state.started || now[c] != axis.reading) {
       if (state.started) {
         const double change = std::abs(now[c] - axis.reading);
         axis.quantum = axis.quantum > 0.0 ? std::min(axis.quantum, change) : change;
-        if (!axis.frozen && !at_rail(c, axis)) axis.longest_s = std::max(axis.longest_s, axis.held_s);
+        if (!axis.frozen && !at_rail(c, axis)) axis.longest_s = std::max(axis.longest_s, axis.repeated_s);
         axis.moved_s += dt_s;
       }
-      begin_hold(c, now, sample.time_ns, axis);
+      begin_repeat(c, now, sample.time_ns, axis);
     }
     hold(c, now, dt_s, sample.device_clip_flags, state);
   }
@@ -95,7 +95,7 @@ void FrozenAxes::hold(std::size_t channel, const std::array<double, 6>& now, dou
   const int first = is_gyro(channel) ? kClipGyroX : kClipAccelX;
   axis.flagged = axis.flagged || (flags & first << channel % 3) != 0;
   if (state.last_time_ns >= axis.since_ns && state.started) {
-    axis.held_s += dt_s;
+    axis.repeated_s += dt_s;
     axis.samples += 1.0;
     for (std::size_t k = 0; k < 2; ++k) {
       const std::size_t beside = other(channel, k);
@@ -103,21 +103,21 @@ void FrozenAxes::hold(std::size_t channel, const std::array<double, 6>& now, dou
       axis.other_high[k] = std::max(axis.other_high[k], now[beside]);
       if (now[beside] != state.before[beside]) axis.other_changes[k] += 1.0;
     }
-    if (others_rest(channel, now, axis.still_at)) {
-      axis.still_s += dt_s;
+    if (others_rest(channel, now, axis.stationary_reference)) {
+      axis.stationary_s += dt_s;
     } else {
-      axis.still_s = 0.0;
-      axis.still_at = now;
+      axis.stationary_s = 0.0;
+      axis.stationary_reference = now;
     }
   }
   const double most = is_gyro(channel) ? kRestMost_rad_s : kRestMost_m_s2;
   // no motion keeps a saturated rate exactly about one axis for so long; the update rate of the others is irrelevant
   const bool at_its_rail = at_rail(channel, axis);
-  const bool of_no_motion =
-      axis.still_s >= params_.rail_still_s || (axis.held_s >= params_.rail_held_s && others_move(channel, 0.0, axis));
+  const bool of_no_motion = axis.stationary_s >= params_.rail_stationary_s ||
+                            (axis.repeated_s >= params_.rail_repeated_s && others_move(channel, 0.0, axis));
   const bool froze = at_its_rail ? of_no_motion && std::abs(axis.reading) >= most
                                  : axis.moved_s >= params_.frozen_s &&
-                                       axis.held_s >= std::max(params_.frozen_s, kLonger * axis.longest_s) &&
+                                       axis.repeated_s >= std::max(params_.frozen_s, kLonger * axis.longest_s) &&
                                        others_move(channel, kChanging, axis);
   axis.frozen = axis.frozen || froze;
   axis.ever_frozen = axis.ever_frozen || froze;
@@ -129,7 +129,7 @@ bool FrozenAxes::at_rail(std::size_t channel, const Axis& axis) const {
   if (stated > 0.0 && size >= kRailShare * stated) return true;
   // a flag shows that the device saturated, but not that the repeated value is the level
   if (axis.flagged && size >= kExtremeShare * stated) return true;
-  return size >= kExtremeShare * stated && (axis.reading == axis.lowest || axis.reading == axis.highest);
+  return size >= kExtremeShare * stated && (axis.reading == axis.min_reading || axis.reading == axis.max_reading);
 }
 
 /// Returns whether the other axes change by far more than a quantum of this axis, in at least this fraction of samples.
@@ -152,7 +152,7 @@ Status FrozenAxes::verdict(const State& state) const {
       "seconds for which gyro z repeats one reading",  "seconds for which accel x repeats one reading",
       "seconds for which accel y repeats one reading", "seconds for which accel z repeats one reading"};
   for (std::size_t c = 0; c < kFields.size(); ++c) {
-    if (state.axes[c].frozen) return {Trouble::out_of_range, kFields[c], state.axes[c].held_s, params_.frozen_s};
+    if (state.axes[c].frozen) return {Trouble::out_of_range, kFields[c], state.axes[c].repeated_s, params_.frozen_s};
   }
   return {};
 }

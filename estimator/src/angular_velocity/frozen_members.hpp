@@ -10,21 +10,21 @@ template <StateOf<FrozenAxes::Axis> Self, class Visitor>
 void members(Self& s, Visitor& visit) {
   visit("frozen.reading", s.reading);
   visit("frozen.since_ns", s.since_ns);
-  visit("frozen.held_s", s.held_s);
+  visit("frozen.repeated_s", s.repeated_s);
   visit("frozen.flagged", s.flagged);
   visit("frozen.frozen", s.frozen);
   visit("frozen.ever_frozen", s.ever_frozen);
   visit("frozen.longest_s", s.longest_s);
   visit("frozen.moved_s", s.moved_s);
   visit("frozen.quantum", s.quantum);
-  visit("frozen.lowest", s.lowest);
-  visit("frozen.highest", s.highest);
+  visit("frozen.min_reading", s.min_reading);
+  visit("frozen.max_reading", s.max_reading);
   visit("frozen.other_low", s.other_low);
   visit("frozen.other_high", s.other_high);
   visit("frozen.other_changes", s.other_changes);
   visit("frozen.samples", s.samples);
-  visit("frozen.still_s", s.still_s);
-  visit("frozen.still_at", s.still_at);
+  visit("frozen.stationary_s", s.stationary_s);
+  visit("frozen.stationary_reference", s.stationary_reference);
 }
 
 template <StateOf<FrozenAxes::State> Self, class Visitor>

@@ -207,9 +207,10 @@ double segment_evidence(const DistinctReadings& readings, const Eigen::Matrix2d&
   // readings closer to the level than noise, or than the facet's error elsewhere, are not distinguishable from it
   facet.tolerance = std::max(facet.tolerance, std::min(kAtRail * noise, kAtRailShareMax * facet.level));
   // Occam factor for the free choice of level and slopes, prior over posterior volume: rails.md (R66)
-  const Eigen::Matrix3d told = H.inverse();
+  const Eigen::Matrix3d posterior_covariance = H.inverse();
   const double of_slopes =
-      0.5 * std::log(std::max(1.0, 1.0 / (told.topLeftCorner<2, 2>().determinant() * slope_information.determinant())));
+      0.5 * std::log(std::max(1.0, 1.0 / (posterior_covariance.topLeftCorner<2, 2>().determinant() *
+                                          slope_information.determinant())));
   return odds - of_level - of_slopes;
 }
 

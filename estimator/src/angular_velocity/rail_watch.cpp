@@ -60,10 +60,10 @@ bool RailWatch::is_near(const Vector3d& reading, Triad triad, const Memory& memo
 }
 
 // Without room, drops readings far from the extremes, and if necessary the oldest except for the first ones.
-void RailWatch::remember(const Vector3d& reading, Triad triad, Memory& memory) const {
+void RailWatch::store(const Vector3d& reading, Triad triad, Memory& memory) const {
   std::vector<Vector3d>& readings = memory.readings;
   if (readings.size() == readings_max_) {
-    memory.forgot = true;
+    memory.pruned = true;
     std::size_t kept = 0, looked = 0, near_until = 0;
     const std::size_t count = readings.size();
     for (std::size_t k = 0; k < count; ++k) {
@@ -89,7 +89,7 @@ RailPlanes RailWatch::search(Triad triad, State& state) const {
   const RailPlanes& known = triad == Triad::gyro ? state.known.planes : state.known.accel_planes;
   const bool unstated = stated_range_contradicted(upright_rails_, state.known.upright_rails, triad);
   RailPlanes found = planes_[index_of(triad)][unstated ? 1 : 0].find(memory.readings, known, state.work);
-  for (std::size_t j = 0; j < 3 && memory.forgot; ++j) {
+  for (std::size_t j = 0; j < 3 && memory.pruned; ++j) {
     const auto& before = known.element[j];
     if (!found.element[j] && before && !before->contradicted_by(memory.readings)) found.element[j] = before;
   }
@@ -99,15 +99,15 @@ RailPlanes RailWatch::search(Triad triad, State& state) const {
 bool RailWatch::observe(const Vector3d& reading, Triad triad, State& state) const {
   Memory& memory = state.memory[index_of(triad)];
   if (!memory.readings.empty() && memory.readings.back() == reading) return false;
-  remember(reading, triad, memory);
+  store(reading, triad, memory);
   if (is_near(reading, triad, memory, kNearShare)) {
     ++memory.near;
     ++memory.unsearched;
-    memory.past = 0;
+    memory.samples_since_search = 0;
   } else {
-    ++memory.past;
+    ++memory.samples_since_search;
   }
-  const bool ended = memory.past == kBeside - 1;
+  const bool ended = memory.samples_since_search == kBeside - 1;
   if (memory.unsearched == 0) return false;
   if (!ended && memory.unsearched < std::max<std::size_t>(2, memory.near / kMore)) return false;
   memory.unsearched = 0;

@@ -5,8 +5,8 @@
 
 #include "../common/imu_members.hpp"
 #include "sample_hold_bounds.hpp"
-#include "tumble/angular_velocity/detail/hold_watch.hpp"
 #include "tumble/angular_velocity/detail/rail_watch.hpp"
+#include "tumble/angular_velocity/detail/repeat_detector.hpp"
 #include "tumble/angular_velocity/rest_detector.hpp"
 
 namespace tumble {
@@ -20,16 +20,16 @@ void members(Self& s, Visitor& visit) {
   visit("rest.last_mean_ns", s.last_mean_ns);
   visit("rest.quiet_ns", s.quiet_ns);
   visit("rest.rests", s.rests);
-  visit("rest.rate_open_rad_s", s.rate_open_rad_s);
-  visit("rest.force_open_m_s2", s.force_open_m_s2);
-  visit("rest.open", s.open);
-  visit("rest.open_first_ns", s.open_first_ns);
+  visit("rest.pending_rate_rad_s", s.pending_rate_rad_s);
+  visit("rest.pending_force_m_s2", s.pending_force_m_s2);
+  visit("rest.pending_samples", s.pending_samples);
+  visit("rest.pending_first_ns", s.pending_first_ns);
   visit("rest.last_reading_ns", s.last_reading_ns);
   visit("rest.last_ns", s.last_ns);
   visit("rest.started", s.started);
 }
 
-template <StateOf<HeldReading> Self, class Visitor>
+template <StateOf<RepeatedReading> Self, class Visitor>
 void members(Self& s, Visitor& visit) {
   visit("held.repeats", s.repeats);
   visit("held.age_samples", s.age_samples, 0.0, sample_hold::kSlowest);
@@ -37,16 +37,16 @@ void members(Self& s, Visitor& visit) {
   visit("held.change", s.change);
 }
 
-template <StateOf<HoldWatch::Memory> Self, class Visitor>
+template <StateOf<RepeatDetector::Memory> Self, class Visitor>
 void members(Self& s, Visitor& visit) {
   visit("hold.reading", s.reading);
-  visit("hold.said", s.said, 0.0, std::numeric_limits<double>::max());
+  visit("hold.run_samples", s.run_samples, 0.0, std::numeric_limits<double>::max());
   visit("hold.moving", s.moving, 0.0, 2.0 * sample_hold::kMovingMax);
   visit("hold.repeated", s.repeated, 0.0, s.moving);
   visit("hold.now", s.now);
 }
 
-template <StateOf<HoldWatch::State> Self, class Visitor>
+template <StateOf<RepeatDetector::State> Self, class Visitor>
 void members(Self& s, Visitor& visit) {
   visit("holds.memory", s.memory);
 }
@@ -115,8 +115,8 @@ void members(Self& s, Visitor& visit) {
   visit("rails.peak", s.peak);
   visit("rails.near", s.near);
   visit("rails.unsearched", s.unsearched);
-  visit("rails.past", s.past);
-  visit("rails.forgot", s.forgot);
+  visit("rails.samples_since_search", s.samples_since_search);
+  visit("rails.pruned", s.pruned);
 }
 
 template <StateOf<RailWatch::State> Self, class Visitor>

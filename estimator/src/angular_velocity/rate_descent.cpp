@@ -14,7 +14,7 @@ namespace {
 
 // Alternative first contact thresholds, as multiples of the parameter, and the fraction of clipped samples in flight
 // below which they are tried.
-constexpr double kOtherStarts[] = {16.0, 0.25};
+constexpr double kRestartThresholds[] = {16.0, 0.25};
 constexpr double kFlightShareExpected = 0.5;
 
 // Convergence: the last step changes no combination of unknowns by more than this many standard deviations:
@@ -164,7 +164,7 @@ RateIteration::Moved RateIteration::moved_by_errors(const RateModel& model, std:
     const arrow::ErrorMatrix* const next = k + 1 == blocks_.size() ? nullptr : &out.of_sample[k + 1];
     out.of_sample[k] = arrow::back_substitute_errors(blocks_[k], out.of_sample[k], next, out.of_rig);
   }
-  discount_untold(model.said_once_share(), out.evidence);
+  discount_unobservable(model.distinct_reading_share(), out.evidence);
   return out;
 }
 
@@ -173,7 +173,7 @@ bool solve(const RateSmoother::Params& params, const RateModel& model, std::span
   if (!descend(params, model, observations, params.expert.descent.widen_first, solution, health)) return false;
   double share = 1.0;
   double best = explained(observations, solution.estimates, share);
-  for (const double factor : kOtherStarts) {
+  for (const double factor : kRestartThresholds) {
     if (share >= kFlightShareExpected) break;
     RateSolution other{{}, {}, {}, RateIteration(observations)};
     RateReport other_health = health;

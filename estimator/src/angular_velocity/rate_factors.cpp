@@ -74,8 +74,8 @@ RateFactor gyro_factor(const RateKnot& knot, const RigConstants& rig, const Vect
   RateFactor f;
   f.residual = knot.rate_rad_s + rig.gyro_bias_rad_s - reading_rad_s;
   f.by_knot << Matrix3d::Identity(), Matrix3d::Zero();
-  f.by_rig.setZero();
-  f.by_rig.middleCols<3>(3).setIdentity();
+  f.jacobian_calibration.setZero();
+  f.jacobian_calibration.middleCols<3>(3).setIdentity();
   return f;
 }
 
@@ -84,14 +84,14 @@ RateFactor element_factor(const RateKnot& knot, const RigConstants& rig, const V
   const Vector3d off = knot.rate_rad_s + rig.gyro_bias_rad_s - reading_rad_s;
   RateFactor f;
   f.by_knot.setZero();
-  f.by_rig.setZero();
+  f.jacobian_calibration.setZero();
   for (int j = 0; j < 3; ++j) {
     const Vector3d row = rig.element_row(j);
     f.residual[j] = row.dot(off);
     f.by_knot.row(j).head<3>() = row;
-    f.by_rig.row(j).segment<3>(3) = row;
-    f.by_rig(j, RigConstants::kElements + 2 * j) = off[(j + 1) % 3];
-    f.by_rig(j, RigConstants::kElements + 2 * j + 1) = off[(j + 2) % 3];
+    f.jacobian_calibration.row(j).segment<3>(3) = row;
+    f.jacobian_calibration(j, RigConstants::kElements + 2 * j) = off[(j + 1) % 3];
+    f.jacobian_calibration(j, RigConstants::kElements + 2 * j + 1) = off[(j + 2) % 3];
   }
   return f;
 }
@@ -103,9 +103,10 @@ RateFactor flight_factor(const RateKnot& knot, const RigConstants& rig, const Ve
   f.residual = alpha.cross(t) + w.cross(w.cross(t)) + rig.accel_bias_m_s2 - reading_m_s2;
   // rate_smoother.md (R10): w x (w x t) = w (w.t) - t (w.w)
   f.by_knot << w * t.transpose() + w.dot(t) * Matrix3d::Identity() - 2.0 * t * w.transpose(), -so3::hat(t);
-  f.by_rig.setZero();
-  f.by_rig.middleCols<3>(0) = so3::hat(alpha) + w * w.transpose() - w.squaredNorm() * Matrix3d::Identity();
-  f.by_rig.middleCols<3>(6).setIdentity();
+  f.jacobian_calibration.setZero();
+  f.jacobian_calibration.middleCols<3>(0) =
+      so3::hat(alpha) + w * w.transpose() - w.squaredNorm() * Matrix3d::Identity();
+  f.jacobian_calibration.middleCols<3>(6).setIdentity();
   return f;
 }
 
@@ -121,7 +122,7 @@ RateFactor late_flight_factor(const RateKnot& knot, const RigConstants& rig, con
   f.by_knot.leftCols<3>() = by_rate + (half * by_rate - d * by_acceleration) * derivatives.by_rate;
   f.by_knot.rightCols<3>() =
       by_acceleration - d * by_rate + (half * by_rate - d * by_acceleration) * derivatives.by_acceleration;
-  f.by_rig.middleCols<5>(9) = (half * by_rate - d * by_acceleration) * derivatives.by_inertia;
+  f.jacobian_calibration.middleCols<5>(9) = (half * by_rate - d * by_acceleration) * derivatives.by_inertia;
   if (by_delay != nullptr) {
     *by_delay = by_rate * (d * jerk.value - knot.acceleration_rad_s2) - by_acceleration * jerk.value;
   }
@@ -153,9 +154,9 @@ RateFactor euler_factor(const RateKnot& knot, const RigConstants& rig) {
   RateFactor f;
   f.residual = J * alpha + w.cross(momentum);
   f.by_knot << so3::hat(w) * J - so3::hat(momentum), J;
-  f.by_rig.setZero();
-  f.by_rig.middleCols<5>(9) = basis_times(alpha);
-  f.by_rig.middleCols<5>(9).noalias() += so3::hat(w).lazyProduct(basis_times(w));
+  f.jacobian_calibration.setZero();
+  f.jacobian_calibration.middleCols<5>(9) = basis_times(alpha);
+  f.jacobian_calibration.middleCols<5>(9).noalias() += so3::hat(w).lazyProduct(basis_times(w));
   return f;
 }
 

@@ -54,7 +54,8 @@ constexpr int kLever = 0, kAccelBias = 6, kInertia = 9;
 
 // Contribution of the calibration's uncertainty to a residual's covariance.
 Eigen::Matrix3d flight_spread(const RateFactor& f, const RigConstants::Matrix& rig) {
-  const Eigen::Matrix3d T = f.by_rig.middleCols<3>(kLever), B = f.by_rig.middleCols<3>(kAccelBias);
+  const Eigen::Matrix3d T = f.jacobian_calibration.middleCols<3>(kLever),
+                        B = f.jacobian_calibration.middleCols<3>(kAccelBias);
   const Eigen::Matrix3d between = rig.block<3, 3>(kLever, kAccelBias);
   const Eigen::Matrix3d TC = T.lazyProduct(rig.block<3, 3>(kLever, kLever)), TM = T.lazyProduct(between);
   const Eigen::Matrix3d BC = B.lazyProduct(rig.block<3, 3>(kAccelBias, kAccelBias));
@@ -66,7 +67,7 @@ Eigen::Matrix3d flight_spread(const RateFactor& f, const RigConstants::Matrix& r
 }
 
 Eigen::Matrix3d euler_spread(const RateFactor& f, const RigConstants::Matrix& rig) {
-  const Eigen::Matrix<double, 3, 5> I = f.by_rig.middleCols<5>(kInertia);
+  const Eigen::Matrix<double, 3, 5> I = f.jacobian_calibration.middleCols<5>(kInertia);
   const Eigen::Matrix<double, 3, 5> IC = I.lazyProduct(rig.block<5, 5>(kInertia, kInertia));
   return IC.lazyProduct(I.transpose());
 }
@@ -102,7 +103,7 @@ Eigen::Matrix<double, 6, 3> add_to_knot(const RateFactor& f, const Eigen::Matrix
 template <int kFirst, int kCount>
 void add_to_rig(const RateFactor& f, const Eigen::Matrix3d& information, const Eigen::Matrix<double, 6, 3>& At,
                 arrow::Block& block, arrow::Corner& corner) {
-  const Eigen::Matrix<double, 3, kCount> B = f.by_rig.middleCols<kCount>(kFirst);
+  const Eigen::Matrix<double, 3, kCount> B = f.jacobian_calibration.middleCols<kCount>(kFirst);
   const Eigen::Matrix<double, kCount, 3> Bt = B.transpose().lazyProduct(information);
   block.border.middleCols<kCount>(kFirst).noalias() += At.lazyProduct(B);
   corner.matrix.block<kCount, kCount>(kFirst, kFirst).noalias() += Bt.lazyProduct(B);
@@ -114,7 +115,8 @@ void add_flight(const RateFactor& f, const Eigen::Matrix3d& information, double 
   const Eigen::Matrix<double, 6, 3> At = add_to_knot(f, information, time_scale_s, block);
   add_to_rig<kLever, 3>(f, information, At, block, corner);
   add_to_rig<kAccelBias, 3>(f, information, At, block, corner);
-  const Eigen::Matrix3d T = f.by_rig.middleCols<3>(kLever), B = f.by_rig.middleCols<3>(kAccelBias);
+  const Eigen::Matrix3d T = f.jacobian_calibration.middleCols<3>(kLever),
+                        B = f.jacobian_calibration.middleCols<3>(kAccelBias);
   const Eigen::Matrix3d weighted = information.lazyProduct(B), mixed = T.transpose().lazyProduct(weighted);
   corner.matrix.block<3, 3>(kLever, kAccelBias) += mixed;
   corner.matrix.block<3, 3>(kAccelBias, kLever) += mixed.transpose();
@@ -127,7 +129,7 @@ void add_euler(const RateFactor& f, const Eigen::Matrix3d& information, double t
 }
 
 // Reduces the information of a residual by an additional covariance: rate_stream.md (R92).
-Eigen::Matrix3d with_doubt(const Eigen::Matrix3d& information, const Eigen::Matrix3d& spread) {
+Eigen::Matrix3d with_spread(const Eigen::Matrix3d& information, const Eigen::Matrix3d& spread) {
   return (Eigen::Matrix3d::Identity() + information * spread).inverse() * information;
 }
 
@@ -239,9 +241,9 @@ void RateModel::add_gyro(const RateObservation& observation, const RateEstimate&
 }
 
 void RateModel::add_sample(const RateObservation& observation, const RateEstimate& estimate, const RigConstants& rig,
-                           arrow::Block& block, arrow::Corner& corner, const RigConstants::Matrix* doubted) const {
+                           arrow::Block& block, arrow::Corner& corner, const RigConstants::Matrix* rig_spread) const {
   if (observation.by_elements()) {
-    add_elements(observation, estimate, rig, block, corner, doubted);
+    add_elements(observation, estimate, rig, block, corner, rig_spread);
   } else {
     add_gyro(observation, estimate, rig, block, corner);
   }
@@ -249,14 +251,14 @@ void RateModel::add_sample(const RateObservation& observation, const RateEstimat
   auto [flight, flight_information] = force_factor(observation, estimate, rig);
   RateFactor euler = euler_factor(estimate.knot, rig);
   Eigen::Matrix3d of_flight = flight_information.asDiagonal(), of_euler = euler_information(estimate);
-  if (doubted != nullptr) {
-    of_flight = with_doubt(of_flight, flight_spread(flight, *doubted));
-    of_euler = with_doubt(of_euler, euler_spread(euler, *doubted));
-    flight.by_rig.setZero();
-    euler.by_rig.setZero();
-  } else if (says_nothing_of_rig(estimate)) {
+  if (rig_spread != nullptr) {
+    of_flight = with_spread(of_flight, flight_spread(flight, *rig_spread));
+    of_euler = with_spread(of_euler, euler_spread(euler, *rig_spread));
+    flight.jacobian_calibration.setZero();
+    euler.jacobian_calibration.setZero();
+  } else if (is_uninformative(estimate)) {
     keep_from_rig(observation, flight);
-    euler.by_rig.setZero();
+    euler.jacobian_calibration.setZero();
   }
   add_flight(flight, of_flight, time_scale_s_, block, corner);
   add_euler(euler, of_euler, time_scale_s_, block, corner);

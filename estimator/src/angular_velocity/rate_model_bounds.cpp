@@ -88,12 +88,12 @@ void RateModel::update_bounds(const RateObservation& observation, const RigConst
     if ((observation.unseen() & observation.clipping.gyro & 1u << j) == 0) continue;
     const double sign = observation.sample.angular_velocity_rad_s[j] < 0.0 ? -1.0 : 1.0;
     const Vector3d row = off.by_knot.row(j).head<3>();
-    Eigen::Matrix<double, 1, RigConstants::kSize> by_rig = off.by_rig.row(j);
-    for (int i = 0; i < 3; ++i) by_rig += row[i] * conditional.by_border.row(i);
-    const Eigen::Matrix<double, 1, RigConstants::kSize> cross = by_rig.lazyProduct(rig_covariance);
+    Eigen::Matrix<double, 1, RigConstants::kSize> jacobian_calibration = off.jacobian_calibration.row(j);
+    for (int i = 0; i < 3; ++i) jacobian_calibration += row[i] * conditional.by_border.row(i);
+    const Eigen::Matrix<double, 1, RigConstants::kSize> cross = jacobian_calibration.lazyProduct(rig_covariance);
     const Vector3d by_state = conditional.state.topLeftCorner<3, 3>().lazyProduct(row);
     // mirrored so that the bound is below: rate_smoother.md (R22); variance as in (R35)
-    const NormalMoments marginal{sign * off.residual[j], row.dot(by_state) + cross.dot(by_rig)};
+    const NormalMoments marginal{sign * off.residual[j], row.dot(by_state) + cross.dot(jacobian_calibration)};
     const NormalSite site =
         refined_bound(marginal, {estimate.bound_precision[j], sign * estimate.bound_shift[j]}, 0.0,
                       params_.expert.readings.rail_sigma_rad_s * params_.expert.readings.rail_sigma_rad_s,

@@ -11,21 +11,21 @@ namespace {
 constexpr int kGyroBias = 3;
 
 // Adds one row m_j . (rate - age acceleration + bias - reading), with the given information and gradient; `age` is in
-// units of the acceleration's time scale. With `doubted`, the row does not update m_j and has a correspondingly reduced
-// weight: rate_smoother.md (R8), rate_stream.md (R92).
+// units of the acceleration's time scale. With `rig_spread`, the row does not update m_j and has a correspondingly
+// reduced weight: rate_smoother.md (R8), rate_stream.md (R92).
 void add_row(const RateFactor& gyro, int j, double age, double information, double pull,
-             const RigConstants::Matrix* doubted, arrow::Block& block, arrow::Corner& corner) {
+             const RigConstants::Matrix* rig_spread, arrow::Block& block, arrow::Corner& corner) {
   const int first = RigConstants::kElements + 2 * j;
-  if (doubted != nullptr) {
-    const Eigen::RowVector2d by_slopes = gyro.by_rig.block<1, 2>(j, first);
-    const Eigen::Matrix2d unknown = doubted->block<2, 2>(first, first);
+  if (rig_spread != nullptr) {
+    const Eigen::RowVector2d by_slopes = gyro.jacobian_calibration.block<1, 2>(j, first);
+    const Eigen::Matrix2d unknown = rig_spread->block<2, 2>(first, first);
     const double share = 1.0 / (1.0 + information * by_slopes.dot(by_slopes * unknown));
     information *= share;
     pull *= share;
   }
   const Eigen::Vector3d row = gyro.by_knot.row(j).head<3>();
   const Eigen::Vector3d weighted = information * row;
-  const Eigen::RowVector2d by_elements = gyro.by_rig.block<1, 2>(j, first);
+  const Eigen::RowVector2d by_elements = gyro.jacobian_calibration.block<1, 2>(j, first);
   const Eigen::Matrix3d square = weighted.lazyProduct(row.transpose());
   const Eigen::Matrix<double, 3, 2> mixed = weighted.lazyProduct(by_elements);
   block.diagonal.topLeftCorner<3, 3>() += square;
@@ -36,12 +36,12 @@ void add_row(const RateFactor& gyro, int j, double age, double information, doub
     block.diagonal.bottomLeftCorner<3, 3>() -= age * square;
     block.diagonal.bottomRightCorner<3, 3>() += age * age * square;
     block.border.block<3, 3>(3, kGyroBias) -= age * square;
-    if (doubted == nullptr) block.border.block<3, 2>(3, first) -= age * mixed;
+    if (rig_spread == nullptr) block.border.block<3, 2>(3, first) -= age * mixed;
     block.gradient.tail<3>() += age * pull * row;
   }
   corner.matrix.block<3, 3>(kGyroBias, kGyroBias) += square;
   corner.gradient.segment<3>(kGyroBias) -= pull * row;
-  if (doubted != nullptr) return;
+  if (rig_spread != nullptr) return;
   block.border.block<3, 2>(0, first) += mixed;
   corner.matrix.block<3, 2>(kGyroBias, first) += mixed;
   corner.matrix.block<2, 3>(first, kGyroBias) += mixed.transpose();
@@ -52,7 +52,7 @@ void add_row(const RateFactor& gyro, int j, double age, double information, doub
 }  // namespace
 
 void RateModel::add_elements(const RateObservation& observation, const RateEstimate& estimate, const RigConstants& rig,
-                             arrow::Block& block, arrow::Corner& corner, const RigConstants::Matrix* doubted) const {
+                             arrow::Block& block, arrow::Corner& corner, const RigConstants::Matrix* rig_spread) const {
   const RateFactor gyro = element_factor(at_reading(observation, estimate), rig, corrected_rate(observation, estimate));
   for (int j = 0; j < 3; ++j) {
     if ((observation.clipping.missing_gyro >> j & 1u) != 0) continue;
@@ -70,7 +70,7 @@ void RateModel::add_elements(const RateObservation& observation, const RateEstim
         pull = information * gyro.residual[j] - estimate.bound_shift[j];
       }
     }
-    add_row(gyro, j, observation.gyro_age_s / time_scale_s_, information, pull, doubted, block, corner);
+    add_row(gyro, j, observation.gyro_age_s / time_scale_s_, information, pull, rig_spread, block, corner);
   }
 }
 
@@ -82,7 +82,7 @@ Eigen::Vector3d RateModel::read_accel_elements(const RateObservation& observatio
   if (elements.tilted()) {
     flight.residual = elements.rows * flight.residual;
     flight.by_knot = (elements.rows * flight.by_knot).eval();
-    flight.by_rig = (elements.rows * flight.by_rig).eval();
+    flight.jacobian_calibration = (elements.rows * flight.jacobian_calibration).eval();
   }
   double hidden2 = 0.0;
   for (int j = 0; j < 3; ++j) {
@@ -92,7 +92,7 @@ Eigen::Vector3d RateModel::read_accel_elements(const RateObservation& observatio
     hidden2 += flight.residual[j] * flight.residual[j];
     flight.residual[j] = 0.0;
     flight.by_knot.row(j).setZero();
-    flight.by_rig.row(j).setZero();
+    flight.jacobian_calibration.row(j).setZero();
   }
   for (int j = 0; j < 3; ++j) {
     if ((clipped >> j & 1u) == 0) unknown[j] = elements.slope_sigma[j] * elements.slope_sigma[j] * hidden2;

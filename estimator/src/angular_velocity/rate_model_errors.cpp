@@ -15,13 +15,13 @@ constexpr double kRigWeightMin = 0.05;
 
 }  // namespace
 
-bool RateModel::says_nothing_of_rig(const RateEstimate& estimate) {
+bool RateModel::is_uninformative(const RateEstimate& estimate) {
   return estimate.flight_weight < kRigWeightMin;
 }
 
 // Limits the force of a sample in contact to its effect on unmeasured rates.
 void RateModel::keep_from_rig(const RateObservation& o, RateFactor& flight) {
-  flight.by_rig.setZero();
+  flight.jacobian_calibration.setZero();
   for (int j = 0; j < 3; ++j) {
     // a measured rate would pass the gradient on to the gyro's bias
     if ((o.unseen() >> j & 1u) == 0) flight.by_knot.col(j).setZero();
@@ -38,7 +38,7 @@ Vector3d RateModel::corrected_rate(const RateObservation& observation, const Rat
   const Vector3d& reading = observation.sample.angular_velocity_rad_s;
   if (exact_) return reading;
   return reading - params_.errors.gyro * estimate.knot.rate_rad_s -
-         params_.errors.felt_s_m * observation.sample.specific_force_m_s2;
+         params_.errors.g_sensitivity_s_m * observation.sample.specific_force_m_s2;
 }
 
 RateFactor RateModel::flight(const RateObservation& observation, const RateKnot& knot, const RigConstants& rig,
@@ -49,7 +49,7 @@ RateFactor RateModel::flight(const RateObservation& observation, const RateKnot&
   const Vector3d force = reading - params_.errors.accel * reading;
   RateFactor out = late_flight_factor(knot, rig, force, delay_s, by_delay);
   // small compared with the rest, so its derivatives are neglected: rate_smoother.md (R13)
-  out.residual += 0.5 * params_.errors.accel_blur_s2 * flight_curvature(knot, rig);
+  out.residual += 0.5 * params_.errors.accel_filter_time_variance_s2 * flight_curvature(knot, rig);
   return out;
 }
 
@@ -59,14 +59,14 @@ RateFactor RateModel::flight_by_rig(const RateObservation& observation, const Ra
   const double delay_s = params_.errors.accel_delay_s + observation.accel_age_s;
   if (exact_ && delay_s == 0.0) return flight_factor(knot, rig, reading);
   RateFactor out = late_flight_by_rig(knot, rig, reading - params_.errors.accel * reading, delay_s);
-  out.residual += 0.5 * params_.errors.accel_blur_s2 * flight_curvature(knot, rig);
+  out.residual += 0.5 * params_.errors.accel_filter_time_variance_s2 * flight_curvature(knot, rig);
   return out;
 }
 
 // rate_smoother.md (R36), and the sums over samples of (R38)
 void RateModel::add_errors(const RateObservation& observation, const RateEstimate& estimate, const RigConstants& rig,
                            arrow::ErrorMatrix& block, arrow::BorderErrors& border, SensorErrorEvidence& evidence,
-                           bool doubted) const {
+                           bool rig_spread) const {
   constexpr int kGyroBias = 3, kAccelBias = 6;
   using Row = Eigen::Matrix<double, 1, SensorErrors::kSize>;
   const Vector3d &rate = estimate.knot.rate_rad_s, &force = observation.sample.specific_force_m_s2;
@@ -76,7 +76,7 @@ void RateModel::add_errors(const RateObservation& observation, const RateEstimat
   };
 
   const bool by_elements = observation.by_elements();
-  if (doubted && by_elements) return;
+  if (rig_spread && by_elements) return;
   const Vector3d reading = corrected_rate(observation, estimate);
   const RateFactor gyro = by_elements ? element_factor(at_reading(observation, estimate), rig, reading)
                                       : gyro_factor(at_reading(observation, estimate), rig, reading);
@@ -88,7 +88,7 @@ void RateModel::add_errors(const RateObservation& observation, const RateEstimat
     Row by_errors = Row::Zero();
     for (int i = 0; i < 3; ++i) {
       by_errors.segment<3>(3 * i) = sees[i] * rate.transpose();
-      by_errors.segment<3>(SensorErrors::kFelt + 3 * i) = sees[i] * force.transpose();
+      by_errors.segment<3>(SensorErrors::kGSensitivity + 3 * i) = sees[i] * force.transpose();
     }
     const double information = gyro_information(observation, estimate, j);
     const double part = (observation.subsample_saturated >> j & 1u) != 0 ? observation.lost_rad_s[j] : 0.0;
@@ -98,12 +98,12 @@ void RateModel::add_errors(const RateObservation& observation, const RateEstimat
     border.middleRows<3>(kGyroBias).noalias() -= sees.transpose() * pull;
     if (by_elements) {
       const int first = RigConstants::kElements + 2 * j;
-      border.middleRows<2>(first).noalias() -= gyro.by_rig.block<1, 2>(j, first).transpose() * pull;
+      border.middleRows<2>(first).noalias() -= gyro.jacobian_calibration.block<1, 2>(j, first).transpose() * pull;
     }
     add(by_errors, information, gyro.residual[j] - part);
   }
 
-  if (doubted || says_nothing_of_rig(estimate)) return;
+  if (rig_spread || is_uninformative(estimate)) return;
   if (observation.clipping.accel != 0 && observation.accel_rows.tilted()) return;  // tilted rows mix the axes
   auto [flight, information] = force_factor(observation, estimate, rig);
   Vector3d by_delay;
@@ -115,10 +115,10 @@ void RateModel::add_errors(const RateObservation& observation, const RateEstimat
     Row by_errors = Row::Zero();
     by_errors.segment<3>(SensorErrors::kAccel + 3 * j) = force.transpose();
     by_errors[SensorErrors::kDelay] = by_delay[j];
-    by_errors[SensorErrors::kBlur] = 0.5 * curvature[j];
+    by_errors[SensorErrors::kFilterTimeVariance] = 0.5 * curvature[j];
     const Row pull = information[j] * by_errors;
     block.noalias() -= flight.by_knot.row(j).transpose() * pull;
-    border.topRows<3>().noalias() -= flight.by_rig.row(j).head<3>().transpose() * pull;
+    border.topRows<3>().noalias() -= flight.jacobian_calibration.row(j).head<3>().transpose() * pull;
     border.row(kAccelBias + j) -= pull;
     add(by_errors, information[j], flight.residual[j]);
   }

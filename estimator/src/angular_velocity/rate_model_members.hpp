@@ -56,7 +56,7 @@ void members(Self& s, Visitor& visit) {
   visit("observation.at_rest", s.at_rest);
   visit("observation.subsample_saturated", s.subsample_saturated);
   visit("observation.lone", s.lone);
-  visit("observation.doubted", s.doubted);
+  visit("observation.suspect", s.suspect);
   visit("observation.lost_rad_s", s.lost_rad_s);
   visit("observation.lost_sigma_rad_s", s.lost_sigma_rad_s);
   visit("observation.gyro_age_s", s.gyro_age_s);
@@ -80,9 +80,9 @@ template <StateOf<SensorErrors> Self, class Visitor>
 void members(Self& s, Visitor& visit) {
   visit("errors.gyro", s.gyro);
   visit("errors.accel", s.accel);
-  visit("errors.felt_s_m", s.felt_s_m);
+  visit("errors.g_sensitivity_s_m", s.g_sensitivity_s_m);
   visit("errors.accel_delay_s", s.accel_delay_s);
-  visit("errors.accel_blur_s2", s.accel_blur_s2);
+  visit("errors.accel_filter_time_variance_s2", s.accel_filter_time_variance_s2);
 }
 
 template <StateOf<KnownSensorErrors> Self, class Visitor>

@@ -4,8 +4,8 @@
 #include <algorithm>
 
 #include "element_clipping.hpp"
+#include "possible_saturation.hpp"
 #include "tumble/angular_velocity/detail/recording_check.hpp"
-#include "unseen_rails.hpp"
 
 namespace tumble {
 
@@ -18,17 +18,17 @@ double median_force(std::span<const ImuSample> samples) {
   return force[force.size() / 2];
 }
 
-void tell_rails(const ClippingFinder& finder, const KnownRails& rails, RateReport& health) {
+void report_rails(const ClippingFinder& finder, const KnownRails& rails, RateReport& health) {
   const RailPlanes planes = rails.planes_in_use(), accel_planes = rails.planes_in_use(Triad::accelerometer);
   health.planes = rails.planes;
   health.accel_planes = accel_planes;
-  health.rails_upright = rails.upright;
+  health.rails_axis_aligned = rails.upright;
   for (int c = 0; c < 6; ++c) {
     const auto channel = static_cast<std::size_t>(c);
     health.rail[channel] = finder.upright_rails().rail(rails.upright_rails, c);
     const auto& plane = (c < 3 ? planes : accel_planes).element[static_cast<std::size_t>(c % 3)];
     if (plane) health.rail[channel] = plane->distance_rad_s;
-    health.rail_seen[channel] = plane || rails.upright_rails.channels[channel].rail > 0.0;
+    health.rail_observed[channel] = plane || rails.upright_rails.channels[channel].rail > 0.0;
     health.rail_disagrees[channel] = finder.upright_rails().disagrees(rails.upright_rails, c);
   }
 }
@@ -42,9 +42,9 @@ void suspect_units(std::span<const ImuSample> samples, double rate_max_rad_s, Ra
 }
 
 // Marks axes that were saturated for a part of their window, and those that may be at an unknown level.
-void mark_doubtful(const RailPlaneFinder::Params& expected, const ClippingFinder& finder, const KnownRails& rails,
-                   const RailPlanes& planes, double noise_rad_s, std::span<const ImuSample> samples,
-                   std::span<RateObservation> observations) {
+void mark_possibly_clipped(const RailPlaneFinder::Params& expected, const ClippingFinder& finder,
+                           const KnownRails& rails, const RailPlanes& planes, double noise_rad_s,
+                           std::span<const ImuSample> samples, std::span<RateObservation> observations) {
   const std::vector<Neighbours> beside = other_readings(samples, Triad::gyro);
   LeastRails least;
   for (const RateObservation& o : observations) {
@@ -55,13 +55,13 @@ void mark_doubtful(const RailPlaneFinder::Params& expected, const ClippingFinder
     mark_subsample_saturation(planes, finder.upright_rails(), rails.upright_rails, noise_rad_s, before, observations[k],
                               after);
     if (rails.upright) continue;
-    doubt_unseen_rails(planes, least, noise_rad_s, before, observations[k], after);
+    inflate_possible_saturation(planes, least, noise_rad_s, before, observations[k], after);
   }
-  if (!rails.upright) doubt_motion_plateaus(planes, least, expected.offset_share, noise_rad_s, observations);
+  if (!rails.upright) inflate_motion_plateaus(planes, least, expected.offset_share, noise_rad_s, observations);
 }
 
-void mark_held(const std::optional<HeldReadings>& gyro, const std::optional<HeldReadings>& accel,
-               std::span<RateObservation> observations, RateReport& health) {
+void mark_repeated(const std::optional<RepeatedReadings>& gyro, const std::optional<RepeatedReadings>& accel,
+                   std::span<RateObservation> observations, RateReport& health) {
   for (std::size_t k = 0; k < observations.size(); ++k) {
     if (gyro) {
       observations[k].gyro_age_s = gyro->age_s[k];
@@ -80,7 +80,7 @@ RateReadings read_samples(const RateSmoother::Params& params, const ClippingFind
                           std::span<const ImuSample> samples,
                           std::span<const std::vector<AuxiliaryReading>> auxiliary_imus, RateReport& health) {
   health.samples = samples.size();
-  tell_rails(rails, found.rails, health);
+  report_rails(rails, found.rails, health);
   suspect_units(samples, params.model.rate_max_rad_s, health);
 
   RateReadings out{std::vector<RateObservation>(samples.size()), params.model, found.rails.planes_in_use(), {}};
@@ -93,10 +93,10 @@ RateReadings read_samples(const RateSmoother::Params& params, const ClippingFind
     o.accel_rows = accel_rows;
     for (std::size_t i = 0; i < auxiliary_imus.size(); ++i) o.auxiliary_imus[i] = auxiliary_imus[i][k];
   }
-  mark_doubtful(params.expert.planes, rails, found.rails, out.planes, RateModel(out.known, period_s).gyro_sigma_rad_s(),
-                samples, out.observations);
-  out.gyro_held = find_held(samples, Triad::gyro);
-  mark_held(out.gyro_held, find_held(samples, Triad::accelerometer), out.observations, health);
+  mark_possibly_clipped(params.expert.planes, rails, found.rails, out.planes,
+                        RateModel(out.known, period_s).gyro_sigma_rad_s(), samples, out.observations);
+  out.gyro_repeated = find_repeated(samples, Triad::gyro);
+  mark_repeated(out.gyro_repeated, find_repeated(samples, Triad::accelerometer), out.observations, health);
   return out;
 }
 

@@ -18,7 +18,7 @@ struct RateReadings {
   std::vector<RateObservation> observations;  ///< one per sample
   RateModelParams known;
   RailPlanes planes;  ///< of the gyro's elements, in use
-  std::optional<HeldReadings> gyro_held;
+  std::optional<RepeatedReadings> gyro_repeated;
 };
 
 /// Classifies each of at least two samples with the detected levels: clipped elements, partly saturated axes, suspect

@@ -27,7 +27,8 @@ void shift_force(std::span<const ImuSample> samples, std::span<const Clipping> c
 
 // The sizes stated in the data sheet, without uncalibrated ones.
 SensorErrorSizes as_stated(SensorErrorSizes sizes) {
-  sizes.gyro_unknown = sizes.accel_unknown = sizes.felt_unknown_s_m = sizes.delay_unknown_s = 0.0;
+  sizes.gyro_uncalibrated = sizes.accel_uncalibrated = sizes.g_sensitivity_uncalibrated_s_m =
+      sizes.delay_uncalibrated_s = 0.0;
   return sizes;
 }
 
@@ -36,30 +37,32 @@ SensorErrorSizes as_stated(SensorErrorSizes sizes) {
 bool plausible(const SensorErrors& found, const SensorErrors& given, const SensorErrorSizes& sizes) {
   constexpr double kDeviations = 6.0;
   const SensorErrors errors = SensorErrors::from(found.vector() - given.vector());
-  const double delay_s = kDeviations * std::max(sizes.delay_s, sizes.delay_unknown_s);
-  const double felt_s_m = kDeviations * std::max(sizes.felt_s_m, sizes.felt_unknown_s_m);
+  const double delay_s = kDeviations * std::max(sizes.delay_s, sizes.delay_uncalibrated_s);
+  const double g_sensitivity_s_m =
+      kDeviations * std::max(sizes.g_sensitivity_s_m, sizes.g_sensitivity_uncalibrated_s_m);
   return errors.vector().allFinite() && std::abs(errors.accel_delay_s) <= std::min(0.1, delay_s) &&
-         std::abs(errors.accel_blur_s2) <= delay_s * delay_s && errors.felt_s_m.cwiseAbs().maxCoeff() <= felt_s_m;
+         std::abs(errors.accel_filter_time_variance_s2) <= delay_s * delay_s &&
+         errors.g_sensitivity_s_m.cwiseAbs().maxCoeff() <= g_sensitivity_s_m;
 }
 
-bool tells(const TriadDelay& guess) {
+bool is_conclusive(const TriadDelay& guess) {
   return guess.sigma_s > 0.0 || guess.delay_s != 0.0;
 }
 
 // Returns whether errors differ enough from those already corrected for another descent.
 bool far_apart(const SensorErrors& a, const SensorErrors& b) {
-  constexpr double kMatrix = 1e-3, kFelt_s_m = 3e-5, kDelay_s = 3e-4, kBlur_s2 = 3e-6;
+  constexpr double kMatrix = 1e-3, kGSensitivity_s_m = 3e-5, kDelay_s = 3e-4, kFilterTimeVariance_s2 = 3e-6;
   return (a.gyro - b.gyro).cwiseAbs().maxCoeff() > kMatrix || (a.accel - b.accel).cwiseAbs().maxCoeff() > kMatrix ||
-         (a.felt_s_m - b.felt_s_m).cwiseAbs().maxCoeff() > kFelt_s_m ||
+         (a.g_sensitivity_s_m - b.g_sensitivity_s_m).cwiseAbs().maxCoeff() > kGSensitivity_s_m ||
          std::abs(a.accel_delay_s - b.accel_delay_s) > kDelay_s ||
-         std::abs(a.accel_blur_s2 - b.accel_blur_s2) > kBlur_s2;
+         std::abs(a.accel_filter_time_variance_s2 - b.accel_filter_time_variance_s2) > kFilterTimeVariance_s2;
 }
 
 // Mahalanobis distance of three constants that one device in a thousand exceeds, with all causes included.
 constexpr double kMahalanobisOfDevice = 2.33;
 
 // Fixes the calibration at its prior, except for the gyro's elements, which contact does not affect.
-RateModelParams held(const RateModelParams& params, const RateModel& model) {
+RateModelParams fixed_at_prior(const RateModelParams& params, const RateModel& model) {
   constexpr int kFirst = RigConstants::kElements, kCount = RigConstants::kSize - kFirst;
   RateModelParams out = params;
   out.calibration = RigCalibration{model.prior_constants(), 1e-12 * RigConstants::Matrix::Identity()};
@@ -83,8 +86,8 @@ double mahalanobis_of(const RateModelParams& known, const RateModel& model, doub
 
 // Runs the descent, and repeats it with a fixed calibration if contact was mistaken for flight with another
 // calibration.
-Status descend_held(const RateSmoother::Params& params, const RateModelParams& known, double period_s,
-                    std::span<const RateObservation> observations, bool struck, RateFit& fit, RateReport& health) {
+Status descend_at_prior(const RateSmoother::Params& params, const RateModelParams& known, double period_s,
+                        std::span<const RateObservation> observations, bool struck, RateFit& fit, RateReport& health) {
   fit.model = RateModel(known, period_s);
   if (!solve(params, fit.model, observations, fit.solution, health)) {
     return {Trouble::diverged, "iteration", static_cast<double>(health.iterations), 0.0};
@@ -99,7 +102,7 @@ Status descend_held(const RateSmoother::Params& params, const RateModelParams& k
   if (!health.calibration_at_prior) return {};
   const double mahalanobis = health.calibration_mahalanobis;
   health.calibration = {fit.model.prior_constants(), fit.model.prior_covariance()};
-  fit.model = RateModel(held(known, fit.model), period_s);
+  fit.model = RateModel(fixed_at_prior(known, fit.model), period_s);
   if (!solve(params, fit.model, observations, fit.solution, health)) {
     return {Trouble::diverged, "iteration", static_cast<double>(health.iterations), 0.0};
   }
@@ -127,27 +130,28 @@ void add_guess(const TriadDelay& guess, SensorErrorEvidence& evidence) {
 constexpr double kPlainOdds = 0.05;
 
 // Returns whether a device clearly contradicts its data sheet in scale or in sampling; then neither is reliable. Naive
-// Bayes over the two, each relative to its prior. `own_clocks`: the triads are known to be asynchronous.
-bool off_sheet(const SensorErrorFit& device, const SensorErrorSizes& sizes, bool own_clocks) {
+// Bayes over the two, each relative to its prior. `triads_asynchronous`: the triads are known to be asynchronous.
+bool off_sheet(const SensorErrorFit& device, const SensorErrorSizes& sizes, bool triads_asynchronous) {
   const SensorErrorFit before = fit_sensor_errors({}, sizes);
   const auto odds = [](double p) { return std::max(p, 1e-12) / std::max(1.0 - p, 1e-12); };
-  const double of_scale = odds(device.calibrated) / odds(before.calibrated);
-  return own_clocks || of_scale * odds(device.together) < kPlainOdds;
+  const double of_scale = odds(device.in_sheet_probability) / odds(before.in_sheet_probability);
+  return triads_asynchronous || of_scale * odds(device.synchronous_probability) < kPlainOdds;
 }
 
 // The sizes of a device without a data sheet.
 SensorErrorSizes unstated(SensorErrorSizes sizes) {
-  sizes.gyro = std::max(sizes.gyro, sizes.gyro_unknown);
-  sizes.accel = std::max(sizes.accel, sizes.accel_unknown);
-  sizes.felt_s_m = std::max(sizes.felt_s_m, sizes.felt_unknown_s_m);
-  sizes.delay_s = std::max(sizes.delay_s, sizes.delay_unknown_s);
+  sizes.gyro = std::max(sizes.gyro, sizes.gyro_uncalibrated);
+  sizes.accel = std::max(sizes.accel, sizes.accel_uncalibrated);
+  sizes.g_sensitivity_s_m = std::max(sizes.g_sensitivity_s_m, sizes.g_sensitivity_uncalibrated_s_m);
+  sizes.delay_s = std::max(sizes.delay_s, sizes.delay_uncalibrated_s);
   return sizes;
 }
 
 // Expresses the estimate of an earlier run relative to the errors stated now.
-SensorErrorEvidence learnt_about(const SensorErrors& given, KnownSensorErrors learnt, const SensorErrorSizes& sizes) {
+SensorErrorEvidence calibration_evidence_about(const SensorErrors& given, KnownSensorErrors learnt,
+                                               const SensorErrorSizes& sizes) {
   learnt.errors = SensorErrors::from(learnt.errors.vector() - given.vector());
-  return learnt_evidence(learnt, sizes);
+  return calibration_evidence(learnt, sizes);
 }
 
 // Fits errors relative to the stated ones, as is `learnt`.
@@ -166,13 +170,13 @@ struct Rounds {
   std::span<const Clipping> clippings;
   double period_s = 0.0;
   bool estimated = false;
-  bool own_clocks = false;         ///< readings of a triad repeat, so the triads are asynchronous
-  TriadDelay guess = {};           ///< empty if the data sheet states the delay
-  std::vector<double> age_s = {};  ///< of the accelerometer's readings in the log
-  SensorErrorSizes sizes = {};     ///< those stated, except for the sampling of asynchronous triads
+  bool triads_asynchronous = false;  ///< readings of a triad repeat, so the triads are asynchronous
+  TriadDelay guess = {};             ///< empty if the data sheet states the delay
+  std::vector<double> age_s = {};    ///< of the accelerometer's readings in the log
+  SensorErrorSizes sizes = {};       ///< those stated, except for the sampling of asynchronous triads
 
   const SensorErrorSizes& stated() const { return known.expert.error_sizes; }
-  bool delay_open() const { return estimated && stated().delay_unknown_s > stated().delay_s; }
+  bool delay_open() const { return estimated && stated().delay_uncalibrated_s > stated().delay_s; }
   /// A body with impacts and flight is not hand-held; sensor errors may then change its calibration.
   bool struck() const { return guess.sigma_s > 0.0; }
 };
@@ -182,9 +186,9 @@ Rounds rounds_of(const RateSmoother::Params& params, const RateModelParams& know
                  const RateReport& health) {
   Rounds out{params, known, samples, clippings, median_period_s(samples)};
   out.estimated = params.expert.error_rounds_max > 1;
-  out.own_clocks = health.gyro_update_s > 0.0 || health.accel_update_s > 0.0;
+  out.triads_asynchronous = health.gyro_update_s > 0.0 || health.accel_update_s > 0.0;
   out.sizes = out.stated();
-  if (out.own_clocks) out.sizes.delay_s = std::max(out.sizes.delay_s, out.sizes.delay_unknown_s);
+  if (out.triads_asynchronous) out.sizes.delay_s = std::max(out.sizes.delay_s, out.sizes.delay_uncalibrated_s);
   const RigConstants rig = known.calibration ? known.calibration->constants : known.nominal;
   if (out.delay_open()) out.guess = guess_triad_delay(samples, clippings, rig.lever_arm_m);
   out.age_s.resize(samples.size());
@@ -202,7 +206,7 @@ struct Start {
 Start start_from(const SensorErrors& assumed, const Rounds& rounds) {
   const TriadDelay& guess = rounds.guess;
   Start out{assumed, assumed.accel_delay_s};
-  if (!tells(guess)) return out;
+  if (!is_conclusive(guess)) return out;
   if (std::abs(guess.delay_s - assumed.accel_delay_s) > kGuessFar * guess.sigma_s)
     out.errors.accel_delay_s = guess.delay_s;
   out.other_delay_s = out.errors.accel_delay_s == guess.delay_s ? rounds.known.errors.accel_delay_s : guess.delay_s;
@@ -216,7 +220,7 @@ Status descend_corrected(const Rounds& rounds, const SensorErrors& errors, std::
   RateModelParams corrected = rounds.known;
   corrected.errors = errors;
   corrected.errors.accel_delay_s -= shift * rounds.period_s;
-  return descend_held(rounds.params, corrected, rounds.period_s, observations, rounds.struck(), fit, health);
+  return descend_at_prior(rounds.params, corrected, rounds.period_s, observations, rounds.struck(), fit, health);
 }
 
 // Computes the evidence about the errors, relative to those that were corrected: fit.moved.
@@ -236,66 +240,70 @@ Status take_evidence(const Rounds& rounds, const SensorErrors& errors, RateFit& 
   return {};
 }
 
-struct Told {
+struct RoundsState {
   SensorErrors errors;  ///< corrected in the last descent
   SensorErrorEvidence learnt;
   SensorErrorFit found;
-  bool believed = true;  ///< plausible for a device
+  bool is_plausible = true;  ///< plausible for a device
 };
 
 // Repeats the descent until the estimated errors equal the corrected ones.
 Status descend_rounds(const Rounds& rounds, std::span<RateObservation> observations, RateFit& fit, RateReport& health,
-                      Told& told) {
+                      RoundsState& rounds_state) {
   const SensorErrors& given = rounds.known.errors;
-  const std::optional<KnownSensorErrors>& learnt = rounds.params.learnt_errors;
-  bool told_before = rounds.estimated && learnt.has_value();
-  if (told_before) told.learnt = learnt_about(given, *learnt, rounds.stated());
-  Start start = start_from(told_before ? learnt->errors : given, rounds);
-  told.errors = start.errors;
+  const std::optional<KnownSensorErrors>& learnt = rounds.params.calibrated_errors;
+  bool has_calibration = rounds.estimated && learnt.has_value();
+  if (has_calibration) rounds_state.learnt = calibration_evidence_about(given, *learnt, rounds.stated());
+  Start start = start_from(has_calibration ? learnt->errors : given, rounds);
+  rounds_state.errors = start.errors;
   for (health.error_rounds = 1;; ++health.error_rounds) {
-    if (Status status = descend_corrected(rounds, told.errors, observations, fit, health); !status.ok()) return status;
-    if (health.calibration_at_prior && told_before) {
+    if (Status status = descend_corrected(rounds, rounds_state.errors, observations, fit, health); !status.ok())
+      return status;
+    if (health.calibration_at_prior && has_calibration) {
       // it may be another device
-      told_before = false;
-      told.learnt = {};
+      has_calibration = false;
+      rounds_state.learnt = {};
       start = start_from(given, rounds);
-      told.errors = start.errors;
+      rounds_state.errors = start.errors;
       health.error_rounds = 0;
       continue;
     }
     const bool first = health.error_rounds == 1 && rounds.estimated;
-    if (health.calibration_at_prior && first && told.errors.accel_delay_s != start.other_delay_s) {
-      told.errors.accel_delay_s = start.other_delay_s;
+    if (health.calibration_at_prior && first && rounds_state.errors.accel_delay_s != start.other_delay_s) {
+      rounds_state.errors.accel_delay_s = start.other_delay_s;
       health.error_rounds = 0;
       continue;
     }
-    if (Status status = take_evidence(rounds, told.errors, fit, health); !status.ok()) return status;
-    told.found = fit_about(given, fit.moved.evidence, rounds.sizes, told.learnt);
-    told.believed = plausible(told.found.known.errors, given, rounds.stated());
-    if (health.calibration_at_prior || !told.believed || health.error_rounds >= rounds.params.expert.error_rounds_max)
+    if (Status status = take_evidence(rounds, rounds_state.errors, fit, health); !status.ok()) return status;
+    rounds_state.found = fit_about(given, fit.moved.evidence, rounds.sizes, rounds_state.learnt);
+    rounds_state.is_plausible = plausible(rounds_state.found.known.errors, given, rounds.stated());
+    if (health.calibration_at_prior || !rounds_state.is_plausible ||
+        health.error_rounds >= rounds.params.expert.error_rounds_max)
       return {};
-    if (!far_apart(told.found.known.errors, told.errors)) return {};
-    told.errors = told.found.known.errors;
+    if (!far_apart(rounds_state.found.known.errors, rounds_state.errors)) return {};
+    rounds_state.errors = rounds_state.found.known.errors;
   }
 }
 
 // For a device that clearly contradicts its data sheet, enlarges the covariance to that of an uncalibrated device. The
 // corrections remain those for which the evidence is clear. Returns the sizes in use.
-SensorErrorSizes leave_open(const Rounds& rounds, const RateFit& fit, Told& told, RateReport& health) {
-  const bool open = rounds.delay_open() && (off_sheet(told.found, rounds.stated(), rounds.own_clocks) ||
-                                            health.calibration_mahalanobis > rounds.params.calibration_mahalanobis_max);
+SensorErrorSizes leave_open(const Rounds& rounds, const RateFit& fit, RoundsState& rounds_state, RateReport& health) {
+  const bool open =
+      rounds.delay_open() && (off_sheet(rounds_state.found, rounds.stated(), rounds.triads_asynchronous) ||
+                              health.calibration_mahalanobis > rounds.params.calibration_mahalanobis_max);
   if (!open) return rounds.sizes;
   const SensorErrorSizes sizes = unstated(rounds.sizes);
-  health.shared_delay_sigma_s = std::sqrt(0.5) * sizes.delay_s;
-  KnownSensorErrors& found = told.found.known;
-  const KnownSensorErrors unknown = fit_about(rounds.known.errors, fit.moved.evidence, sizes, told.learnt).known;
+  health.common_delay_sigma_s = std::sqrt(0.5) * sizes.delay_s;
+  KnownSensorErrors& found = rounds_state.found.known;
+  const KnownSensorErrors unknown =
+      fit_about(rounds.known.errors, fit.moved.evidence, sizes, rounds_state.learnt).known;
   const SensorErrors::Vector apart = unknown.errors.vector() - found.errors.vector();
   found.covariance = unknown.covariance + apart * apart.transpose();
   return sizes;
 }
 
 // Changes the fit to first order, as for readings corrected by `step` more.
-void move_by(const SensorErrors::Vector& step, RateFit& fit) {
+void apply_correction(const SensorErrors::Vector& step, RateFit& fit) {
   for (std::size_t k = 0; k < fit.solution.estimates.size(); ++k) {
     const Eigen::Matrix<double, 6, 1> moved = fit.model.unscaled(fit.moved.of_sample[k] * step);
     fit.solution.estimates[k].knot.rate_rad_s += moved.head<3>();
@@ -310,21 +318,21 @@ Status fit_rounds(const RateSmoother::Params& params, const RateModelParams& kno
                   std::span<const Clipping> clippings, std::span<RateObservation> observations, RateFit& fit,
                   RateReport& health) {
   const Rounds rounds = rounds_of(params, known, samples, clippings, observations, health);
-  Told told;
-  if (Status status = descend_rounds(rounds, observations, fit, health, told); !status.ok()) return status;
-  health.calibrated = told.found.calibrated;
-  health.together = rounds.own_clocks ? 0.0 : told.found.together;
-  const SensorErrorSizes sizes = leave_open(rounds, fit, told, health);
+  RoundsState rounds_state;
+  if (Status status = descend_rounds(rounds, observations, fit, health, rounds_state); !status.ok()) return status;
+  health.in_sheet_probability = rounds_state.found.in_sheet_probability;
+  health.synchronous_probability = rounds.triads_asynchronous ? 0.0 : rounds_state.found.synchronous_probability;
+  const SensorErrorSizes sizes = leave_open(rounds, fit, rounds_state, health);
   const SensorErrorSizes stated = as_stated(rounds.stated());
-  if (health.calibration_at_prior || !told.believed || !rounds.estimated) {
+  if (health.calibration_at_prior || !rounds_state.is_plausible || !rounds.estimated) {
     // without flight, the run contains no information about the device beyond the prior, and all errors remain
     // uncertain
-    told.found = fit_sensor_errors({}, rounds.estimated ? sizes : stated);
-    told.found.known.errors = told.errors;
+    rounds_state.found = fit_sensor_errors({}, rounds.estimated ? sizes : stated);
+    rounds_state.found.known.errors = rounds_state.errors;
   } else {
-    move_by(told.found.known.errors.vector() - told.errors.vector(), fit);
+    apply_correction(rounds_state.found.known.errors.vector() - rounds_state.errors.vector(), fit);
   }
-  health.sensor_errors = told.found.known;
+  health.sensor_errors = rounds_state.found.known;
   if (health.calibration_at_prior) return {};
   health.calibration.constants = fit.solution.rig;
   // sensor errors remain part of the device: the next run has the same errors and includes them again

@@ -33,7 +33,7 @@ RateSmoother::RateSmoother(const Params& params)
       rails_({params.rails, params.expert.planes, params.expert.accel_planes}),
       rests_(params.expert.rests) {
   require_fields(params);
-  if (params.learnt_errors) require_known(*params.learnt_errors);
+  if (params.calibrated_errors) require_known(*params.calibrated_errors);
   (void)RateModel(params.model, 0.01);  // throws for invalid parameters
 }
 

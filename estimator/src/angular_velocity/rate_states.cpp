@@ -6,7 +6,7 @@
 #include <optional>
 
 #include "near_rails.hpp"
-#include "tumble/angular_velocity/detail/held_rates.hpp"
+#include "tumble/angular_velocity/detail/interpolated_rates.hpp"
 
 namespace tumble {
 
@@ -18,13 +18,14 @@ using Eigen::Vector3d;
 constexpr double kSharedReach = 2.0;
 
 // Rates of a slow gyro at the time of each sample, where it measures all axes.
-std::vector<std::optional<HeldRate>> read_in_time(std::span<const ImuSample> samples, const RateReadings& readings) {
+std::vector<std::optional<InterpolatedRate>> read_in_time(std::span<const ImuSample> samples,
+                                                          const RateReadings& readings) {
   std::vector<std::uint8_t> hidden(samples.size());
   for (std::size_t k = 0; k < hidden.size(); ++k) {
     const RateObservation& o = readings.observations[k];
     hidden[k] = static_cast<std::uint8_t>(o.clipping.gyro | o.clipping.missing_gyro | o.read_in_part());
   }
-  return rates_between_readings(samples, hidden, readings.gyro_held);
+  return rates_between_readings(samples, hidden, readings.gyro_repeated);
 }
 
 // Contribution of the sensor errors' uncertainty to a rate, limited to the largest rate: rate_smoother.md (R44).
@@ -51,7 +52,7 @@ double change_rad_s2(const RateModelParams& params, std::span<const RateObservat
 
 // Effect of a delay common to both triads on a rate: its largest change within the delay. Reason: an impact in the next
 // sample's window may belong to this sample.
-Eigen::Matrix3d of_shared_delay(double variance_s2, const RateModelParams& params,
+Eigen::Matrix3d of_common_delay(double variance_s2, const RateModelParams& params,
                                 std::span<const RateObservation> observations, std::span<const RateEstimate> estimates,
                                 std::size_t k) {
   if (!(variance_s2 > 0.0)) return Eigen::Matrix3d::Zero();
@@ -92,13 +93,13 @@ RateState state_later(std::span<const RateObservation> observations, std::span<c
 std::vector<Eigen::Matrix3d> rate_covariances(const RateSmoother::Params& params, const RateReadings& readings,
                                               const RateFit& fit, const RateReport& health) {
   const std::vector<RateEstimate>& estimates = fit.solution.estimates;
-  const double shared_s2 = health.shared_delay_sigma_s * health.shared_delay_sigma_s;
+  const double shared_s2 = health.common_delay_sigma_s * health.common_delay_sigma_s;
   std::vector<Eigen::Matrix3d> out(estimates.size());
   fit.solution.iteration.for_each_conditional([&](std::size_t k, const arrow::Conditional& conditional) {
     const Eigen::Matrix3d covariance =
         arrow::rate_covariance(conditional, fit.solution.rig_covariance) +
         open_of_errors(fit.moved.of_sample[k], health.sensor_errors.covariance, params.model.rate_max_rad_s) +
-        of_shared_delay(shared_s2, readings.known, readings.observations, estimates, k);
+        of_common_delay(shared_s2, readings.known, readings.observations, estimates, k);
     out[k] = fit.model.reported(covariance, readings.observations[k], estimates[k]);
   });
   return out;
@@ -110,7 +111,7 @@ void count(const RateState& state, const RateObservation& observation, RateRepor
   report.recovered_contact += state.source == RateSource::recovered_contact;
   report.bounded_only += state.source == RateSource::bounded_only;
   report.missing_readings += observation.clipping.missing_gyro != 0;
-  report.doubted_axes.push_back(static_cast<std::uint8_t>(observation.may_hide() & ~state.clipped_axes));
+  report.suspect_axes.push_back(static_cast<std::uint8_t>(observation.may_hide() & ~state.clipped_axes));
 }
 
 }  // namespace
@@ -123,8 +124,9 @@ std::vector<RateState> rate_states(const RateSmoother::Params& params, std::span
   const double gyro_late_s = std::max(0.0, -errors.accel_delay_s);
   const std::vector<Eigen::Matrix3d> covariances = rate_covariances(params, readings, fit, health);
   // equal readings identify clipped output exactly
-  const std::vector<std::uint8_t> near = may_meet_rails(samples, health.rails_upright ? RailPlanes{} : readings.planes);
-  const std::vector<std::optional<HeldRate>> own = read_in_time(samples, readings);
+  const std::vector<std::uint8_t> near =
+      may_meet_rails(samples, health.rails_axis_aligned ? RailPlanes{} : readings.planes);
+  const std::vector<std::optional<InterpolatedRate>> own = read_in_time(samples, readings);
   std::vector<RateState> states(samples.size());
   std::size_t in_flight = 0;
   for (std::size_t k = 0; k < samples.size(); ++k) {
@@ -135,8 +137,8 @@ std::vector<RateState> rate_states(const RateSmoother::Params& params, std::span
     // flight is smoother than readings; in other motion, readings are better than white jerk between them
     const bool by_readings = estimate.flight_weight < 0.5 && !o.at_rest && gyro_late_s == 0.0;
     if (by_readings && !own.empty() && own[k]) {
-      const Vector3d felt = errors.felt_s_m * samples[k].specific_force_m_s2;
-      state.w_WI_I_rad_s = own[k]->rate_rad_s - felt - solution.rig.gyro_bias_rad_s;
+      const Vector3d g_sensitivity = errors.g_sensitivity_s_m * samples[k].specific_force_m_s2;
+      state.w_WI_I_rad_s = own[k]->rate_rad_s - g_sensitivity - solution.rig.gyro_bias_rad_s;
       state.covariance_rad2_s2.diagonal() += own[k]->variance_rad2_s2;
     }
     state.time_ns = samples[k].time_ns;

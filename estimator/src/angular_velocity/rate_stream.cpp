@@ -28,7 +28,7 @@ double seconds_between(const RateStream::Knot& from, const RateStream::Knot& to)
   return seconds(to.observation.sample.time_ns - from.observation.sample.time_ns);
 }
 
-void hold_to_bounds(const RateObservation& o, Vector3d& rate) {
+void clamp_to_bounds(const RateObservation& o, Vector3d& rate) {
   for (int j = 0; j < 3; ++j) {
     if ((o.unseen() & o.clipping.gyro & 1u << j) == 0) continue;
     const double reading = o.sample.angular_velocity_rad_s[j];
@@ -53,7 +53,7 @@ void add_prior(const RateStream::State& state, const RateModel& model, const Rat
 
 RateModelParams corrected_for(const RateStreamParams& params) {
   RateModelParams out = params.model;
-  if (params.learnt_errors) out.errors = params.learnt_errors->errors;
+  if (params.calibrated_errors) out.errors = params.calibrated_errors->errors;
   return out;
 }
 
@@ -69,27 +69,29 @@ RateStream::RateStream(const Params& params)
       model_(corrected_for(params), params.period_s),
       device_(params.model.expert.error_sizes, params.expert.uncalibrated) {
   require_fields(params);
-  if (params.learnt_errors) require_known(*params.learnt_errors);
+  if (params.calibrated_errors) require_known(*params.calibrated_errors);
   require_within("lag_s", params.lag_s, 2.0 * params.period_s, params.lag_max_s());
   capacity_ = static_cast<std::size_t>(std::lround(params.lag_s / params.period_s)) + 1;
-  given_delay_s_ = corrected_for(params).errors.accel_delay_s;
+  prior_delay_s_ = corrected_for(params).errors.accel_delay_s;
   const SensorErrorSizes& sizes = params.model.expert.error_sizes;
-  delay_open_ = !params.learnt_errors && sizes.delay_unknown_s > sizes.delay_s && params.expert.uncalibrated > 0.0;
-  every_ = std::clamp(static_cast<std::size_t>(params.step_s / params.period_s + 1e-6), std::size_t{1}, capacity_);
+  delay_open_ =
+      !params.calibrated_errors && sizes.delay_uncalibrated_s > sizes.delay_s && params.expert.uncalibrated > 0.0;
+  samples_per_step_ =
+      std::clamp(static_cast<std::size_t>(params.step_s / params.period_s + 1e-6), std::size_t{1}, capacity_);
 }
 
 RateStream::State RateStream::start() const {
   State state;
   state.rails = rails_.start();
-  state.window.reserve(capacity_ + every_);
-  state.work.resize(capacity_ + every_);
+  state.window.reserve(capacity_ + samples_per_step_);
+  state.work.resize(capacity_ + samples_per_step_);
   RateStreamDevice& device = state.device.front();
-  device.moved.resize(capacity_ + every_);
-  device_.forget(device.open);
-  device.delay.in_use_s = device.delay.told_s = given_delay_s_;
-  if (params_.learnt_errors) {
-    device.open.covariance = params_.learnt_errors->covariance;
-    device.open.unlike = 0.0;
+  device.moved.resize(capacity_ + samples_per_step_);
+  device_.reset(device.posterior);
+  device.delay.in_use_s = device.delay.estimated_s = prior_delay_s_;
+  if (params_.calibrated_errors) {
+    device.posterior.covariance = params_.calibrated_errors->covariance;
+    device.posterior.unlike = 0.0;
   }
   state.rig = state.prior_rig = model_.prior_constants();
   state.rig_covariance = model_.prior_covariance();
@@ -109,8 +111,8 @@ Status RateStream::push(const ImuSample& sample, std::span<const AuxiliaryReadin
     Status status = check_follows(sample.time_ns, state.window.back().observation.sample.time_ns, params_.gap_max_s);
     if (!status.ok()) return status;
   }
-  const bool due = ++state.waiting >= every_;
-  if (due) forget_oldest(state);
+  const bool due = ++state.waiting >= samples_per_step_;
+  if (due) marginalise_leaving(state);
   append(sample, auxiliary_imus, state);
   if (due) seek_delay(state);
   if (!due) {
@@ -123,11 +125,11 @@ Status RateStream::push(const ImuSample& sample, std::span<const AuxiliaryReadin
 }
 
 // Makes room for one more sample before a step, by removing all leaving samples from the window at once.
-void RateStream::forget_oldest(State& state) const {
+void RateStream::marginalise_leaving(State& state) const {
   state.waiting = 0;
   std::size_t count = 0;
   for (; state.window.size() - count >= capacity_; ++count) {
-    remember_entry(state.window[count], state.window[count + 1], state);
+    store_entry(state.window[count], state.window[count + 1], state);
     marginalise(count, state);
   }
   state.window.erase(state.window.begin(), state.window.begin() + static_cast<std::ptrdiff_t>(count));
@@ -163,7 +165,7 @@ void RateStream::marginalise(std::size_t first, State& state) const {
   for (std::size_t k = first; k < state.window.size() && run < needed && flies(state.window[k]); ++k) ++run;
   const bool short_flight = run < needed;
   state.flight_run = flies(oldest) ? state.flight_run + 1 : 0;
-  if (!short_flight && flies(oldest)) ++state.learnt_from;
+  if (!short_flight && flies(oldest)) ++state.calibration_samples;
   model_.add_sample(oldest.observation, oldest.estimate, state.rig, block, corner,
                     short_flight ? &state.rig_covariance : nullptr);
   RateStreamDevice& device = state.device.front();
@@ -174,10 +176,10 @@ void RateStream::marginalise(std::size_t first, State& state) const {
   if (arrow::eliminate(block, &after, corner)) {
     state.prior = after;
     state.prior_corner = corner;
-    remember_errors(block, errors, state);
+    store_errors(block, errors, state);
   } else {
     // the prior from the past is unusable: restart from the prior calibration
-    forget_left(state);
+    reset_prior(state);
     ++state.failures;
   }
   state.left = oldest.estimate.knot;
@@ -186,7 +188,7 @@ void RateStream::marginalise(std::size_t first, State& state) const {
   state.prior_rig = state.rig;
   if (model_.calibration_mahalanobis(state.rig) > params_.calibration_mahalanobis_max) {
     // contact was mistaken for flight with another calibration: reset calibration and motion
-    forget_rig(state);
+    reset_rig(state);
     ++state.rig_resets;
   }
 }
@@ -203,14 +205,15 @@ void RateStream::append(const ImuSample& sample, std::span<const AuxiliaryReadin
   const bool changed = rails_.observe(sample, state.rails);
   Knot knot;
   knot.by_upright_rails = rails_.upright_rails().classify(sample, state.rails.known.upright_rails);
-  holds_.observe(sample, (knot.by_upright_rails.gyro | knot.by_upright_rails.missing_gyro) != 0, state.holds);
+  repeat_detector_.observe(sample, (knot.by_upright_rails.gyro | knot.by_upright_rails.missing_gyro) != 0,
+                           state.repeat_state);
   knot.observation = {sample, knot.by_upright_rails, rests_.observe(sample, state.rests)};
   knot.read = {sample.specific_force_m_s2, static_cast<std::uint8_t>(sample.device_clip_flags & kClipAccel),
                knot.by_upright_rails.accel};
   std::copy(auxiliary_imus.begin(), auxiliary_imus.end(), knot.observation.auxiliary_imus.begin());
-  const HeldReading& held = state.holds.of(Triad::gyro);
-  knot.repeats = held.repeats && !knot.observation.at_rest;
-  if (!knot.observation.at_rest) knot.held = held;
+  const RepeatedReading& repeated = state.repeat_state.of(Triad::gyro);
+  knot.repeats = repeated.repeats && !knot.observation.at_rest;
+  if (!knot.observation.at_rest) knot.repeated = repeated;
   knot.estimate.knot.rate_rad_s = sample.angular_velocity_rad_s;
   // until the first step
   knot.covariance_rad2_s2 = std::pow(params_.model.rate_max_rad_s, 2) * Eigen::Matrix3d::Identity();
@@ -224,7 +227,7 @@ void RateStream::append(const ImuSample& sample, std::span<const AuxiliaryReadin
   count_strokes(state);
   state.extremes[0] = state.extremes[0].cwiseMin(sample.angular_velocity_rad_s);
   state.extremes[1] = state.extremes[1].cwiseMax(sample.angular_velocity_rad_s);
-  doubt_possible_rails(state);
+  mark_possible_rails(state);
 }
 
 // Initialises clipped axes of a new sample by the prediction or by the centripetal force, whichever fits flight better.
@@ -244,8 +247,8 @@ void RateStream::guess(Knot& knot, const Knot& previous, const State& state) con
       unclipped[j] = 0.0;
     }
   }
-  hold_to_bounds(knot.observation, predicted);
-  hold_to_bounds(knot.observation, shape);
+  clamp_to_bounds(knot.observation, predicted);
+  clamp_to_bounds(knot.observation, shape);
   Knot centripetal = knot;
   knot.estimate.knot.rate_rad_s = predicted;
   const double speed = predicted.norm();
@@ -256,7 +259,7 @@ void RateStream::guess(Knot& knot, const Knot& previous, const State& state) con
       to_axis.dot(knot.observation.sample.specific_force_m_s2) / to_axis.squaredNorm() - unclipped.squaredNorm();
   if (!(squared > 0.0)) return;
   Vector3d rate = unclipped + std::sqrt(squared) * shape.normalized();
-  hold_to_bounds(knot.observation, rate);
+  clamp_to_bounds(knot.observation, rate);
   const double largest = params_.model.rate_max_rad_s;
   centripetal.estimate.knot.rate_rad_s = rate.cwiseMin(largest).cwiseMax(-largest);
   model_.weigh(knot.observation, state.rig, state.rig_covariance, 1.0, 0.0, knot.estimate);
@@ -314,7 +317,7 @@ bool RateStream::step(State& state) const {
   state.rig_covariance = rig_covariance;
   consider_errors(rig_step, state);
   state.rig.add(rig_step);
-  const arrow::BorderMatrix doubted = inflated(state);
+  const arrow::BorderMatrix rig_spread = inflated(state);
   arrow::StateVector x;
   arrow::Conditional conditional;
   for (std::size_t k = count; k-- > 0;) {
@@ -326,7 +329,7 @@ bool RateStream::step(State& state) const {
     const double share = std::min(1.0, params_.expert.step_max_rad_s / std::max(1e-300, physical.head<3>().norm()));
     knot.estimate.knot.rate_rad_s += share * physical.head<3>();
     knot.estimate.knot.acceleration_rad_s2 += share * physical.tail<3>();
-    knot.covariance_rad2_s2 = arrow::rate_covariance(conditional, doubted) + of_device(k, state);
+    knot.covariance_rad2_s2 = arrow::rate_covariance(conditional, rig_spread) + of_device(k, state);
     if (knot.estimate.soft_bounds) {
       model_.update_bounds(knot.observation, state.rig, conditional, rig_covariance, params_.expert.bound_damping,
                            knot.estimate);
@@ -339,8 +342,8 @@ bool RateStream::step(State& state) const {
 // rate_stream.md (R97)
 RigConstants::Matrix RateStream::inflated(const State& state) const {
   if (params_.model.calibration) return state.rig_covariance;
-  const double samples =
-      static_cast<double>(state.learnt_from) * model_.said_once_share() / params_.expert.inflation.samples;
+  const double samples = static_cast<double>(state.calibration_samples) * model_.distinct_reading_share() /
+                         params_.expert.inflation.samples;
   const double largest = std::sqrt(1.0 + params_.expert.inflation.covariance / (1.0 + samples));
   RigConstants::Vector factor;
   for (int i = 0; i < RigConstants::kSize; ++i) {

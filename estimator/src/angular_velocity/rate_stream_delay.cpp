@@ -15,7 +15,7 @@ constexpr int kBeside = StrokeSums::kMostSamples;
 // Time constant of the impact statistics, in intervals.
 constexpr double kMemory = 2000.0;
 // Time between two evaluations, and minimum change of the delay that is applied.
-constexpr TimeNs kAskEvery_ns = 50'000'000;
+constexpr TimeNs kUpdateEvery_ns = 50'000'000;
 constexpr double kMoved_s = 3e-4;
 // Odds of triads as synchronous as the data sheet states, below which impacts clearly contradict it; and distance in
 // standard deviations above which a guess replaces the current delay.
@@ -31,7 +31,8 @@ double seconds_from(const RateStream::Knot& a, const RateStream::Knot& b) {
 }
 
 bool repeats_readings(const RateStream::State& state) {
-  return state.holds.of(Triad::gyro).held() || state.holds.of(Triad::accelerometer).held();
+  return state.repeat_state.of(Triad::gyro).is_slower_than_log() ||
+         state.repeat_state.of(Triad::accelerometer).is_slower_than_log();
 }
 
 // Integral of the force's norm around a sample of the window: linear between readings, constant beyond them.
@@ -78,13 +79,13 @@ void RateStream::pair_force(std::size_t k, State& state) const {
   o.sample.device_clip_flags =
       static_cast<std::uint8_t>((o.sample.device_clip_flags & kClipGyro) | source.read.device_clip_flags);
   knot.by_upright_rails.accel = source.read.clipped;
-  o.accel_age_s = (state.device.front().delay.in_use_s - given_delay_s_) - seconds_from(knot, source);
+  o.accel_age_s = (state.device.front().delay.in_use_s - prior_delay_s_) - seconds_from(knot, source);
 }
 
 // After a new sample: updates samples whose force has arrived, or is closer than before.
 std::size_t RateStream::pair_newest(State& state) const {
   const std::size_t newest = state.window.size() - 1;
-  if (state.device.front().delay.in_use_s == given_delay_s_ && force_shift(state) == 0) return newest;
+  if (state.device.front().delay.in_use_s == prior_delay_s_ && force_shift(state) == 0) return newest;
   const auto waiting = static_cast<std::size_t>(std::max<std::ptrdiff_t>(0, force_shift(state)));
   const std::size_t first = newest - std::min(newest, waiting);
   for (std::size_t k = first; k <= newest; ++k) pair_force(k, state);
@@ -109,7 +110,7 @@ void RateStream::count_strokes(State& state) const {
     mean[i] = (force.to(delay_s, to) - force.to(delay_s - span_s, from)) / span_s;
   }
   StrokeSums& strokes = state.device.front().delay.strokes;
-  strokes.forget(1.0 - 1.0 / kMemory);
+  strokes.decay(1.0 - 1.0 / kMemory);
   strokes.add((end - begin).norm() / span_s, mean);
 }
 
@@ -117,38 +118,38 @@ void RateStream::count_strokes(State& state) const {
 TriadDelay RateStream::guessed_delay(const State& state) const {
   const StrokeSums& strokes = state.device.front().delay.strokes;
   if (repeats_readings(state) || strokes.intervals < kIntervalsMin) return {};
-  return strokes.told(params_.period_s, params_.period_s);
+  return strokes.estimate_delay(params_.period_s, params_.period_s);
 }
 
 // Before a step: decides whether to change the delay. rate_stream.md (R106)
 void RateStream::seek_delay(State& state) const {
   RateStreamDelay& delay = state.device.front().delay;
   const TimeNs now_ns = state.window.back().observation.sample.time_ns;
-  if (!delay_open_ || (delay.asked_ns && now_ns - *delay.asked_ns < kAskEvery_ns)) return;
-  delay.asked_ns = now_ns;
-  if (delay.found && repeats_readings(state)) return take_delay(given_delay_s_, false, state);
+  if (!delay_open_ || (delay.updated_ns && now_ns - *delay.updated_ns < kUpdateEvery_ns)) return;
+  delay.updated_ns = now_ns;
+  if (delay.found && repeats_readings(state)) return take_delay(prior_delay_s_, false, state);
   const auto correlates = [&](double at_s) { return delay.strokes.correlation_at(at_s, params_.period_s); };
-  if (delay.found && correlates(given_delay_s_) - correlates(delay.in_use_s) > kGainMin)
-    return take_delay(given_delay_s_, false, state);
+  if (delay.found && correlates(prior_delay_s_) - correlates(delay.in_use_s) > kGainMin)
+    return take_delay(prior_delay_s_, false, state);
   if (const TriadDelay guess = guessed_delay(state); guess.sigma_s > 0.0) {
     const bool gains =
-        correlates(guess.delay_s) - correlates(given_delay_s_) > kGainMin &&
-        std::abs(guess.delay_s - given_delay_s_) < kReach * params_.model.expert.error_sizes.delay_unknown_s;
-    const bool plain = gains && device_.odds_of_sheet(guess.delay_s - given_delay_s_, guess.sigma_s) < kPlainOdds;
+        correlates(guess.delay_s) - correlates(prior_delay_s_) > kGainMin &&
+        std::abs(guess.delay_s - prior_delay_s_) < kReach * params_.model.expert.error_sizes.delay_uncalibrated_s;
+    const bool plain = gains && device_.odds_of_sheet(guess.delay_s - prior_delay_s_, guess.sigma_s) < kPlainOdds;
     const bool far = std::abs(guess.delay_s - delay.in_use_s) > kGuessFar * guess.sigma_s;
     delay.guess = guess;
     if (plain && (!delay.found || far)) return take_delay(guess.delay_s, true, state);
-    if (!plain && delay.found) return take_delay(given_delay_s_, false, state);
+    if (!plain && delay.found) return take_delay(prior_delay_s_, false, state);
   }
-  if (delay.found && std::abs(delay.told_s - delay.in_use_s) > kMoved_s) refine_delay(state);
+  if (delay.found && std::abs(delay.estimated_s - delay.in_use_s) > kMoved_s) refine_delay(state);
 }
 
 // Applies another delay: the calibration estimated with the previous one is invalid, and the window restarts.
 void RateStream::take_delay(double delay_s, bool found, State& state) const {
   RateStreamDelay& delay = state.device.front().delay;
-  delay.in_use_s = delay.told_s = delay_s;
+  delay.in_use_s = delay.estimated_s = delay_s;
   delay.found = found;
-  forget_rig(state);
+  reset_rig(state);
   for (std::size_t k = 0; k < state.window.size(); ++k) pair_force(k, state);
   judge(true, state);
   for (std::size_t k = 1; k < state.window.size(); ++k) {
@@ -164,8 +165,8 @@ void RateStream::take_delay(double delay_s, bool found, State& state) const {
 void RateStream::refine_delay(State& state) const {
   RateStreamDevice& device = state.device.front();
   const std::ptrdiff_t before = force_shift(state);
-  const double step_s = device.delay.told_s - device.delay.in_use_s;
-  device.delay.in_use_s = device.delay.told_s;
+  const double step_s = device.delay.estimated_s - device.delay.in_use_s;
+  device.delay.in_use_s = device.delay.estimated_s;
   state.prior.gradient += step_s * device.prior.col(SensorErrors::kDelay);
   state.prior_corner.gradient += step_s * device.corner.col(SensorErrors::kDelay);
   device.evidence.gradient -= step_s * device.evidence.information.col(SensorErrors::kDelay);

@@ -13,7 +13,7 @@ namespace {
 using Eigen::Matrix3d;
 
 // Time between two evaluations: systems of 29 unknowns cost more than a step.
-constexpr TimeNs kAskEvery_ns = 50'000'000;
+constexpr TimeNs kUpdateEvery_ns = 50'000'000;
 
 // rate_smoother.md (R44), limited to the largest rate
 Matrix3d considered(const arrow::ErrorMatrix& moved, const SensorErrors::Matrix& covariance, double rate_max_rad_s) {
@@ -30,7 +30,7 @@ bool moves(const RateStream::Knot& knot) {
 }  // namespace
 
 // rate_stream.md (R100): the Schur complement of a leaving sample, with errors as the last unknowns
-void RateStream::remember_errors(const arrow::Block& block, arrow::ErrorMatrix& errors, State& state) const {
+void RateStream::store_errors(const arrow::Block& block, arrow::ErrorMatrix& errors, State& state) const {
   RateStreamDevice& device = state.device.front();
   device.prior.setZero();
   arrow::eliminate_errors(block, errors, &device.prior, device.corner);
@@ -39,7 +39,7 @@ void RateStream::remember_errors(const arrow::Block& block, arrow::ErrorMatrix& 
 }
 
 // Deletes all information of samples that left, except for the calibration.
-void RateStream::forget_left(State& state) const {
+void RateStream::reset_prior(State& state) const {
   state.prior = {};
   state.prior_corner = {};
   model_.add_rig_prior(state.rig, state.prior_corner);
@@ -51,17 +51,17 @@ void RateStream::forget_left(State& state) const {
 }
 
 // Resets the calibration to its prior, and deletes information about the motion before the window.
-void RateStream::forget_rig(State& state) const {
+void RateStream::reset_rig(State& state) const {
   state.rig = state.prior_rig = model_.prior_constants();
   state.rig_covariance = model_.prior_covariance();
-  forget_left(state);
-  state.learnt_from = 0;
+  reset_prior(state);
+  state.calibration_samples = 0;
 }
 
 KnownSensorErrors RateStream::sensor_errors(const State& state) const {
   const RateStreamDevice& device = state.device.front();
-  KnownSensorErrors out{params_.learnt_errors ? params_.learnt_errors->errors : params_.model.errors,
-                        device.open.covariance};
+  KnownSensorErrors out{params_.calibrated_errors ? params_.calibrated_errors->errors : params_.model.errors,
+                        device.posterior.covariance};
   out.errors.accel_delay_s = device.delay.in_use_s;
   return out;
 }
@@ -75,17 +75,17 @@ void RateStream::consider_errors(const arrow::BorderVector& rig_step, State& sta
     return;
   }
   std::vector<arrow::ErrorMatrix>& errors = device.moved;
-  auto& [border, of_rig, told, doubt] = device.work;
+  auto& [border, of_rig, window_evidence, posterior_work] = device.work;
   border = device.corner;
-  told = device.evidence;
+  window_evidence = device.evidence;
   errors[0] = device.prior;
   std::fill_n(errors.begin() + 1, count - 1, arrow::ErrorMatrix::Zero());
   for (std::size_t k = 0; k < count; ++k) {
     const Knot& knot = state.window[k];
-    model_.add_errors(knot.observation, knot.estimate, state.rig, errors[k], border, told);
+    model_.add_errors(knot.observation, knot.estimate, state.rig, errors[k], border, window_evidence);
     arrow::eliminate_errors(state.work[k], errors[k], k + 1 == count ? nullptr : &errors[k + 1], border);
-    told.information.noalias() -= errors[k].transpose().lazyProduct(errors[k]);
-    told.gradient.noalias() += errors[k].transpose().lazyProduct(state.work[k].gradient);
+    window_evidence.information.noalias() -= errors[k].transpose().lazyProduct(errors[k]);
+    window_evidence.gradient.noalias() += errors[k].transpose().lazyProduct(state.work[k].gradient);
   }
   of_rig.noalias() = state.rig_covariance.lazyProduct(border);
   for (std::size_t k = count; k-- > 0;)
@@ -93,23 +93,23 @@ void RateStream::consider_errors(const arrow::BorderVector& rig_step, State& sta
         arrow::back_substitute_errors(state.work[k], errors[k], k + 1 == count ? nullptr : &errors[k + 1], of_rig);
 
   const TimeNs now_ns = state.window.back().observation.sample.time_ns;
-  if (params_.learnt_errors || (device.asked_ns && now_ns - *device.asked_ns < kAskEvery_ns)) return;
-  device.asked_ns = now_ns;
-  told.information.noalias() -= border.transpose().lazyProduct(of_rig);
-  told.gradient.noalias() += border.transpose().lazyProduct(rig_step);
-  discount_untold(model_.said_once_share(), told);
+  if (params_.calibrated_errors || (device.updated_ns && now_ns - *device.updated_ns < kUpdateEvery_ns)) return;
+  device.updated_ns = now_ns;
+  window_evidence.information.noalias() -= border.transpose().lazyProduct(of_rig);
+  window_evidence.gradient.noalias() += border.transpose().lazyProduct(rig_step);
+  discount_unobservable(model_.distinct_reading_share(), window_evidence);
   RateStreamDelay& delay = device.delay;
   if (delay.found) {
     if (const TriadDelay& guess = delay.guess; guess.sigma_s > 0.0) {
       // evidence from impacts has full weight
-      const double information = 1.0 / (DeviceDoubt::kBelieved * guess.sigma_s * guess.sigma_s);
-      told.information(SensorErrors::kDelay, SensorErrors::kDelay) += information;
-      told.gradient[SensorErrors::kDelay] += information * (guess.delay_s - delay.in_use_s);
+      const double information = 1.0 / (DeviceUncertainty::kEvidenceWeight * guess.sigma_s * guess.sigma_s);
+      window_evidence.information(SensorErrors::kDelay, SensorErrors::kDelay) += information;
+      window_evidence.gradient[SensorErrors::kDelay] += information * (guess.delay_s - delay.in_use_s);
     }
-    delay.told_s =
-        std::clamp(delay.in_use_s + device_.further_delay_s(told, delay_reach_s()), -delay_reach_s(), delay_reach_s());
+    delay.estimated_s = std::clamp(delay.in_use_s + device_.further_delay_s(window_evidence, delay_reach_s()),
+                                   -delay_reach_s(), delay_reach_s());
   }
-  device_.ask(told, doubt, device.open, delay.found);
+  device_.update(window_evidence, posterior_work, device.posterior, delay.found);
 }
 
 // Uncertainty of a sample's rate due to sensor errors and a delay common to both triads.
@@ -117,8 +117,8 @@ Matrix3d RateStream::of_device(std::size_t k, const State& state) const {
   const Knot& knot = state.window[k];
   if (!moves(knot)) return Matrix3d::Zero();
   const RateStreamDevice& device = state.device.front();
-  Matrix3d out = considered(device.moved[k], device.open.covariance, params_.model.rate_max_rad_s);
-  const double shared_s2 = device_.shared_delay_s2(device.open);
+  Matrix3d out = considered(device.moved[k], device.posterior.covariance, params_.model.rate_max_rad_s);
+  const double shared_s2 = device_.common_delay_s2(device.posterior);
   const Eigen::Vector3d& alpha = knot.estimate.knot.acceleration_rad_s2;
   const double struck = params_.model.expert.contact.gain_rad_m * knot.estimate.contact_m_s2.norm();
   out += shared_s2 * (alpha * alpha.transpose() + struck * struck * Matrix3d::Identity());

@@ -31,7 +31,7 @@ void members(Self& s, Visitor& visit) {
   visit("knot.approach_rad_s", s.approach_rad_s);
   visit("knot.age", s.age);
   visit("knot.repeats", s.repeats);
-  visit("knot.held", s.held);
+  visit("knot.repeated", s.repeated);
   visit("knot.near", s.near);
 }
 
@@ -71,11 +71,11 @@ template <StateOf<RateStreamDelay> Self, class Visitor>
 void members(Self& s, Visitor& visit) {
   visit("delay.strokes", s.strokes);
   visit("delay.in_use_s", s.in_use_s);
-  visit("delay.told_s", s.told_s);
+  visit("delay.estimated_s", s.estimated_s);
   visit("delay.found", s.found);
   visit("delay.guess_s", s.guess.delay_s);
   visit("delay.guess_sigma_s", s.guess.sigma_s);
-  visit("delay.asked_ns", s.asked_ns);
+  visit("delay.updated_ns", s.updated_ns);
 }
 
 template <StateOf<RateStreamDevice> Self, class Visitor>
@@ -83,9 +83,9 @@ void members(Self& s, Visitor& visit) {
   visit("device.prior", s.prior);
   visit("device.corner", s.corner);
   visit("device.evidence", s.evidence);
-  visit("device.covariance", s.open.covariance);
-  visit("device.unlike", s.open.unlike);
-  visit("device.asked_ns", s.asked_ns);
+  visit("device.covariance", s.posterior.covariance);
+  visit("device.unlike", s.posterior.unlike);
+  visit("device.updated_ns", s.updated_ns);
   visit("device.delay", s.delay);
   visit.scratch(s.moved);
   visit.scratch(s.work);
@@ -95,7 +95,7 @@ template <StateOf<RateStream::State> Self, class Visitor>
 void members(Self& s, Visitor& visit) {
   visit("rate.rails", s.rails);
   visit("rate.rests", s.rests);
-  visit("rate.holds", s.holds);
+  visit("rate.repeat_state", s.repeat_state);
   visit("rate.frozen", s.frozen);
   visit("rate.sense", s.sense);
   visit("rate.window", s.window);
@@ -114,7 +114,7 @@ void members(Self& s, Visitor& visit) {
   visit("rate.prior_rig", s.prior_rig);
   visit("rate.samples", s.samples);
   visit("rate.waiting", s.waiting);
-  visit("rate.learnt_from", s.learnt_from);
+  visit("rate.calibration_samples", s.calibration_samples);
   visit("rate.flight_run", s.flight_run);
   visit("rate.rig_resets", s.rig_resets);
   visit("rate.failures", s.failures);
@@ -128,10 +128,10 @@ void others(Self& p, Visitor& visit) {
   others(p.expert.planes, visit);
   others(p.expert.accel_planes, visit);
   std::optional<KnownSensorErrors> learnt;
-  if (p.learnt_errors) learnt = *p.learnt_errors;
-  visit("learnt_errors", learnt);
+  if (p.calibrated_errors) learnt = *p.calibrated_errors;
+  visit("calibrated_errors", learnt);
   if constexpr (Visitor::kReads && !std::is_const_v<Self>)
-    p.learnt_errors = learnt ? std::make_shared<const KnownSensorErrors>(*learnt) : nullptr;
+    p.calibrated_errors = learnt ? std::make_shared<const KnownSensorErrors>(*learnt) : nullptr;
 }
 
 }  // namespace tumble

@@ -6,9 +6,9 @@
 
 #include "element_clipping.hpp"
 #include "near_rails.hpp"
+#include "possible_saturation.hpp"
 #include "tumble/angular_velocity/detail/rail_shares.hpp"
 #include "tumble/angular_velocity/rate_stream.hpp"
-#include "unseen_rails.hpp"
 
 namespace tumble {
 
@@ -110,7 +110,7 @@ void RateStream::judge_from(std::size_t changed, State& state) const {
     now.accel_rows = accel_rows;
     mark_subsample_saturation(planes, rails_.upright_rails(), rails.upright_rails, noise, before, now, after);
     knot.near = rails.upright ? std::uint8_t{0} : may_meet_rails(before, now.sample, after, planes);
-    doubt_unseen(k, state);
+    mark_undetected_clipping(k, state);
     const bool newest = k + 1 == state.window.size();
     if (!newest && (now.unseen() & ~read) == 0) continue;
     if (!newest) {
@@ -139,27 +139,28 @@ bool RateStream::may_clip(const ImuSample& sample, int axis, int sign, const Sta
 }
 
 // Computes the possible deficit of a single sample of the window, near a level of the other elements.
-void RateStream::doubt_unseen(std::size_t k, State& state) const {
+void RateStream::mark_undetected_clipping(std::size_t k, State& state) const {
   RateObservation& now = state.window[k].observation;
   now.lone = 0;
   if (state.rails.known.upright) return;
   const auto [before, after] = readings_beside(k, state);
-  doubt_unseen_rails(state.rails.known.planes_in_use(), state.least, model_.gyro_sigma_rad_s(), before, now, after);
+  inflate_possible_saturation(state.rails.known.planes_in_use(), state.least, model_.gyro_sigma_rad_s(), before, now,
+                              after);
 }
 
 // Clears suspicions in the window that are refuted by a larger reading, or by a level found elsewhere.
-void RateStream::forget_doubts(State& state) const {
+void RateStream::clear_suspects(State& state) const {
   for (std::size_t k = 0; k < state.window.size(); ++k) {
     if (state.window[k].observation.may_hide() == 0) continue;
-    state.window[k].observation.doubted = 0;
-    doubt_unseen(k, state);
+    state.window[k].observation.suspect = 0;
+    mark_undetected_clipping(k, state);
   }
 }
 
 // Marks runs of three or more unflagged readings that may be saturated. Repeated with each sample.
-void RateStream::doubt_possible_rails(State& state) const {
-  const unsigned stood = state.window.front().observation.doubted;
-  forget_doubts(state);
+void RateStream::mark_possible_rails(State& state) const {
+  const unsigned stood = state.window.front().observation.suspect;
+  clear_suspects(state);
   for (int j = 0; j < 3; ++j) {
     if (rails_.upright_rails().rail(state.rails.known.upright_rails, j)) continue;
     for (std::size_t k = 0; k < state.window.size();) {
@@ -171,7 +172,7 @@ void RateStream::doubt_possible_rails(State& state) const {
       const auto readings = std::count_if(state.window.begin() + static_cast<std::ptrdiff_t>(k),
                                           state.window.begin() + static_cast<std::ptrdiff_t>(end),
                                           [](const Knot& knot) { return !knot.repeats; });
-      if (goes_on || readings >= kPossibleMin) doubt_run(j, k, end - 1, state);
+      if (goes_on || readings >= kPossibleMin) mark_suspect_run(j, k, end - 1, state);
       k = std::max(end, k + 1);
     }
   }
@@ -193,7 +194,7 @@ double RateStream::run_slope(int axis, std::size_t first, std::size_t last, cons
 }
 
 // Marks one such run: a smooth motion that is cut off would have continued with the slopes at its ends. (R94)
-void RateStream::doubt_run(int axis, std::size_t first, std::size_t last, State& state) const {
+void RateStream::mark_suspect_run(int axis, std::size_t first, std::size_t last, State& state) const {
   const auto size = [&](std::size_t k) {
     return std::abs(state.window[k].observation.sample.angular_velocity_rad_s[axis]);
   };
@@ -212,7 +213,7 @@ void RateStream::doubt_run(int axis, std::size_t first, std::size_t last, State&
     RateObservation& observation = state.window[k].observation;
     if (((observation.clipping.gyro | observation.clipping.missing_gyro) & bit) != 0) continue;
     observation.lone = static_cast<std::uint8_t>(observation.lone & ~bit);
-    observation.doubted = static_cast<std::uint8_t>(observation.doubted | bit);
+    observation.suspect = static_cast<std::uint8_t>(observation.suspect | bit);
     // all readings of the run are cut off together, so they count as one reading
     observation.lost_sigma_rad_s[axis] = std::hypot(noise, std::sqrt(samples) * cut);
   }
@@ -234,7 +235,7 @@ Vector3d RateStream::approach(const std::vector<Knot>& window) {
 }
 
 // Stores the entry slope of a run that continues in the window after its first reading left.
-void RateStream::remember_entry(const Knot& leaving, const Knot& next, State& state) {
+void RateStream::store_entry(const Knot& leaving, const Knot& next, State& state) {
   const auto hidden = [](const Knot& knot, int j) {
     return ((knot.observation.clipping.gyro | knot.observation.read_in_part()) >> j & 1) != 0;
   };
@@ -251,11 +252,12 @@ void RateStream::add_rails(const State& state, arrow::Corner& corner) const {
   const RailPlanes planes = rails.planes_in_use();
   for (int j = 0; j < 3; ++j) {
     const Eigen::Index first = RigConstants::kElements + 2 * j;
-    const auto told = told_slopes(planes, rails.upright, j, model_.prior_covariance().block<2, 2>(first, first));
-    if (!told) continue;
-    const Eigen::Matrix2d information = told->covariance.inverse();
+    const auto prior_slopes =
+        estimated_slopes(planes, rails.upright, j, model_.prior_covariance().block<2, 2>(first, first));
+    if (!prior_slopes) continue;
+    const Eigen::Matrix2d information = prior_slopes->covariance.inverse();
     corner.matrix.block<2, 2>(first, first) += information;
-    corner.gradient.segment<2>(first) -= information * (state.rig.elements.segment<2>(2 * j) - told->slopes);
+    corner.gradient.segment<2>(first) -= information * (state.rig.elements.segment<2>(2 * j) - prior_slopes->slopes);
   }
 }
 

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "tumble/angular_velocity/detail/held_rates.hpp"
+#include "tumble/angular_velocity/detail/interpolated_rates.hpp"
 #include "tumble/angular_velocity/rate_stream.hpp"
 
 namespace tumble {
@@ -42,12 +42,12 @@ double RateStream::hidden_by_slopes(std::size_t at, int axis, const State& state
 }
 
 // rate_stream.md (R98), (R99)
-Eigen::Matrix3d RateStream::doubted(std::size_t at, const State& state) const {
+Eigen::Matrix3d RateStream::suspect_covariance(std::size_t at, const State& state) const {
   const Knot& knot = state.window[at];
   Eigen::Matrix3d out = knot.covariance_rad2_s2;
   if (knot.estimate.flight_weight >= 0.5) return out;
-  const double samples =
-      static_cast<double>(state.learnt_from) * model_.said_once_share() / params_.expert.inflation.samples;
+  const double samples = static_cast<double>(state.calibration_samples) * model_.distinct_reading_share() /
+                         params_.expert.inflation.samples;
   const double share = params_.model.calibration ? 0.0 : params_.expert.inflation.contact / (1.0 + samples);
   for (int j = 0; j < 3; ++j) {
     if ((knot.observation.unseen() & knot.observation.clipping.gyro & 1u << j) == 0) continue;
@@ -65,7 +65,7 @@ Eigen::Matrix3d RateStream::doubted(std::size_t at, const State& state) const {
 bool RateStream::near_rails(std::size_t at, const State& state) const {
   const std::vector<Knot>& window = state.window;
   if (window[at].near != 0) return true;
-  if (!window[at].held.held()) return false;
+  if (!window[at].repeated.is_slower_than_log()) return false;
   std::size_t next = at + 1;
   while (next < window.size() && window[next].repeats) ++next;
   if (next == window.size()) return false;
@@ -79,7 +79,7 @@ bool RateStream::near_rails(std::size_t at, const State& state) const {
 void RateStream::move_later(std::size_t at, double late_s, const State& state, RateState& out) const {
   const auto reported = [&](std::size_t k) {
     const Knot& knot = state.window[k];
-    return model_.reported(doubted(k, state), knot.observation, knot.estimate);
+    return model_.reported(suspect_covariance(k, state), knot.observation, knot.estimate);
   };
   for (; at + 1 < state.window.size(); ++at) {
     const Knot &from = state.window[at], &to = state.window[at + 1];
@@ -103,7 +103,7 @@ void RateStream::move_later(std::size_t at, double late_s, const State& state, R
 
 RateState RateStream::to_state(std::size_t at, const State& state) const {
   const Knot& knot = state.window[at];
-  const Eigen::Matrix3d covariance = doubted(at, state);
+  const Eigen::Matrix3d covariance = suspect_covariance(at, state);
   RateState out;
   out.time_ns = knot.observation.sample.time_ns;
   out.w_WI_I_rad_s = knot.estimate.knot.rate_rad_s;
@@ -111,12 +111,12 @@ RateState RateStream::to_state(std::size_t at, const State& state) const {
   const double gyro_late_s = -state.device.front().delay.in_use_s;
   if (gyro_late_s > 0.0) {
     move_later(at, gyro_late_s, state, out);
-    out.covariance_rad2_s2.diagonal() += knot.held.stale().cwiseAbs2();
-  } else if (const std::optional<HeldRate> own = rate_between_readings(state.window, at, params_.period_s)) {
+    out.covariance_rad2_s2.diagonal() += knot.repeated.stale().cwiseAbs2();
+  } else if (const std::optional<InterpolatedRate> own = rate_between_readings(state.window, at, params_.period_s)) {
     out.w_WI_I_rad_s = own->rate_rad_s - state.rig.gyro_bias_rad_s;
     out.covariance_rad2_s2.diagonal() += own->variance_rad2_s2;
   } else {
-    out.covariance_rad2_s2.diagonal() += knot.held.stale().cwiseAbs2();
+    out.covariance_rad2_s2.diagonal() += knot.repeated.stale().cwiseAbs2();
   }
   out.covariance_rad2_s2.diagonal() += frozen_.rate_variance_rad2_s2(out.time_ns, state.frozen);
   out.clipped_axes = knot.observation.clipping.gyro | knot.observation.clipping.missing_gyro;

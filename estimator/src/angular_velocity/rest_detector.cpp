@@ -20,24 +20,24 @@ Eigen::Vector3d RestDetector::State::mean_force_m_s2() const {
 }
 
 bool RestDetector::observe(const ImuSample& sample, State& state, const Eigen::Vector3d& bias_rad_s) const {
-  if (state.open++ == 0) {
-    state.rate_open_rad_s.setZero();
-    state.force_open_m_s2.setZero();
-    state.open_first_ns = sample.time_ns;
+  if (state.pending_samples++ == 0) {
+    state.pending_rate_rad_s.setZero();
+    state.pending_force_m_s2.setZero();
+    state.pending_first_ns = sample.time_ns;
   }
-  state.rate_open_rad_s += sample.angular_velocity_rad_s;
-  state.force_open_m_s2 += sample.specific_force_m_s2;
+  state.pending_rate_rad_s += sample.angular_velocity_rad_s;
+  state.pending_force_m_s2 += sample.specific_force_m_s2;
   // a reading ends with the sample closest to its nominal length
   const double half_s = 0.5 * seconds(sample.time_ns - state.last_ns);
   const bool whole = !state.started || seconds(sample.time_ns - state.last_reading_ns) >= params_.reading_s - half_s;
   state.started = true;
   state.last_ns = sample.time_ns;
   if (!whole) return state.rests;
-  const double share = 1.0 / static_cast<double>(state.open);
-  state.open = 0;
+  const double share = 1.0 / static_cast<double>(state.pending_samples);
+  state.pending_samples = 0;
   state.last_reading_ns = sample.time_ns;
-  return observe_mean(share * state.rate_open_rad_s, share * state.force_open_m_s2, state.open_first_ns, sample.time_ns,
-                      bias_rad_s, state);
+  return observe_mean(share * state.pending_rate_rad_s, share * state.pending_force_m_s2, state.pending_first_ns,
+                      sample.time_ns, bias_rad_s, state);
 }
 
 /// attitude.md (A15).

@@ -96,8 +96,8 @@ Clock best_clock(const Clock& first, double reach, int periods, std::span<const 
 
 }  // namespace
 
-std::optional<HeldReadings> find_held(std::span<const ImuSample> samples, Triad triad) {
-  HeldReadings out;
+std::optional<RepeatedReadings> find_repeated(std::span<const ImuSample> samples, Triad triad) {
+  RepeatedReadings out;
   out.repeats.assign(samples.size(), false);
   out.age_s.assign(samples.size(), 0.0);
   std::vector<std::size_t> moving;

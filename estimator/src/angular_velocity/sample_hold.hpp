@@ -13,7 +13,7 @@
 namespace tumble {
 
 /// Readings of a triad that is slower than the log, so that some are repeated (sample and hold).
-struct HeldReadings {
+struct RepeatedReadings {
   double period_s = 0.0;      ///< time between two readings
   double agreement = 0.0;     ///< fraction of samples whose novelty or repetition a regular clock explains
   std::vector<double> age_s;  ///< per sample: additional age of its reading
@@ -31,7 +31,7 @@ struct HeldReadings {
 /// least 30) repeat all three numbers. Period and phase are those of the regular clock that best explains the
 /// repetitions. Ages and window lag follow from it, or are zero if no clock does (agreement below 0.9). O(N) for each
 /// of some 5000 clocks, on at most 1000 samples.
-std::optional<HeldReadings> find_held(std::span<const ImuSample> samples, Triad triad);
+std::optional<RepeatedReadings> find_repeated(std::span<const ImuSample> samples, Triad triad);
 
 /// The nearest samples with a different reading, or null.
 struct Neighbours {

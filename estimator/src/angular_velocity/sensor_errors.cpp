@@ -23,7 +23,7 @@ struct Size {
 };
 constexpr std::array<Size, 2> kScaleSizes = {{{0.0, 0.7}, {1.0, 0.3}}};
 constexpr std::array<Size, 3> kCrossSizes = {{{0.0, 0.5}, {0.5, 0.2}, {1.0, 0.3}}};
-constexpr std::array<Size, 2> kFeltSizes = {{{0.0, 0.6}, {1.0, 0.4}}};
+constexpr std::array<Size, 2> kGSensitivitySizes = {{{0.0, 0.6}, {1.0, 0.4}}};
 constexpr std::array<Size, 2> kDelaySizes = {{{0.0, 0.6}, {1.0, 0.4}}};
 
 // minimum standard deviation, so that each prior can be inverted
@@ -34,18 +34,20 @@ double between(double sheet, double unknown, double share) {
 }
 
 struct Shares {
-  double scale = 1.0, cross = 1.0, felt = 1.0, delay = 1.0;
+  double scale = 1.0, cross = 1.0, g_sensitivity = 1.0, delay = 1.0;
 };
 
 Vector deviations(const SensorErrorSizes& s, const Shares& shares) {
   Vector out;
-  const double delay = between(s.delay_s, s.delay_unknown_s, shares.delay);
-  out << Eigen::Matrix<double, 9, 1>::Constant(between(s.gyro, s.gyro_unknown, shares.cross)),
-      Eigen::Matrix<double, 9, 1>::Constant(between(s.accel, s.accel_unknown, shares.cross)),
-      Eigen::Matrix<double, 9, 1>::Constant(between(s.felt_s_m, s.felt_unknown_s_m, shares.felt)), delay, delay * delay;
+  const double delay = between(s.delay_s, s.delay_uncalibrated_s, shares.delay);
+  out << Eigen::Matrix<double, 9, 1>::Constant(between(s.gyro, s.gyro_uncalibrated, shares.cross)),
+      Eigen::Matrix<double, 9, 1>::Constant(between(s.accel, s.accel_uncalibrated, shares.cross)),
+      Eigen::Matrix<double, 9, 1>::Constant(
+          between(s.g_sensitivity_s_m, s.g_sensitivity_uncalibrated_s_m, shares.g_sensitivity)),
+      delay, delay * delay;
   for (int i = 0; i < 3; ++i) {
-    out[4 * i] = between(s.gyro, s.gyro_unknown, shares.scale);
-    out[SensorErrors::kAccel + 4 * i] = between(s.accel, s.accel_unknown, shares.scale);
+    out[4 * i] = between(s.gyro, s.gyro_uncalibrated, shares.scale);
+    out[SensorErrors::kAccel + 4 * i] = between(s.accel, s.accel_uncalibrated, shares.scale);
   }
   return out;
 }
@@ -55,7 +57,7 @@ constexpr double kPlain = 0.05;
 
 // Weight of the evidence about the errors' values in the covariance. Sample errors are correlated, because errors of
 // the flight model last longer than a sample. The evidence for the kind of device has full weight.
-constexpr double kBelieved = 0.03;
+constexpr double kEvidenceWeight = 0.03;
 
 struct Hypothesis {
   Shares shares;
@@ -68,13 +70,14 @@ struct Hypothesis {
 // (R41), (R43).
 Hypothesis posterior(const Matrix& information, const Matrix& learnt, const Vector& h, const Vector& deviation,
                      double log_prior) {
-  constexpr int kRest = SensorErrors::kSize - SensorErrors::kFelt;
+  constexpr int kRest = SensorErrors::kSize - SensorErrors::kGSensitivity;
   const Matrix scaled = deviation.asDiagonal() * (information + learnt) * deviation.asDiagonal();
-  const Matrix scaled_believed = deviation.asDiagonal() * (kBelieved * information + learnt) * deviation.asDiagonal();
+  const Matrix scaled_weighted =
+      deviation.asDiagonal() * (kEvidenceWeight * information + learnt) * deviation.asDiagonal();
   const Vector scaled_h = deviation.cwiseProduct(h);
   Hypothesis out;
   const Matrix sharp = Matrix::Identity() + scaled;
-  const dense::Cholesky all(sharp), believed(Matrix::Identity() + scaled_believed);
+  const dense::Cholesky all(sharp), weighted(Matrix::Identity() + scaled_weighted);
   Vector sharpened = scaled_h;
   all.solve_vector(sharpened);
   out.log_odds = log_prior + 0.5 * scaled_h.dot(sharpened) - all.half_log_determinant();
@@ -83,7 +86,7 @@ Hypothesis posterior(const Matrix& information, const Matrix& learnt, const Vect
   mean.tail<kRest>() = scaled_h.tail<kRest>();
   dense::Cholesky(sharp.bottomRightCorner<kRest, kRest>()).solve_vector(mean.tail<kRest>());
   out.mean = deviation.cwiseProduct(mean);
-  out.covariance = deviation.asDiagonal() * believed.inverse<Matrix>() * deviation.asDiagonal();
+  out.covariance = deviation.asDiagonal() * weighted.inverse<Matrix>() * deviation.asDiagonal();
   return out;
 }
 
@@ -101,9 +104,9 @@ Matrix evidence_of(const Matrix& information, const SensorErrorSizes& sizes) {
 
 Vector SensorErrors::vector() const {
   Vector v;
-  const RowMajor g = gyro, a = accel, f = felt_s_m;
+  const RowMajor g = gyro, a = accel, f = g_sensitivity_s_m;
   v << g.reshaped<Eigen::RowMajor>(), a.reshaped<Eigen::RowMajor>(), f.reshaped<Eigen::RowMajor>(), accel_delay_s,
-      accel_blur_s2;
+      accel_filter_time_variance_s2;
   return v;
 }
 
@@ -111,9 +114,9 @@ SensorErrors SensorErrors::from(const Vector& v) {
   SensorErrors out;
   out.gyro = v.segment<9>(0).reshaped<Eigen::RowMajor>(3, 3);
   out.accel = v.segment<9>(kAccel).reshaped<Eigen::RowMajor>(3, 3);
-  out.felt_s_m = v.segment<9>(kFelt).reshaped<Eigen::RowMajor>(3, 3);
+  out.g_sensitivity_s_m = v.segment<9>(kGSensitivity).reshaped<Eigen::RowMajor>(3, 3);
   out.accel_delay_s = v[kDelay];
-  out.accel_blur_s2 = v[kBlur];
+  out.accel_filter_time_variance_s2 = v[kFilterTimeVariance];
   return out;
 }
 
@@ -128,23 +131,23 @@ Vector error_deviations(const SensorErrorSizes& sizes, double share) {
   return deviations(sizes, {share, share, share, share});
 }
 
-void discount_untold(double share, SensorErrorEvidence& evidence) {
+void discount_unobservable(double share, SensorErrorEvidence& evidence) {
   if (share >= 1.0) return;
   // orthonormal columns
-  Eigen::Matrix<double, SensorErrors::kSize, 5> untold = Eigen::Matrix<double, SensorErrors::kSize, 5>::Zero();
+  Eigen::Matrix<double, SensorErrors::kSize, 5> unobservable = Eigen::Matrix<double, SensorErrors::kSize, 5>::Zero();
   for (int i = 0; i < 3; ++i) {
     const int j = (i + 1) % 3, k = (i + 2) % 3;
-    untold(4 * i, 0) = untold(SensorErrors::kAccel + 4 * i, 1) = std::sqrt(1.0 / 3.0);
-    untold(3 * j + k, 2 + i) = untold(SensorErrors::kAccel + 3 * j + k, 2 + i) = 0.5;
-    untold(3 * k + j, 2 + i) = untold(SensorErrors::kAccel + 3 * k + j, 2 + i) = -0.5;
+    unobservable(4 * i, 0) = unobservable(SensorErrors::kAccel + 4 * i, 1) = std::sqrt(1.0 / 3.0);
+    unobservable(3 * j + k, 2 + i) = unobservable(SensorErrors::kAccel + 3 * j + k, 2 + i) = 0.5;
+    unobservable(3 * k + j, 2 + i) = unobservable(SensorErrors::kAccel + 3 * k + j, 2 + i) = -0.5;
   }
   // (I - d U U') on both sides, by U's few columns, because a stream's thread may have a small stack
-  Eigen::Matrix<double, 5, SensorErrors::kSize> said = untold.transpose().lazyProduct(evidence.information);
-  evidence.information.noalias() -= (1.0 - share) * untold.lazyProduct(said);
-  said = untold.transpose().lazyProduct(evidence.information.transpose());
-  evidence.information.noalias() -= (1.0 - share) * said.transpose().lazyProduct(untold.transpose());
-  const Eigen::Matrix<double, 5, 1> pulled = untold.transpose().lazyProduct(evidence.gradient);
-  evidence.gradient.noalias() -= (1.0 - share) * untold.lazyProduct(pulled);
+  Eigen::Matrix<double, 5, SensorErrors::kSize> said = unobservable.transpose().lazyProduct(evidence.information);
+  evidence.information.noalias() -= (1.0 - share) * unobservable.lazyProduct(said);
+  said = unobservable.transpose().lazyProduct(evidence.information.transpose());
+  evidence.information.noalias() -= (1.0 - share) * said.transpose().lazyProduct(unobservable.transpose());
+  const Eigen::Matrix<double, 5, 1> pulled = unobservable.transpose().lazyProduct(evidence.gradient);
+  evidence.gradient.noalias() -= (1.0 - share) * unobservable.lazyProduct(pulled);
 }
 
 SensorErrorFit fit_sensor_errors(const SensorErrorEvidence& evidence, const SensorErrorSizes& sizes,
@@ -152,16 +155,18 @@ SensorErrorFit fit_sensor_errors(const SensorErrorEvidence& evidence, const Sens
   const Matrix information = evidence_of(evidence.information, sizes);
   const Vector h = evidence.gradient + information * evidence.about.vector() + learnt.gradient +
                    learnt.information * learnt.about.vector();
-  const bool one_matrix = sizes.gyro_unknown <= sizes.gyro && sizes.accel_unknown <= sizes.accel;
-  const bool one_felt = sizes.felt_unknown_s_m <= sizes.felt_s_m, one_delay = sizes.delay_unknown_s <= sizes.delay_s;
+  const bool one_matrix = sizes.gyro_uncalibrated <= sizes.gyro && sizes.accel_uncalibrated <= sizes.accel;
+  const bool one_g_sensitivity = sizes.g_sensitivity_uncalibrated_s_m <= sizes.g_sensitivity_s_m,
+             one_delay = sizes.delay_uncalibrated_s <= sizes.delay_s;
   std::vector<Hypothesis> all;
   for (std::size_t i = 0; i < (one_matrix ? 1 : kScaleSizes.size()); ++i) {
     for (std::size_t m = 0; m < (one_matrix ? 1 : kCrossSizes.size()); ++m) {
-      for (std::size_t f = 0; f < (one_felt ? 1 : kFeltSizes.size()); ++f) {
+      for (std::size_t f = 0; f < (one_g_sensitivity ? 1 : kGSensitivitySizes.size()); ++f) {
         for (std::size_t d = 0; d < (one_delay ? 1 : kDelaySizes.size()); ++d) {
-          const Size scale = kScaleSizes[i], cross = kCrossSizes[m], felt = kFeltSizes[f], delay = kDelaySizes[d];
-          const Shares shares{scale.share, cross.share, felt.share, delay.share};
-          const double prior = scale.probability * cross.probability * felt.probability * delay.probability;
+          const Size scale = kScaleSizes[i], cross = kCrossSizes[m], g_sensitivity = kGSensitivitySizes[f],
+                     delay = kDelaySizes[d];
+          const Shares shares{scale.share, cross.share, g_sensitivity.share, delay.share};
+          const double prior = scale.probability * cross.probability * g_sensitivity.probability * delay.probability;
           all.push_back(posterior(information, learnt.information, h, deviations(sizes, shares), std::log(prior)));
           all.back().shares = shares;
         }
@@ -174,14 +179,14 @@ SensorErrorFit fit_sensor_errors(const SensorErrorEvidence& evidence, const Sens
   SensorErrorFit out{{}, 0.0, 0.0};
   for (Hypothesis& one : all) {
     one.log_odds /= sum;
-    if (one.shares.scale == 0.0) out.calibrated += one.log_odds;
-    if (one.shares.delay == 0.0) out.together += one.log_odds;
+    if (one.shares.scale == 0.0) out.in_sheet_probability += one.log_odds;
+    if (one.shares.delay == 0.0) out.synchronous_probability += one.log_odds;
   }
   // the data sheet determines the corrections until readings clearly contradict it
   Vector mean = Vector::Zero();
   double kept = 0.0;
   for (const Hypothesis& one : all) {
-    if (out.together > kPlain && one.shares.delay > 0.0) continue;
+    if (out.synchronous_probability > kPlain && one.shares.delay > 0.0) continue;
     mean += one.log_odds * one.mean;
     kept += one.log_odds;
   }
@@ -196,7 +201,7 @@ SensorErrorFit fit_sensor_errors(const SensorErrorEvidence& evidence, const Sens
 }
 
 // rate_smoother.md (R43)
-SensorErrorEvidence learnt_evidence(const KnownSensorErrors& learnt, const SensorErrorSizes& sizes) {
+SensorErrorEvidence calibration_evidence(const KnownSensorErrors& learnt, const SensorErrorSizes& sizes) {
   const Vector unit = deviations(sizes, {});
   const Matrix symmetric = 0.5 * (learnt.covariance + learnt.covariance.transpose());
   const Matrix scaled = unit.cwiseInverse().asDiagonal() * symmetric * unit.cwiseInverse().asDiagonal();
@@ -204,14 +209,14 @@ SensorErrorEvidence learnt_evidence(const KnownSensorErrors& learnt, const Senso
   Matrix vectors;
   dense::decompose(scaled, values, vectors);
   // directions with their prior variance contain no information
-  const Vector told = values.cwiseMax(1e-12).cwiseInverse();
-  const Vector of_mean = (told.array() > 1.0).select(told, Vector::Zero());
+  const Vector precision_ratio = values.cwiseMax(1e-12).cwiseInverse();
+  const Vector of_mean = (precision_ratio.array() > 1.0).select(precision_ratio, Vector::Zero());
   const auto in_units = [&](const Vector& kept_values) -> Matrix {
     const Matrix kept = vectors * kept_values.asDiagonal() * vectors.transpose();
     return unit.cwiseInverse().asDiagonal() * kept * unit.cwiseInverse().asDiagonal();
   };
   SensorErrorEvidence out;
-  out.information = in_units((told.array() - 1.0).cwiseMax(0.0));
+  out.information = in_units((precision_ratio.array() - 1.0).cwiseMax(0.0));
   out.gradient = in_units(of_mean) * learnt.errors.vector();
   return out;
 }

@@ -26,7 +26,7 @@ double correlation(const StrokeSums& sums, int i) {
 }
 
 // Same; 0 unless the body has both impacts and flight.
-double believed(const StrokeSums& sums, int i) {
+double score(const StrokeSums& sums, int i) {
   if (sums.strokes[i] < kStrokesMin || sums.flying[i] < kFlyingShareMin * sums.intervals) return 0.0;
   return correlation(sums, i);
 }
@@ -52,7 +52,7 @@ void StrokeSums::add(double turn_rad_s2, const Tried& force_m_s2) {
   }
 }
 
-void StrokeSums::forget(double share) {
+void StrokeSums::decay(double share) {
   for (double* const sum : {&intervals, &turn, &turn_squared}) *sum *= share;
   for (Tried* const sum : {&force, &force_squared, &product, &strokes, &flying}) *sum *= share;
 }
@@ -62,16 +62,16 @@ double StrokeSums::correlation_at(double delay_s, double period_s) const {
   return correlation(*this, kMost + static_cast<int>(std::lround(step)));
 }
 
-TriadDelay StrokeSums::told(double period_s, double slower_s) const {
+TriadDelay StrokeSums::estimate_delay(double period_s, double slower_s) const {
   if (intervals < kStruckMin) return {};
   int at = 0;
   double best = -1.0;
   for (int i = 0; i < kTried; ++i) {
-    const double found = believed(*this, i);
+    const double found = score(*this, i);
     if (found > best) best = found, at = i;
   }
   if (best < kCorrelationMin || at == 0 || at == kTried - 1) return {};
-  const double left = believed(*this, at - 1), right = believed(*this, at + 1), bend = left - 2.0 * best + right;
+  const double left = score(*this, at - 1), right = score(*this, at + 1), bend = left - 2.0 * best + right;
   const double part = bend < 0.0 ? std::clamp(0.5 * (left - right) / bend, -0.5, 0.5) : 0.0;
   return {(at - kMost + part) * (period_s / kPerSample), kStruckSigma * slower_s};
 }

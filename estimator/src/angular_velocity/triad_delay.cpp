@@ -48,11 +48,11 @@ struct TriadReadings {
 };
 
 TriadReadings readings_of(std::span<const ImuSample> samples, std::span<const Clipping> clippings, Triad triad) {
-  const std::optional<HeldReadings> held = find_held(samples, triad);
+  const std::optional<RepeatedReadings> repeated = find_repeated(samples, triad);
   TriadReadings out;
   for (std::size_t k = 0; k < samples.size(); ++k) {
-    if (held && held->repeats[k]) continue;
-    const double at_s = seconds(samples[k].time_ns - samples[0].time_ns) - (held ? held->behind_s(k) : 0.0);
+    if (repeated && repeated->repeats[k]) continue;
+    const double at_s = seconds(samples[k].time_ns - samples[0].time_ns) - (repeated ? repeated->behind_s(k) : 0.0);
     if (out.size() > 0 && !(at_s > out.time_s.back() + kApart_s)) continue;
     if (triad == Triad::gyro) {
       out.add(at_s, samples[k].angular_velocity_rad_s, (clippings[k].gyro | clippings[k].missing_gyro) != 0);
@@ -177,7 +177,7 @@ TriadDelay struck(const TriadReadings& gyro, const TriadReadings& accel, double 
     return (triad.time_s.back() - triad.time_s.front()) / static_cast<double>(triad.size() - 1);
   };
   if (gyro.size() < 2) return {};
-  return sums.told(period_s, std::max(mean_period(gyro), mean_period(accel)));
+  return sums.estimate_delay(period_s, std::max(mean_period(gyro), mean_period(accel)));
 }
 
 // From flight; 0 without information.

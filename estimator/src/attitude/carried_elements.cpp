@@ -8,7 +8,7 @@
 
 namespace tumble {
 
-void CarriedElements::doubt(std::span<const ImuSample> samples, std::span<const std::uint8_t> axes) {
+void CarriedElements::mark_suspect(std::span<const ImuSample> samples, std::span<const std::uint8_t> axes) {
   for (std::size_t k = 0; k < axes.size(); ++k) {
     for (int j = 0; j < 3; ++j) {
       std::int8_t& sign = signs[k].gyro[static_cast<std::size_t>(j)];

@@ -82,9 +82,9 @@ void add_across(const GyroReadings& rates, const Eigen::Matrix3d& rows, double n
       std::size_t end = begin;
       while (end < count && !is_free(rates, end, axis)) ++end;
       double in = 0.0, out = 0.0, from_s = 0.0, to_s = 0.0;
-      const bool told = end + 1 < count && slope_of(rates, rows, begin - 2, axis, in, from_s) &&
-                        slope_of(rates, rows, end, axis, out, to_s);
-      if (told) {
+      const bool determined = end + 1 < count && slope_of(rates, rows, begin - 2, axis, in, from_s) &&
+                              slope_of(rates, rows, end, axis, out, to_s);
+      if (determined) {
         const double density = ((out - in) * (out - in) - noise * noise) / (to_s - from_s);
         const Reach reach(from_s, to_s, node_s, densities.size());
         for (std::size_t i = reach.first; i < reach.last; ++i) densities[i] = std::max(densities[i], density);

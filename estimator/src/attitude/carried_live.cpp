@@ -36,12 +36,12 @@ Status CarriedLive::push(const ImuSample& sample, State& state, std::optional<Ra
   const ImuSample* const latest = state.stream.readings.empty() ? nullptr : &state.stream.readings.back().sample;
   const Clipping judged = watch_.judge(latest, sample, state.rails);
   state.signs.push_back(clip_signs(sample, judged));
-  HoldWatch::State holds = state.holds;
-  HoldWatch().observe(sample, (judged.gyro | judged.missing_gyro) != 0, holds);
+  RepeatDetector::State repeat_state = state.repeat_state;
+  RepeatDetector().observe(sample, (judged.gyro | judged.missing_gyro) != 0, repeat_state);
   const ClippedElements known{rows_of(state.rails.known.planes), state.signs};
-  const Status status = stream_.push(sample, known, state.stream, out, true, holds);
+  const Status status = stream_.push(sample, known, state.stream, out, true, repeat_state);
   if (!status.ok()) return status;
-  state.holds = holds;
+  state.repeat_state = repeat_state;
   state.news = watch_.observe(sample, state.rails);
   watch_.upright_rails().classify(sample, state.rails.known.upright_rails);  // updates the hysteresis
   return status;

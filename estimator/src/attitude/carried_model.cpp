@@ -196,7 +196,7 @@ double add_force(const NodeReadings& readings, const Vector3d& g_W_m_s2, const R
 
   const double share = noise.accel_share * (readings.force_m_s2.norm() - g_W_m_s2.norm());
   const double variance = noise.accel_m_s2 * noise.accel_m_s2 / readings.force_n + share * share +
-                          readings.force_open_m_s2 * readings.force_open_m_s2;
+                          readings.force_timing_m_s2 * readings.force_timing_m_s2;
   double cost = 0.0;
   Vector3d weight, slope;
   for (int i = 0; i < 3; ++i) {

@@ -53,7 +53,7 @@ Problem::Problem(const Problem& whole, const Part& part)
       blocks_(nodes_.size()) {}
 
 // Computes the Schur complements of carried.md (C17), from both ends.
-bool Problem::tell(std::span<Part> parts) const {
+bool Problem::condense_rest(std::span<Part> parts) const {
   System::Corner unused;
   // from the left: the prior of a node from all earlier ones
   System::Block here, next;

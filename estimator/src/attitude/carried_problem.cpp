@@ -167,7 +167,7 @@ void Problem::go(double share) {
 }
 
 // adapts the density of the held point's acceleration to its recent power, with a lower limit: carried.md (C10)
-void Problem::follow_hand() {
+void Problem::adapt_process_noise() {
   const std::size_t count = nodes_.size();
   const double assumed = 3.0 * params_.hand_m_s2 * params_.hand_m_s2;
   for (std::size_t i = 0; i < count; ++i)
@@ -176,7 +176,8 @@ void Problem::follow_hand() {
   for (std::size_t i = 0; i < count; ++i) {
     const std::size_t a = i > half ? i - half : 0, b = std::min(count, i + half + 1);
     const double local = (hand_power_[b] - hand_power_[a]) / static_cast<double>(b - a);
-    hand_[i] = std::max(params_.expert.hand.hand_floor, 1.0 + params_.expert.hand.hand_follow * (local - 1.0));
+    hand_[i] =
+        std::max(params_.expert.hand.hand_floor, 1.0 + params_.expert.hand.hand_noise_adaptation * (local - 1.0));
   }
 }
 
@@ -193,8 +194,8 @@ Status Problem::solve(CarriedSmoother::Report& report) {
   std::optional<Iterate> before;
   report.converged = false;
   for (int k = 0; k < params_.expert.iterations_max; ++k) {
-    if (k >= kFollowFirst && k <= kFollowLast && params_.expert.hand.hand_follow > 0.0) {
-      follow_hand();
+    if (k >= kFollowFirst && k <= kFollowLast && params_.expert.hand.hand_noise_adaptation > 0.0) {
+      adapt_process_noise();
       before.reset();  // costs for different densities are not comparable
     }
     report.cost = linearise();

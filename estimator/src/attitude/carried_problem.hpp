@@ -60,7 +60,7 @@ class Problem {
   void restore(Answer answer);
   /// Computes the information about each part's ends, with one sweep from either side. Returns false if not positive
   /// definite.
-  bool tell(std::span<Part> parts) const;
+  bool condense_rest(std::span<Part> parts) const;
   /// Gauss-Newton of a part. Returns the cost at the solution, or infinity without convergence.
   double converge();
 
@@ -92,7 +92,7 @@ class Problem {
   };
   void go(double share);
   bool descend_from(const Iterate& before, double& cost);
-  void follow_hand();
+  void adapt_process_noise();
   double hand_mahalanobis() const;
 
   CarriedSmoother::Params params_;

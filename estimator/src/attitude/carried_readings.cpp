@@ -45,7 +45,8 @@ double since_s(std::span<const ImuSample> samples, std::size_t from, std::size_t
   return seconds(samples[to].time_ns - samples[from].time_ns);
 }
 
-constexpr double kSteady = 0.9;  // minimum agreement with a regular clock for treating equal readings as repetitions
+// agreement with a regular clock from which on equal readings are repetitions
+constexpr double kMinClockAgreement = 0.9;
 // In nodes: longer windows may be partly saturated. Measured: pendulums' windows of 20 ms were, hand-held wands'
 // windows of 10 ms were not.
 constexpr double kLongWindow = 1.5;
@@ -203,24 +204,25 @@ void recovered_readings(const CarriedSmoother::Params& params, const ClippedElem
 
 OwnReadings own_readings(std::span<const ImuSample> samples, const ClippedElements& clipped, Triad triad,
                          TimeNs origin_ns, double period_s) {
-  std::optional<HeldReadings> held = find_held(samples, triad);
-  if (held && (held->agreement < kSteady || held->period_s > sample_hold::kSlowest * period_s)) held.reset();
+  std::optional<RepeatedReadings> repeated = find_repeated(samples, triad);
+  if (repeated && (repeated->agreement < kMinClockAgreement || repeated->period_s > sample_hold::kSlowest * period_s))
+    repeated.reset();
   OwnReadings out;
   for (std::size_t k = 0; k < samples.size(); ++k) {
     out.of_sample.push_back(out.samples.size());
-    if (held && held->repeats[k]) {
+    if (repeated && repeated->repeats[k]) {
       out.of_sample.back() -= 1;
       continue;
     }
     ImuSample own = samples[k];
-    if (held) own.time_ns -= nanoseconds(held->age_s[k]);
+    if (repeated) own.time_ns -= nanoseconds(repeated->age_s[k]);
     // an inaccurate clock may put two readings into one step
-    if (held && !out.samples.empty())
+    if (repeated && !out.samples.empty())
       own.time_ns = std::max(own.time_ns, out.samples.back().time_ns + nanoseconds(0.5 * period_s));
     out.samples.push_back(own);
     out.signs.push_back(signs_of(clipped, k));
   }
-  out.windows = windows_of(out.samples, origin_ns, held ? held->period_s : period_s);
+  out.windows = windows_of(out.samples, origin_ns, repeated ? repeated->period_s : period_s);
   return out;
 }
 
@@ -282,7 +284,7 @@ Collected collect(const CarriedSmoother::Params& params, std::span<const ImuSamp
   for (std::size_t k = 0; k < forces.samples.size(); ++k) {
     NodeReadings& node = out.nodes[forces.windows.node_of[k]];
     add_force(forces.samples[k], forces.signs[k], from_node(forces.windows, k), node);
-    node.force_open_m_s2 = std::max(node.force_open_m_s2, open_m_s2[k]);
+    node.force_timing_m_s2 = std::max(node.force_timing_m_s2, open_m_s2[k]);
   }
   const std::vector<bool> rest = RestDetector(params.expert.rest).find(samples);
   for (std::size_t k = 0; k < samples.size(); ++k) {

@@ -98,7 +98,7 @@ Status CarriedSmoother::estimate(std::span<const ImuSample> samples, const Clipp
   status = problem.solve(report);
   if (status.ok()) status = problem.covariances(report);
   if (!status.ok()) return status;
-  carried::ask_revolutions(problem, report);
+  carried::test_revolutions(problem, report);
 
   rates.resize(samples.size());
   attitudes.resize(samples.size());

@@ -43,7 +43,7 @@ CarriedStream::CarriedStream(const Params& params)
     : params_((CarriedSmoother(params.body), params)),
       rests_(params.body.expert.rest),
       motion_(carried::motion_params(params.body)),
-      doubted_(carried::motion_params(params.body, params.body.expert.jerk_inflation)),
+      inflated_(carried::motion_params(params.body, params.body.expert.jerk_inflation)),
       noise_(carried::reading_noise(params.body, params.period_s)),
       g_W_m_s2_(0.0, 0.0, -params.body.gravity_m_s2) {
   require_fields(params);
@@ -70,9 +70,9 @@ Status CarriedStream::check_state(const State& state) const {
     const Reading* const before = k > 0 ? &state.readings[k - 1] : nullptr;
     if (const Status status = check_reading(state.readings[k], before, state.start_ns); !status.ok()) return status;
   }
-  const std::int64_t last = state.readings.back().node, held = static_cast<std::int64_t>(state.window.size());
-  if (state.first_node >= 0 && state.first_node <= last && last - state.first_node + 1 == held) return {};
-  return {Trouble::out_of_range, "carried.first_node", double(state.first_node), double(last + 1 - held)};
+  const std::int64_t last = state.readings.back().node, nodes = static_cast<std::int64_t>(state.window.size());
+  if (state.first_node >= 0 && state.first_node <= last && last - state.first_node + 1 == nodes) return {};
+  return {Trouble::out_of_range, "carried.first_node", double(state.first_node), double(last + 1 - nodes)};
 }
 
 Status CarriedStream::check_reading(const Reading& reading, const Reading* before, TimeNs start_ns) const {
@@ -118,7 +118,7 @@ void CarriedStream::restart(State& state) const {
 }
 
 Status CarriedStream::push(const ImuSample& sample, const ClippedElements& known, State& state,
-                           std::optional<RateState>& out, bool wanted, const HoldWatch::State& held) const {
+                           std::optional<RateState>& out, bool wanted, const RepeatDetector::State& repeated) const {
   out.reset();
   if (const Status status = check_sample(sample); !status.ok()) return status;
   if (state.samples > 0) {
@@ -130,7 +130,7 @@ Status CarriedStream::push(const ImuSample& sample, const ClippedElements& known
   const double determinant = std::abs(known.rows.determinant());
   if (!(determinant > carried::kRowsMin)) return {Trouble::degenerate, "rows", determinant, carried::kRowsMin};
 
-  append(sample, held, state);
+  append(sample, repeated, state);
   if (read_again(known, state)) rebuild(state);
   const Reading& latest = state.readings.back();
   const auto end = [&] { return state.first_node + static_cast<std::int64_t>(state.window.size()); };
@@ -171,11 +171,11 @@ void CarriedStream::predict_newest(State& state) const {
 }
 
 // Adds a sample to the window. A window after a drop-out has the usual length.
-void CarriedStream::append(const ImuSample& sample, const HoldWatch::State& held, State& state) const {
+void CarriedStream::append(const ImuSample& sample, const RepeatDetector::State& repeated, State& state) const {
   Reading reading;
   reading.sample = sample;
-  reading.gyro = held.of(Triad::gyro);
-  reading.accel = held.of(Triad::accelerometer);
+  reading.gyro = repeated.of(Triad::gyro);
+  reading.accel = repeated.of(Triad::accelerometer);
   const double period_s = params_.period_s;
   if (state.samples == 0) {
     state.start_ns = sample.time_ns;
@@ -222,37 +222,40 @@ void CarriedStream::add(const Reading& reading, State& state) const {
     const bool inside = at >= 0 && at < static_cast<std::int64_t>(state.window.size());
     return inside ? &state.window[static_cast<std::size_t>(at)].readings : nullptr;
   };
-  const auto centre = [&](const HeldReading& held, double share) {
-    const double back = held.age_samples + share * held.period_samples;
-    return held.held() ? reading.end_s - back * params_.period_s : reading.centre_s;
+  const auto centre = [&](const RepeatedReading& repeated, double share) {
+    const double back = repeated.age_samples + share * repeated.period_samples;
+    return repeated.is_slower_than_log() ? reading.end_s - back * params_.period_s : reading.centre_s;
   };
-  const auto node_of = [&](const HeldReading& held, double centre_s) {
-    return held.held() ? std::min(reading.node, std::int64_t{std::llround(centre_s / node_s)}) : reading.node;
+  const auto node_of = [&](const RepeatedReading& repeated, double centre_s) {
+    return repeated.is_slower_than_log() ? std::min(reading.node, std::int64_t{std::llround(centre_s / node_s)})
+                                         : reading.node;
   };
   const double rate_s = centre(reading.gyro, 0.5), force_s = centre(reading.accel, 0.25);
   const std::int64_t rate_node = node_of(reading.gyro, rate_s), force_node = node_of(reading.accel, force_s);
   carried::NodeReadings* const rates = reading.gyro.repeats ? nullptr : readings_at(rate_node);
   carried::NodeReadings* const forces = reading.accel.repeats ? nullptr : readings_at(force_node);
   if (rates != nullptr) {
-    const double share = reading.gyro.held() ? carried::kTaken_samples / reading.gyro.period_samples : 0.0;
+    const double share =
+        reading.gyro.is_slower_than_log() ? carried::kTaken_samples / reading.gyro.period_samples : 0.0;
     const Vector3d open_rad_s = share * (state.rows * reading.gyro.change).cwiseAbs();
     carried::add_rate(reading.sample, state.rows, reading.signs, rate_s - static_cast<double>(rate_node) * node_s,
                       open_rad_s, *rates);
   }
   if (forces != nullptr) {
-    const double share = reading.accel.held()
+    const double share = reading.accel.is_slower_than_log()
                              ? std::hypot(carried::kOpenShare, carried::kTaken_samples / reading.accel.period_samples)
                              : 0.0;
     carried::add_force(reading.sample, reading.signs, force_s - static_cast<double>(force_node) * node_s, *forces);
-    forces->force_open_m_s2 = std::max(forces->force_open_m_s2, share * reading.accel.change.norm());
+    forces->force_timing_m_s2 = std::max(forces->force_timing_m_s2, share * reading.accel.change.norm());
   }
   if (carried::NodeReadings* const own = readings_at(reading.node)) own->rest = own->rest || reading.rest;
 }
 
 // Noise of readings with the gyro's own period, if the log repeats them.
 carried::ReadingNoise CarriedStream::noise_of(const State& state) const {
-  const HeldReading& gyro = state.readings.back().gyro;
-  return gyro.held() ? carried::reading_noise(params_.body, gyro.period_samples * params_.period_s) : noise_;
+  const RepeatedReading& gyro = state.readings.back().gyro;
+  return gyro.is_slower_than_log() ? carried::reading_noise(params_.body, gyro.period_samples * params_.period_s)
+                                   : noise_;
 }
 
 Node CarriedStream::begin(const State& state) const {
@@ -290,7 +293,7 @@ void CarriedStream::predict(const Node& before, const Eigen::Matrix3d& rows, Kno
 // carried.md (C41)
 double CarriedStream::hand(const State& state) const {
   return std::max(params_.body.expert.hand.hand_floor,
-                  1.0 + params_.body.expert.hand.hand_follow * (state.hand_power - 1.0));
+                  1.0 + params_.body.expert.hand.hand_noise_adaptation * (state.hand_power - 1.0));
 }
 
 // As rate_stream.md (R91).
@@ -338,13 +341,13 @@ void CarriedStream::marginalise_oldest(State& state) const {
   state.hand_power += share * (oldest.node.a_W_m_s2.squaredNorm() / assumed - state.hand_power);
   ++state.first_node;
   state.window.erase(state.window.begin());
-  forget_readings(state);
+  prune_output_samples(state);
 }
 
 // Deletes readings whose node has left the window and whose rate was reported.
-void CarriedStream::forget_readings(State& state) const {
+void CarriedStream::prune_output_samples(State& state) const {
   std::size_t gone = 0;
-  const std::size_t given = first_not_given(state);
+  const std::size_t given = first_unreported(state);
   while (gone < given && state.readings[gone].node < state.first_node) ++gone;
   state.readings.erase(state.readings.begin(), state.readings.begin() + static_cast<std::ptrdiff_t>(gone));
 }

@@ -35,7 +35,7 @@ void members(Self& s, Visitor& visit) {
   visit("readings.force_bound", s.force_bound);
   visit("readings.force_n", s.force_n);
   visit("readings.force_t_s", s.force_t_s);
-  visit("readings.force_open_m_s2", s.force_open_m_s2);
+  visit("readings.force_timing_m_s2", s.force_timing_m_s2);
   visit("readings.rest", s.rest);
 }
 
@@ -97,8 +97,8 @@ void members(Self& s, Visitor& visit) {
   visit("carried.prior_constants", s.prior_constants);
   visit("carried.hand_power", s.hand_power);
   visit("carried.rests", s.rests);
-  visit("carried.given_node", s.given_node);
-  visit("carried.given_covariance_rad2_s2", s.given_covariance_rad2_s2);
+  visit("carried.reported_node", s.reported_node);
+  visit("carried.reported_covariance_rad2_s2", s.reported_covariance_rad2_s2);
   visit("carried.start_ns", s.start_ns);
   visit("carried.samples", s.samples);
   visit("carried.failures", s.failures);
@@ -112,7 +112,7 @@ template <StateOf<CarriedLive::State> Self, class Visitor>
 void members(Self& s, Visitor& visit) {
   visit("live.stream", s.stream);
   visit("live.rails", s.rails);
-  visit("live.holds", s.holds);
+  visit("live.repeat_state", s.repeat_state);
   visit("live.news", s.news);
   visit.scratch(s.signs);
 }

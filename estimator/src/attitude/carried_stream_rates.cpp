@@ -33,24 +33,24 @@ std::uint8_t clipped_axes(const ClipSigns& signs) {
 RateState CarriedStream::give(std::size_t at, bool due, bool factorised, State& state) const {
   const Reading& reading = state.readings[at];
   if (reading.smoothed) return *reading.smoothed;
-  const bool known = state.given_node >= 0 && reading.node - state.given_node < carried::kFreeNodes;
-  if (reading.node == state.given_node || (known && !due))
-    return to_rate(reading, state, state.given_covariance_rad2_s2);
+  const bool known = state.reported_node >= 0 && reading.node - state.reported_node < carried::kFreeNodes;
+  if (reading.node == state.reported_node || (known && !due))
+    return to_rate(reading, state, state.reported_covariance_rad2_s2);
   RateState rate;
   publish(at, at, factorised, state, {&rate, 1});
-  state.given_node = reading.node;
-  state.given_covariance_rad2_s2 = rate.covariance_rad2_s2;
+  state.reported_node = reading.node;
+  state.reported_covariance_rad2_s2 = rate.covariance_rad2_s2;
   return rate;
 }
 
 // Among the readings, excluding the one being processed.
-std::size_t CarriedStream::first_not_given(const State& state) const {
+std::size_t CarriedStream::first_unreported(const State& state) const {
   return state.readings.size() - std::min(state.readings.size(), delay_ + 1);
 }
 
 // With samples sparser than stated, a node may leave before its rate is reported: stores the current rate.
 void CarriedStream::keep_rates_of_oldest(State& state) const {
-  const std::size_t first = first_not_given(state);
+  const std::size_t first = first_unreported(state);
   for (std::size_t k = first; k < state.readings.size() && state.readings[k].node <= state.first_node; ++k) {
     if (state.readings[k].smoothed) continue;
     RateState rate;
@@ -113,7 +113,7 @@ void CarriedStream::publish(std::size_t first, std::size_t last, bool factorised
   carried::ReadingNoise noise = noise_of(state);
   // a bound contains no information about how far a rate or a force is beyond it: carried.md (C42)
   if (clipped) noise.bound = noise.force_bound = 0.0;
-  const bool known = (factorised && !clipped) || factorise(clipped ? doubted_ : motion_, noise, state, unused);
+  const bool known = (factorised && !clipped) || factorise(clipped ? inflated_ : motion_, noise, state, unused);
   System::Conditional here, next;
   Eigen::Matrix3d covariance = kUnknown_rad2_s2 * Eigen::Matrix3d::Identity();
   std::size_t k = last + 1;

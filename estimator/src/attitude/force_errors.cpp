@@ -22,12 +22,12 @@ ForceErrors::ForceErrors(const Params& p) : params_(p) {
   require_within("position_sigma_m", p.position_sigma_m, 0.0, 10.0);
   require_within("noise_m_s2", p.noise_m_s2, 1e-12, 1e3);
   require_within("acceleration_share", p.acceleration_share, 0.0, 1.0);
-  require_within("doubt", p.doubt, 1e-12, 1e3);
+  require_within("gate_deviations", p.gate_deviations, 1e-12, 1e3);
 }
 
 /// Accumulates both sides of imu_merge.md (I10), (I11): the difference, and the terms of its derivatives.
-void ForceErrors::learn(std::span<const Eigen::Vector3d> forces, const Eigen::Vector3d& rate,
-                        const Eigen::Vector3d& acceleration, double dt_s, State& state) const {
+void ForceErrors::calibrate(std::span<const Eigen::Vector3d> forces, const Eigen::Vector3d& rate,
+                            const Eigen::Vector3d& acceleration, double dt_s, State& state) const {
   const auto count = static_cast<std::size_t>(params_.count);
   if (!state.started) {
     for (int k = 0; k < params_.count; ++k) {
@@ -82,7 +82,7 @@ void ForceErrors::update(State& state) const {
       PHt.head(used).noalias() = P * row.head(used);
       const double s = row.dot(PHt) + variance;
       const double innovation = state.difference_m_s2(axis, k) / samples - row.dot(state.x);
-      if (squared(innovation) > squared(params_.doubt) * s) continue;  // an impact within the samples
+      if (squared(innovation) > squared(params_.gate_deviations) * s) continue;  // an impact within the samples
       state.x += PHt * (innovation / s);
       P.noalias() -= PHt.head(used) * (PHt.head(used) / s).transpose();
     }

@@ -17,12 +17,12 @@ namespace {
 
 constexpr double kBiasSigma_rad_s = 0.01, kScaleSigma = 0.01;
 constexpr double kRotating_rad_s2 = 1.0;  // minimum angular acceleration for estimating a time offset
-constexpr double kBeyondDoubt = 4.0;
+constexpr double kCertainDeviations = 4.0;
 constexpr int kRecovering = 3;     // minimum number of units for recovering the rate from accelerometers
 constexpr double kUnharmed = 0.8;  // errors are estimated up to this fraction of the accelerometer's range
 constexpr int kOffset = ImuMerge::kErrors - 1;
 constexpr double kArmSquareMin_m2_s3 = 1.0;  // 1 m/s^2 for a second: a bias of 0.05 changes the result by 0.05
-constexpr double kHeld_s = 0.03;
+constexpr double kRepeated_s = 0.03;
 constexpr double kWindowMax_s = 0.05;  // maximum window for a central difference
 
 constexpr double kSuspect_s = 0.04;         // impacts come in groups, and a filter's response outlasts the impact
@@ -70,9 +70,9 @@ Status ImuMerge::step(std::span<const ImuSample> samples, State& state, std::opt
   if (samples.size() != static_cast<std::size_t>(params_.count)) {
     return {Trouble::too_few, "samples", static_cast<double>(samples.size()), static_cast<double>(params_.count)};
   }
-  const bool heard =
+  const bool received =
       std::any_of(samples.begin(), samples.end(), [](const ImuSample& s) { return check_sample(s).ok(); });
-  if (!heard) return check_sample(samples[0]);
+  if (!received) return check_sample(samples[0]);
   double dt_s = 0.0;
   if (state.samples > 0) {
     const Status bad = elapsed(samples[0].time_ns, state.last_time_ns, params_.gap_max_s, dt_s);
@@ -129,7 +129,7 @@ ImuSample ImuMerge::merge(State& state) const {
     raw_rates[k] = R_CI * readings[k].angular_velocity_rad_s;
     raw_forces[k] = R_CI * readings[k].specific_force_m_s2;
   }
-  watch_holds(finite, raw_rates, raw_forces, h, time_ns, state);
+  watch_repeats(finite, raw_rates, raw_forces, h, time_ns, state);
   const double since_s = 0.5 * (h + state.length_s);  // between the middles of the last two windows
   for (std::size_t k = 0; k < count; ++k) {
     const Unit& unit = state.units[k];
@@ -137,7 +137,7 @@ ImuSample ImuMerge::merge(State& state) const {
     rates[k] = raw_rates[k];
     forces[k] = raw_forces[k];
     const double offset_s = unit.offset_s();
-    const bool late = offset_s * offset_s > kBeyondDoubt * kBeyondDoubt * unit.P(kOffset, kOffset);
+    const bool late = offset_s * offset_s > kCertainDeviations * kCertainDeviations * unit.P(kOffset, kOffset);
     if (finite[k] && state.windows > 0 && late) {  // imu_merge.md (I4)
       rates[k] -= offset_s / since_s * (raw_rates[k] - unit.last_rate_rad_s);
       forces[k] -= offset_s / since_s * (raw_forces[k] - unit.last_force_m_s2);
@@ -153,7 +153,7 @@ ImuSample ImuMerge::merge(State& state) const {
   merged.device_clip_flags = flags_of(readings, used);
   const bool railed = (flags_of(readings, present) & kClipGyro) != 0;
   const bool silent = !std::all_of(finite.begin(), finite.begin() + params_.count, [](bool one) { return one; });
-  state.free_windows = railed || silent ? 0 : std::min(state.free_windows + 1, kLearnFrom);
+  state.free_windows = railed || silent ? 0 : std::min(state.free_windows + 1, kAccelerationWindows);
   merged.time_ns = time_ns;
   const bool all_used = std::count(used.begin(), used.end(), true) == params_.count;
   close_windows(present, raw_rates, raw_forces, all_used, merged, state);
@@ -194,7 +194,7 @@ ImuMerge::Flags ImuMerge::choose(const Readings& readings, const Flags& present,
   if (units < kRecovering ? kept == 0 : 2 * kept <= units && kept < units) used = present;
   const bool apart = state.windows > 0 && h > 0.0;  // whether a previous window allows derivatives
   if (units >= kRecovering && apart && middle_rate.cwiseAbs().maxCoeff() < params_.gyro_range_rad_s) {
-    leave_out_subsample_saturated(readings, present, forces, middle_rate, h, state, used);
+    exclude_subsample_saturated(readings, present, forces, middle_rate, h, state, used);
   }
   for (std::size_t i = 0; i < static_cast<std::size_t>(params_.count); ++i) state.units[i].left_out += !used[i];
   return used;
@@ -227,7 +227,7 @@ ImuSample ImuMerge::mean_of_used(const Vectors& rates, const Vectors& forces, co
 /// imu_merge.md (I8).
 std::optional<double> ImuMerge::arm_share(const State& state) {
   if (state.arm_square_m2_s3 < kArmSquareMin_m2_s3) return std::nullopt;
-  return state.arm_product / state.arm_square_m2_s3;
+  return state.lever_arm_correlation / state.arm_square_m2_s3;
 }
 
 /// Updates the error estimates with the means over the windows, and starts the next.
@@ -237,14 +237,14 @@ void ImuMerge::close_windows(const Flags& present, const Vectors& rates, const V
   const bool follows = state.windows > 1 && length_s < kWindowMax_s;
   // a unit with a repeated reading may be frozen and does not update the errors; if all repeat, the rate is constant
   const auto end = state.units.begin() + params_.count;
-  const auto some_hold = [&](Hold Unit::*hold) {
-    const auto holding =
-        std::count_if(state.units.begin(), end, [&](const Unit& unit) { return (unit.*hold).held_s >= kHeld_s; });
+  const auto some_repeat = [&](Hold Unit::*hold) {
+    const auto holding = std::count_if(state.units.begin(), end,
+                                       [&](const Unit& unit) { return (unit.*hold).repeated_s >= kRepeated_s; });
     return holding > 0 && holding < params_.count;
   };
-  const bool held = some_hold(&Unit::rate_hold) || some_hold(&Unit::force_hold);
-  const bool free = state.free_windows == kLearnFrom;
-  if (all_used && !held && params_.count > 1 && follows && free) learn(rates, state);
+  const bool repeated = some_repeat(&Unit::rate_repeat) || some_repeat(&Unit::force_repeat);
+  const bool free = state.free_windows == kAccelerationWindows;
+  if (all_used && !repeated && params_.count > 1 && follows && free) calibrate(rates, state);
   watch_misfits(present, rates, forces, merged.time_ns, state);
   for (std::size_t k = 0; k < static_cast<std::size_t>(params_.count); ++k) {
     Unit& unit = state.units[k];
@@ -271,8 +271,8 @@ void ImuMerge::close_windows(const Flags& present, const Vectors& rates, const V
 /// force on the others along the connecting line, without the angular acceleration. Units that disagree with the
 /// accepted one are excluded: imu_merge.md (I6). If no two units agree, a common angular acceleration that started
 /// within the window is tested first: (I7).
-void ImuMerge::leave_out_subsample_saturated(const Readings& samples, const Flags& present, const Vectors& forces,
-                                             const Eigen::Vector3d& rate, double h, State& state, Flags& used) const {
+void ImuMerge::exclude_subsample_saturated(const Readings& samples, const Flags& present, const Vectors& forces,
+                                           const Eigen::Vector3d& rate, double h, State& state, Flags& used) const {
   const double since_s = 0.5 * (h + state.length_s);
   const double apart_s = 0.5 * (state.length_s + state.length_before_s);
   const Eigen::Vector3d before = (state.rate_rad_s - state.rate_before_rad_s) / apart_s;
@@ -281,7 +281,7 @@ void ImuMerge::leave_out_subsample_saturated(const Readings& samples, const Flag
   rigid.force_m_s2 = forces;
   rigid.rate_rad_s = rate;
   rigid.acceleration_rad_s2 = (rate - state.rate_rad_s) / since_s;
-  rigid.doubt_rad_s2 = kAccelerationShare * (rigid.acceleration_rad_s2 - before).norm();
+  rigid.uncertainty_rad_s2 = kAccelerationShare * (rigid.acceleration_rad_s2 - before).norm();
   rigid.small_peak_m_s2 = params_.expert.outliers.subsample_saturation_share * params_.accel_range_m_s2;
   rigid.hidden_force_m_s2 = params_.expert.outliers.hidden_force_m_s2;
   for (std::size_t k = 0; k < present.size(); ++k) {
@@ -292,21 +292,20 @@ void ImuMerge::leave_out_subsample_saturated(const Readings& samples, const Flag
     rigid.peak_m_s2[k] = force.cwiseAbs().maxCoeff();
     rigid.change_m_s2[k] = (params_.T_CI[k].linear() * force - state.units[k].last_force_m_s2).norm();
   }
-  RigidForces::Believed believed = rigid.most_agreed();
-  if (believed.others == 0) {
+  RigidForces::Agreed agreed = rigid.most_agreed();
+  if (agreed.others == 0) {
     rigid.acceleration_rad_s2 += rigid.common_acceleration();
-    rigid.doubt_rad_s2 = 0.0;
-    believed = rigid.most_agreed();
+    rigid.uncertainty_rad_s2 = 0.0;
+    agreed = rigid.most_agreed();
   }
   for (std::size_t k = 0; k < present.size(); ++k) {
     if (!present[k]) continue;
     double& suspect_s = state.units[k].suspect_s;
-    const bool fits = k == believed.unit || rigid.agree(k, believed.unit);
+    const bool fits = k == agreed.unit || rigid.agree(k, agreed.unit);
     suspect_s = fits ? std::max(0.0, suspect_s - h) : kSuspect_s;
     used[k] = used[k] && suspect_s == 0.0;
   }
-  if (std::none_of(used.begin(), used.begin() + params_.count, [](bool one) { return one; }))
-    used[believed.unit] = true;
+  if (std::none_of(used.begin(), used.begin() + params_.count, [](bool one) { return one; })) used[agreed.unit] = true;
 }
 
 void ImuMerge::recover(const Readings& readings, const Flags& present, double h, State& state,
@@ -328,7 +327,7 @@ void ImuMerge::recover(const Readings& readings, const Flags& present, double h,
 
 /// Updates the errors of a unit's rate over the last window relative to the mean: bias, scale and time offset. The
 /// angular acceleration is a central difference over the adjacent windows. imu_merge.md (I3), (I8).
-void ImuMerge::learn(const Vectors& rates, State& state) const {
+void ImuMerge::calibrate(const Vectors& rates, State& state) const {
   const auto count = static_cast<std::size_t>(params_.count);
   Eigen::Vector3d now = Eigen::Vector3d::Zero(), mean = Eigen::Vector3d::Zero();
   for (std::size_t k = 0; k < count; ++k) {
@@ -346,13 +345,13 @@ void ImuMerge::learn(const Vectors& rates, State& state) const {
     peak = std::max(peak, forces[k].cwiseAbs().maxCoeff());
   }
   if (peak < kUnharmed * params_.accel_range_m_s2) {
-    forces_.learn({forces.data(), count}, mean, acceleration, state.length_s, state.forces);
+    forces_.calibrate({forces.data(), count}, mean, acceleration, state.length_s, state.forces);
   }
   const Eigen::Matrix3d by_position = so3::hat(acceleration) + so3::hat(mean) * so3::hat(mean);
   for (std::size_t k = 0; k < count; ++k) {
     const Eigen::Vector3d from_mean_m = params_.T_CI[k].translation() - p_C_m_, by_rotation = by_position * from_mean_m;
     state.senses.add(forces[k] - mean_force, from_mean_m, mean, acceleration, state.length_s);
-    state.arm_product += state.length_s * by_rotation.dot(forces[k]);  // the mean of all cancels in the sum
+    state.lever_arm_correlation += state.length_s * by_rotation.dot(forces[k]);  // the mean of all cancels in the sum
     state.arm_square_m2_s3 += state.length_s * by_rotation.squaredNorm();
   }
   if (acceleration.norm() < kRotating_rad_s2) return;

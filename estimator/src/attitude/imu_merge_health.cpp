@@ -59,14 +59,14 @@ Eigen::Vector3d ImuMerge::median(const Vectors& values, const Flags& which) {
 
 /// Detects triads with repeated readings while the median changes. For forces, rotation of the body is sufficient,
 /// since all units may freeze together.
-void ImuMerge::watch_holds(const Flags& present, const Vectors& rates, const Vectors& forces, double dt_s,
-                           TimeNs time_ns, State& state) const {
+void ImuMerge::watch_repeats(const Flags& present, const Vectors& rates, const Vectors& forces, double dt_s,
+                             TimeNs time_ns, State& state) const {
   Flags counted = present;
   for (std::size_t k = 0; k < counted.size(); ++k) counted[k] = counted[k] && !state.units[k].left_out_for_long();
   const Eigen::Vector3d middle_rate = median(rates, counted), middle_force = median(forces, counted);
   const auto watch = [&](const Eigen::Vector3d& reading, const Eigen::Vector3d& others, Hold& hold) {
     const bool same = state.samples > 0 && reading == hold.reading;
-    hold.held_s = same ? hold.held_s + dt_s : 0.0;
+    hold.repeated_s = same ? hold.repeated_s + dt_s : 0.0;
     hold.turned_rad += dt_s * middle_rate;
     if (!same) {
       hold.turned_rad.setZero();
@@ -79,32 +79,32 @@ void ImuMerge::watch_holds(const Flags& present, const Vectors& rates, const Vec
   for (std::size_t k = 0; k < present.size(); ++k) {
     if (!present[k]) continue;
     Unit& unit = state.units[k];
-    const bool rate_same = watch(rates[k], middle_rate, unit.rate_hold);
-    const bool force_same = watch(forces[k], middle_force, unit.force_hold);
+    const bool rate_same = watch(rates[k], middle_rate, unit.rate_repeat);
+    const bool force_same = watch(forces[k], middle_force, unit.force_repeat);
     const bool railed = rates[k].cwiseAbs().maxCoeff() >= params_.gyro_range_rad_s ||
                         forces[k].cwiseAbs().maxCoeff() >= params_.accel_range_m_s2;
-    const bool rate_frozen = unit.rate_hold.held_s >= params_.expert.frozen.after_s &&
-                             (middle_rate - unit.rate_hold.others).norm() > params_.expert.frozen.rate_rad_s;
-    const bool force_frozen = unit.force_hold.held_s >= params_.expert.frozen.after_s &&
-                              ((middle_force - unit.force_hold.others).norm() > params_.expert.frozen.force_m_s2 ||
-                               turned_across(unit.force_hold) > params_.expert.frozen.turned_rad);
+    const bool rate_frozen = unit.rate_repeat.repeated_s >= params_.expert.frozen.after_s &&
+                             (middle_rate - unit.rate_repeat.others).norm() > params_.expert.frozen.rate_rad_s;
+    const bool force_frozen = unit.force_repeat.repeated_s >= params_.expert.frozen.after_s &&
+                              ((middle_force - unit.force_repeat.others).norm() > params_.expert.frozen.force_m_s2 ||
+                               turned_across(unit.force_repeat) > params_.expert.frozen.turned_rad);
     unit.thawing_s = rate_same || force_same ? 0.0 : unit.thawing_s + dt_s;
     if (unit.frozen) {
       unit.frozen = unit.thawing_s < params_.expert.frozen.thawed_after_s;
     } else if (!railed && (rate_frozen || force_frozen)) {
       unit.frozen = true;
-      unit.frozen_since_ns = rate_frozen ? unit.rate_hold.since_ns : unit.force_hold.since_ns;
+      unit.frozen_since_ns = rate_frozen ? unit.rate_repeat.since_ns : unit.force_repeat.since_ns;
     }
   }
 }
 
 Status ImuMerge::verdict(const State& state) const {
   if (!state.all_frozen) return {};
-  double held_s = 0.0;
+  double repeated_s = 0.0;
   for (const Unit& unit : state.units) {
-    if (unit.frozen) held_s = std::max({held_s, unit.rate_hold.held_s, unit.force_hold.held_s});
+    if (unit.frozen) repeated_s = std::max({repeated_s, unit.rate_repeat.repeated_s, unit.force_repeat.repeated_s});
   }
-  return {Trouble::out_of_range, "seconds for which every IMU repeats one reading while the body turns", held_s,
+  return {Trouble::out_of_range, "seconds for which every IMU repeats one reading while the body turns", repeated_s,
           params_.expert.frozen.after_s};
 }
 

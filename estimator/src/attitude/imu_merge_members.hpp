@@ -40,7 +40,7 @@ void members(Self& s, Visitor& visit) {
   visit("hold.others", s.others);
   visit("hold.turned_rad", s.turned_rad);
   visit("hold.since_ns", s.since_ns);
-  visit("hold.held_s", s.held_s);
+  visit("hold.repeated_s", s.repeated_s);
 }
 
 template <StateOf<ImuMerge::Unit> Self, class Visitor>
@@ -52,8 +52,8 @@ void members(Self& s, Visitor& visit) {
   visit("unit.last_force_m_s2", s.last_force_m_s2);
   visit("unit.suspect_s", s.suspect_s);
   visit("unit.left_out", s.left_out);
-  visit("unit.rate_hold", s.rate_hold);
-  visit("unit.force_hold", s.force_hold);
+  visit("unit.rate_repeat", s.rate_repeat);
+  visit("unit.force_repeat", s.force_repeat);
   visit("unit.thawing_s", s.thawing_s);
   visit("unit.misfit_rate_rad_s", s.misfit_rate_rad_s);
   visit("unit.misfit_force_m_s2", s.misfit_force_m_s2);
@@ -78,7 +78,7 @@ void members(Self& s, Visitor& visit) {
   visit("merge.window_s", s.window_s);
   visit("merge.length_s", s.length_s);
   visit("merge.length_before_s", s.length_before_s);
-  visit("merge.arm_product", s.arm_product);
+  visit("merge.lever_arm_correlation", s.lever_arm_correlation);
   visit("merge.arm_square_m2_s3", s.arm_square_m2_s3);
   visit("merge.senses", s.senses);
   visit("merge.samples", s.samples);

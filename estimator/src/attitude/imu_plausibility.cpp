@@ -60,17 +60,17 @@ void ImuPlausibility::step(const ImuSample& sample, State& state) const {
 
 void ImuPlausibility::hold(const Eigen::Vector3d& reading, double dt_s, Hold& hold) const {
   if (reading != hold.reading) {
-    hold.longest_s = std::max(hold.longest_s, hold.held_s);
-    hold.held_s = 0.0;
+    hold.longest_s = std::max(hold.longest_s, hold.repeated_s);
+    hold.repeated_s = 0.0;
     hold.moved_s += dt_s;
     hold.reading = reading;
     return;
   }
-  hold.held_s += dt_s;
-  const bool froze = hold.held_s >= params_.expert.frozen.repeats_s &&
+  hold.repeated_s += dt_s;
+  const bool froze = hold.repeated_s >= params_.expert.frozen.repeats_s &&
                      hold.moved_s >= params_.expert.frozen.repeats_s &&
-                     hold.held_s >= params_.expert.frozen.longest_share * hold.longest_s;
-  if (froze) hold.frozen_s = std::max(hold.frozen_s, hold.held_s);
+                     hold.repeated_s >= params_.expert.frozen.longest_share * hold.longest_s;
+  if (froze) hold.frozen_s = std::max(hold.frozen_s, hold.repeated_s);
 }
 
 /// imu_merge.md (I18), (I19).
@@ -151,14 +151,14 @@ double ImuPlausibility::unexplained_share(const State& state) const {
 /// the gyro, while the readings are zero for longer than a free fall lasts.
 double ImuPlausibility::frozen_s(const State& state) const {
   const auto never_moved = [&](const Hold& hold) {
-    return hold.moved_s == 0.0 && hold.held_s >= params_.expert.frozen.repeats_s;
+    return hold.moved_s == 0.0 && hold.repeated_s >= params_.expert.frozen.repeats_s;
   };
   const bool rotates_unseen = unexplained_share(state) >= params_.expert.frozen.unexplained_least;
   const bool gyro = never_moved(state.gyro) && (rotates_unseen || state.pushed_s >= kPushedLeast_s);
   const bool accel = never_moved(state.accel) && state.accel.reading.isZero(0.0) &&
                      state.gyro.moved_s >= params_.expert.frozen.repeats_s;
-  return std::max(
-      {state.gyro.frozen_s, state.accel.frozen_s, gyro ? state.gyro.held_s : 0.0, accel ? state.accel.held_s : 0.0});
+  return std::max({state.gyro.frozen_s, state.accel.frozen_s, gyro ? state.gyro.repeated_s : 0.0,
+                   accel ? state.accel.repeated_s : 0.0});
 }
 
 /// imu_merge.md (I20).

@@ -90,10 +90,10 @@ bool RateRecovery::force_railed(const ImuSample& unit, int axis) const {
 
 RateRecovery::Met RateRecovery::met_by(std::span<const ImuSample> units) const {
   Met out;
-  std::size_t clipped = 0, heard = 0;
+  std::size_t clipped = 0, received = 0;
   for (const ImuSample& unit : units) {
     if (!is_finite(unit)) continue;
-    ++heard;
+    ++received;
     bool force = false;
     for (int axis = 0; axis < 3; ++axis) {
       out.rate |= rate_railed(unit, axis);
@@ -103,7 +103,7 @@ RateRecovery::Met RateRecovery::met_by(std::span<const ImuSample> units) const {
   }
   // with a correct rate, the remaining units give a better force than the filter, so it counts as clipped only if they
   // are few
-  out.force = clipped > 0 && (out.rate || 2 * clipped > heard);
+  out.force = clipped > 0 && (out.rate || 2 * clipped > received);
   return out;
 }
 

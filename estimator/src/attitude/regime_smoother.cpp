@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cstddef>
 
-#include "tumble/angular_velocity/detail/held_rates.hpp"
+#include "tumble/angular_velocity/detail/interpolated_rates.hpp"
 #include "tumble/attitude/carried_elements.hpp"
 
 namespace tumble {
@@ -13,7 +13,7 @@ namespace {
 
 /// Returns whether a reading is clipped or suspect; one that is only partly saturated counts as measured.
 bool unread(const RateReport& report, const RateState& rate, std::size_t k) {
-  return rate.clipped_axes != 0 || report.doubted_axes[k] != 0;
+  return rate.clipped_axes != 0 || report.suspect_axes[k] != 0;
 }
 
 /// Returns the samples with forces at the times of the rates; those of a slow accelerometer are older. carried.md (C38)
@@ -59,7 +59,7 @@ void RegimeSmoother::join(std::span<const ImuSample> samples, std::vector<RateSt
   ClippingFinder::Params finding;
   finding.upright_rails = params_.rate.rails;
   CarriedElements known = carried_elements(samples, ClippingFinder(finding).find(samples));
-  known.doubt(samples, report.rate.doubted_axes);
+  known.mark_suspect(samples, report.rate.suspect_axes);
   std::vector<RateState> other;
   std::vector<AttitudeState> attitudes;
   if (!carried_.estimate(samples, known.clipped(), other, attitudes, report.carried).ok()) return;
@@ -67,10 +67,10 @@ void RegimeSmoother::join(std::span<const ImuSample> samples, std::vector<RateSt
   report.carried_asked = true;
   for (std::size_t k = 0; k < rates.size(); ++k) {
     if (by_segment[k] <= params_.carried_min) continue;
-    const bool only_doubted = rates[k].clipped_axes == 0 && rates[k].source != RateSource::measured;
+    const bool only_suspect = rates[k].clipped_axes == 0 && rates[k].source != RateSource::measured;
     rates[k] = either(rates[k], other[k], by_segment[k]);
     // no clipping was detected there, in any regime
-    if (only_doubted) rates[k].clipped_axes = 0, rates[k].source = RateSource::bounded_only;
+    if (only_suspect) rates[k].clipped_axes = 0, rates[k].source = RateSource::bounded_only;
   }
 }
 

@@ -9,7 +9,7 @@ namespace tumble {
 namespace {
 
 constexpr double kTurn_s = 0.01;     // time base of the rates' derivative: model_error_s of the rate model
-constexpr double kDoubtShare = 0.5;  // fraction of a lag's steps that reset the calibration
+constexpr double kResetShare = 0.5;  // fraction of a lag's steps that reset the calibration
 
 CarriedStream::Params joined(const RegimeStream::Params& params) {
   CarriedStream::Params out = params.carried;
@@ -119,10 +119,10 @@ ClippedElements RegimeStream::known_of(State& state) const {
 }
 
 RegimeShares RegimeStream::next(const RegimeShares& before, double dt_s, std::span<const RateStream::Knot> window,
-                                std::size_t k, const RigCalibration& rig, bool doubted) const {
+                                std::size_t k, const RigCalibration& rig, bool unstable) const {
   const RateStream::Knot& knot = window[k];
   // a rate that was fitted to the force with an invalid calibration agrees with the force in any regime
-  if (doubted && knot.observation.unseen() != 0) return before;
+  if (unstable && knot.observation.unseen() != 0) return before;
   RateState rate;
   rate.w_WI_I_rad_s = knot.estimate.knot.rate_rad_s;
   rate.covariance_rad2_s2 = knot.covariance_rad2_s2;
@@ -140,21 +140,21 @@ std::size_t RegimeStream::index_of(const RateState& rate, const State& state) co
 
 // Returns whether RateStream resets its calibration repeatedly, which indicates that there is no flight. Evaluated over
 // its lag, because the steps of this time determined the reported rate.
-bool RegimeStream::doubts(const State& state) const {
+bool RegimeStream::calibration_is_unstable(const State& state) const {
   const RateStream::Params& rate = params_.rate;
-  return state.resets > kDoubtShare * rate.lag_s / std::max(rate.period_s, rate.step_s);
+  return state.resets > kResetShare * rate.lag_s / std::max(rate.period_s, rate.step_s);
 }
 
 // Updates the evidence with the reported sample and its rate: the forward pass of carried.md (C38).
 void RegimeStream::judge(const RateState& rate, State& state) const {
-  const double dt_s = state.given == 0 ? params_.evidence.memory_s : seconds(rate.time_ns - state.given_ns);
-  state.shares =
-      next(state.shares, dt_s, state.rate.window, index_of(rate, state), rate_.calibration(state.rate), doubts(state));
+  const double dt_s = state.reported == 0 ? params_.evidence.memory_s : seconds(rate.time_ns - state.reported_ns);
+  state.shares = next(state.shares, dt_s, state.rate.window, index_of(rate, state), rate_.calibration(state.rate),
+                      calibration_is_unstable(state));
   const auto dropped = static_cast<double>(state.rate.rig_resets - state.rig_resets);
   state.rig_resets = state.rate.rig_resets;
   state.resets = std::exp(-dt_s / params_.rate.lag_s) * state.resets + dropped;
-  state.given_ns = rate.time_ns;
-  ++state.given;
+  state.reported_ns = rate.time_ns;
+  ++state.reported;
   state.sum.flight += state.shares.flight;
   state.sum.contact += state.shares.contact;
   state.sum.carried += state.shares.carried;
@@ -172,8 +172,8 @@ double RegimeStream::share_of(const RateState& rate, State& state) const {
   const TimeNs next_ns = next_clipped == window.end() ? 0 : next_clipped->observation.sample.time_ns;
   const bool before = next_clipped != window.end() && next_ns - rate.time_ns <= near_ns;
   const bool within = after && before && next_ns - *state.clipped_ns <= near_ns;
-  std::erase_if(state.near, [&](const Given& given) {
-    return given.time_ns < rate.time_ns - near_ns || (within && given.carried >= state.shares.carried);
+  std::erase_if(state.near, [&](const ReportedShare& reported) {
+    return reported.time_ns < rate.time_ns - near_ns || (within && reported.carried >= state.shares.carried);
   });
   if (within) state.near.push_back({rate.time_ns, state.shares.carried});
   if (!after && !before) return 0.0;
@@ -182,11 +182,11 @@ double RegimeStream::share_of(const RateState& rate, State& state) const {
   // continues into the future with provisional rates
   RegimeShares shares = state.shares;
   const RigCalibration rig = rate_.calibration(state.rate);
-  const bool doubted = doubts(state);
+  const bool unstable = calibration_is_unstable(state);
   for (std::size_t k = here + 1; k < window.size(); ++k) {
     const TimeNs now_ns = window[k].observation.sample.time_ns;
     if (now_ns - rate.time_ns > near_ns) break;
-    shares = next(shares, seconds(now_ns - window[k - 1].observation.sample.time_ns), window, k, rig, doubted);
+    shares = next(shares, seconds(now_ns - window[k - 1].observation.sample.time_ns), window, k, rig, unstable);
     if (clips(window[k])) out = std::min(out, shares.carried);
   }
   return out;

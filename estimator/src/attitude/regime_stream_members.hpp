@@ -15,7 +15,7 @@ void members(Self& s, Visitor& visit) {
   visit("shares.carried", s.carried);
 }
 
-template <StateOf<RegimeStream::Given> Self, class Visitor>
+template <StateOf<RegimeStream::ReportedShare> Self, class Visitor>
 void members(Self& s, Visitor& visit) {
   visit("near.time_ns", s.time_ns);
   visit("near.carried", s.carried);
@@ -28,14 +28,14 @@ void members(Self& s, Visitor& visit) {
   visit.scratch(s.signs);
   visit("regime.shares", s.shares);
   visit("regime.sum", s.sum);
-  visit("regime.given", s.given);
+  visit("regime.reported", s.reported);
   visit("regime.joined", s.joined);
   visit("regime.starts", s.starts);
   visit("regime.rig_resets", s.rig_resets);
   visit("regime.resets", s.resets);
   visit("regime.carrying", s.carrying);
   visit("regime.near", s.near);
-  visit("regime.given_ns", s.given_ns);
+  visit("regime.reported_ns", s.reported_ns);
   visit("regime.clipped_ns", s.clipped_ns);
 }
 

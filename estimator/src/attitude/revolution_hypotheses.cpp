@@ -51,7 +51,7 @@ double revolution_cost(const Problem& problem, std::size_t steps) {
 }
 
 /// carried.md (C28)
-std::vector<Segment> doubtful_segments(const Problem& problem) {
+std::vector<Segment> suspect_segments(const Problem& problem) {
   std::vector<Segment> out;
   const std::size_t count = problem.nodes().size();
   for (std::size_t j = 0; j < 3; ++j) {
@@ -146,7 +146,7 @@ std::vector<Hypothesis> hypotheses(const Problem& whole, const Segment& segment,
 
 /// Result of testing one segment: the solutions of the part's nodes from `from` on, best first; which of them is the
 /// current solution, if it is still among them; and whether another one is to replace it.
-struct Asked {
+struct TestedSegment {
   std::size_t from = 0;
   std::vector<Hypothesis> found;
   std::optional<std::size_t> held = std::nullopt;
@@ -154,22 +154,22 @@ struct Asked {
 };
 
 /// Returns the probabilities of carried.md (C29) of all but `standing`.
-Open shares_of(const Asked& asked, std::optional<std::size_t> standing) {
-  Open out{asked.from, {}};
-  const double least = asked.found.front().cost;
+Open shares_of(const TestedSegment& tested, std::optional<std::size_t> standing) {
+  Open out{tested.from, {}};
+  const double least = tested.found.front().cost;
   const auto weight = [&](const Hypothesis& each) { return std::exp(-0.5 * (each.cost - least)); };
   double sum = 0.0;
-  for (const Hypothesis& each : asked.found) sum += weight(each);
-  for (std::size_t k = 0; k < asked.found.size(); ++k) {
-    if (k != standing) out.others.emplace_back(weight(asked.found[k]) / sum, asked.found[k].nodes);
+  for (const Hypothesis& each : tested.found) sum += weight(each);
+  for (std::size_t k = 0; k < tested.found.size(); ++k) {
+    if (k != standing) out.others.emplace_back(weight(tested.found[k]) / sum, tested.found[k].nodes);
   }
   return out;
 }
 
 /// Returns the remaining alternatives after the selected changes were applied, or without them.
-std::vector<Open> left_open(const std::vector<Asked>& asked, bool taken) {
+std::vector<Open> left_open(const std::vector<TestedSegment>& tested, bool taken) {
   std::vector<Open> out;
-  for (const Asked& each : asked) {
+  for (const TestedSegment& each : tested) {
     const std::optional<std::size_t> standing = taken && each.another ? std::optional<std::size_t>(0) : each.held;
     Open open = shares_of(each, standing);
     if (!open.others.empty()) out.push_back(std::move(open));
@@ -196,24 +196,24 @@ std::vector<Part> with_surroundings(const Problem& problem, std::span<const Segm
 
 /// Tests each part. The descent's solution remains until an alternative is clearly better; if it was ruled out
 /// (`fallen`), the best alternative is used.
-std::vector<Asked> ask(const Problem& problem, std::span<const Segment> segments, std::span<const Part> parts,
-                       std::vector<bool>& fallen) {
-  std::vector<Asked> out;
+std::vector<TestedSegment> test_segments(const Problem& problem, std::span<const Segment> segments,
+                                         std::span<const Part> parts, std::vector<bool>& fallen) {
+  std::vector<TestedSegment> out;
   for (std::size_t k = 0; k < parts.size(); ++k) {
     const Part& part = parts[k];
-    Asked asked{part.first, hypotheses(problem, segments[k], part)};
-    if (asked.found.empty()) continue;
-    std::sort(asked.found.begin(), asked.found.end(),
+    TestedSegment tested{part.first, hypotheses(problem, segments[k], part)};
+    if (tested.found.empty()) continue;
+    std::sort(tested.found.begin(), tested.found.end(),
               [](const Hypothesis& a, const Hypothesis& b) { return a.cost < b.cost; });
     const std::span<const Node> before = problem.nodes().subspan(part.first, part.last - part.first + 1);
     const Eigen::RowVector3d m = problem.rows().row(static_cast<Eigen::Index>(segments[k].element));
-    for (std::size_t i = 0; i < asked.found.size() && !asked.held; ++i) {
-      if (std::abs(angle_between(before, asked.found[i].nodes, m, problem.node_s())) <= kPi) asked.held = i;
+    for (std::size_t i = 0; i < tested.found.size() && !tested.held; ++i) {
+      if (std::abs(angle_between(before, tested.found[i].nodes, m, problem.node_s())) <= kPi) tested.held = i;
     }
     const double margin = fallen[k] ? 0.0 : 2.0 * kTakeLogOdds;
-    asked.another = !asked.held || asked.found[*asked.held].cost > asked.found.front().cost + margin;
-    fallen[k] = fallen[k] || asked.another;
-    out.push_back(std::move(asked));
+    tested.another = !tested.held || tested.found[*tested.held].cost > tested.found.front().cost + margin;
+    fallen[k] = fallen[k] || tested.another;
+    out.push_back(std::move(tested));
   }
   return out;
 }
@@ -229,12 +229,12 @@ double revolution_cost(double span_s, double jerk) {
   return 720.0 * std::pow(2.0 * kPi / jerk, 2.0) / std::pow(span_s, 5.0);
 }
 
-void ask_revolutions(Problem& problem, CarriedSmoother::Report& report) {
-  ask_revolutions(problem, report, solve_again);
+void test_revolutions(Problem& problem, CarriedSmoother::Report& report) {
+  test_revolutions(problem, report, solve_again);
 }
 
-void ask_revolutions(Problem& problem, CarriedSmoother::Report& report, SolveAgain again) {
-  const std::vector<Segment> segments = doubtful_segments(problem);
+void test_revolutions(Problem& problem, CarriedSmoother::Report& report, SolveAgain again) {
+  const std::vector<Segment> segments = suspect_segments(problem);
   report.revolutions_asked = static_cast<int>(segments.size());
   if (segments.empty()) return;
   std::vector<Part> parts = with_surroundings(problem, segments);
@@ -242,21 +242,22 @@ void ask_revolutions(Problem& problem, CarriedSmoother::Report& report, SolveAga
   std::vector<bool> fallen(parts.size(), false);
   // the information about a part is linearised, so the tests are repeated after a change
   for (int round = 0; round < kRounds; ++round) {
-    if (!problem.tell(parts)) break;
-    const std::vector<Asked> asked = ask(problem, segments, parts, fallen);
-    const auto taken = std::count_if(asked.begin(), asked.end(), [](const Asked& each) { return each.another; });
-    open = left_open(asked, true);  // replaces the alternatives of the previous round
+    if (!problem.condense_rest(parts)) break;
+    const std::vector<TestedSegment> tested = test_segments(problem, segments, parts, fallen);
+    const auto taken =
+        std::count_if(tested.begin(), tested.end(), [](const TestedSegment& each) { return each.another; });
+    open = left_open(tested, true);  // replaces the alternatives of the previous round
     if (taken == 0) break;
     const Problem::Answer before = problem.answer();
     const CarriedSmoother::Report report_before = report;
-    for (const Asked& each : asked) {
+    for (const TestedSegment& each : tested) {
       if (each.another) problem.place(each.from, each.found.front().nodes);
     }
     if (!again(problem, report).ok()) {
       problem.restore(before);
       report = report_before;
       report.revolutions_failed += static_cast<int>(taken);
-      open = left_open(asked, false);
+      open = left_open(tested, false);
       break;
     }
     report.revolutions_taken += static_cast<int>(taken);

@@ -29,10 +29,10 @@ double revolution_cost(double span_s, double jerk_rad_s3_sqrts);
 /// `problem` must have its covariances. Sets the counters in `report`. Not modelled: correlated revolutions of two
 /// segments, modes other than whole revolutions about the clipped element's axis, and the effect of a revolution on the
 /// constants. Cost: two sweeps over all nodes, plus O(nodes of the tested segments).
-void ask_revolutions(Problem& problem, CarriedSmoother::Report& report);
+void test_revolutions(Problem& problem, CarriedSmoother::Report& report);
 
 /// Same, with `again` solving the whole problem, so that a test can let it fail.
 using SolveAgain = Status (*)(Problem& problem, CarriedSmoother::Report& report);
-void ask_revolutions(Problem& problem, CarriedSmoother::Report& report, SolveAgain again);
+void test_revolutions(Problem& problem, CarriedSmoother::Report& report, SolveAgain again);
 
 }  // namespace tumble::carried

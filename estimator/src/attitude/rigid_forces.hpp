@@ -22,11 +22,11 @@ struct RigidForces {
   std::array<double, kUnits> peak_m_s2{};    ///< largest component of the readings
   std::array<double, kUnits> change_m_s2{};  ///< change of the force since the last window
   Eigen::Vector3d rate_rad_s = Eigen::Vector3d::Zero(), acceleration_rad_s2 = Eigen::Vector3d::Zero();
-  double doubt_rad_s2 = 0.0;       ///< of the acceleration
-  double small_peak_m_s2 = 0.0;    ///< two units with smaller readings are not saturated
-  double hidden_force_m_s2 = 0.0;  ///< tolerated disagreement of the others
+  double uncertainty_rad_s2 = 0.0;  ///< of the acceleration
+  double small_peak_m_s2 = 0.0;     ///< two units with smaller readings are not saturated
+  double hidden_force_m_s2 = 0.0;   ///< tolerated disagreement of the others
 
-  struct Believed {
+  struct Agreed {
     std::size_t unit = 0;
     int others = -1;  ///< number of agreeing units
   };
@@ -40,12 +40,12 @@ struct RigidForces {
     if (std::max(peak_m_s2[k], peak_m_s2[j]) < small_peak_m_s2) return true;
     const Eigen::Vector3d d = position_m[k] - position_m[j], e = misfit(k, j);
     return std::abs(e.dot(d)) <= hidden_force_m_s2 * d.norm() &&
-           e.norm() <= hidden_force_m_s2 + doubt_rad_s2 * d.norm();
+           e.norm() <= hidden_force_m_s2 + uncertainty_rad_s2 * d.norm();
   }
 
   /// Returns the unit with which most others agree; among equals, the one whose force changed least.
-  Believed most_agreed() const {
-    Believed best;
+  Agreed most_agreed() const {
+    Agreed best;
     for (std::size_t k = 0; k < kUnits; ++k) {
       if (!present[k]) continue;
       int others = 0;

@@ -200,9 +200,9 @@ void TumbleAttitude::end_node(State& state) const {
 /// Variance of a body's velocity, one axis, known only from its motion so far and its rotation.
 double TumbleAttitude::own_velocity_m2_s2(double power_m2_s2, const State& state) const {
   if (state.at_rest) return squared(params_.expert.at_rest.velocity_sigma_m_s);
-  const double believed = squared(params_.velocity_m_sqrts) / params_.motion_tau_s;
+  const double assumed = squared(params_.velocity_m_sqrts) / params_.motion_tau_s;
   const double turning = 0.5 * squared(params_.radius_m) * state.rate_rad_s.squaredNorm();
-  return std::max({believed, power_m2_s2, turning});
+  return std::max({assumed, power_m2_s2, turning});
 }
 
 /// Updates an alignment after this node's correction, a rotation of W; attitude.md (A19), (A20).

@@ -41,14 +41,14 @@ void UnitSenses::add(const Eigen::Vector3d& force_m_s2, const Eigen::Vector3d& p
   }
 }
 
-std::optional<UnitSenses::Told> UnitSenses::told() const {
-  std::optional<Told> best;
+std::optional<UnitSenses::Detected> UnitSenses::detected() const {
+  std::optional<Detected> best;
   double most = 0.0;
   for (std::size_t k = 0; k < kSenses; ++k) {
     if (size_m2_s3[k] < kSizeMin_m2_s3 || gain_m2_s3[k] < kShareMin * size_m2_s3[k]) continue;
     if (gain_m2_s3[k] <= most) continue;
     most = gain_m2_s3[k];
-    best = Told{k, gain_m2_s3[k] / size_m2_s3[k]};
+    best = Detected{k, gain_m2_s3[k] / size_m2_s3[k]};
   }
   return best;
 }

@@ -29,7 +29,7 @@ double after_ns(TimeNs later_ns, TimeNs earlier_ns) {
 struct Line {
   double period_ns = 0.0, last_ns = 0.0;  ///< slope; value at the last stamp's number, from the first stamp
   double sum_n = 0.0, sum_nn = 0.0;       ///< sums over the numbers, counted from the last
-  double square_ns2 = 0.0;                ///< variance of the stamps about the line
+  double mean_square_error_ns2 = 0.0;     ///< variance of the stamps about the line
 };
 
 using Offsets = std::array<double, SampleClock::kStart>;  // from the first stamp [ns]
@@ -51,7 +51,7 @@ Line fit(const Offsets& x_ns, const Numbers& n) {
   line.period_ns = (kCount * sum_nx - line.sum_n * sum_x) / determinant;
   for (std::size_t k = 0; k < SampleClock::kStart; ++k) {
     const double residual = x_ns[k] - line.last_ns - (n[k] - n.back()) * line.period_ns;
-    line.square_ns2 += residual * residual / (kCount - 2.0);
+    line.mean_square_error_ns2 += residual * residual / (kCount - 2.0);
   }
   return line;
 }
@@ -71,7 +71,7 @@ Numbers by_steps(const Offsets& x_ns, double period_ns) {
   return n;
 }
 
-Numbers by_line(const Offsets& x_ns, const Numbers& before, const Line& line) {
+Numbers index_from_fit(const Offsets& x_ns, const Numbers& before, const Line& line) {
   Numbers n{};
   for (std::size_t k = 0; k < n.size(); ++k) {
     n[k] = std::round((x_ns[k] - line.last_ns) / line.period_ns + before.back());
@@ -86,32 +86,32 @@ SampleClock::SampleClock(const Params& params) : params_(params) {
   require_fields(params);
 }
 
-bool SampleClock::mends(const State& state) const {
-  if (!state.line) return false;
-  const double jitter = std::sqrt(state.square_ns2) / state.period_ns;
+bool SampleClock::corrects_stamps(const State& state) const {
+  if (!state.line_fitted) return false;
+  const double jitter = std::sqrt(state.mean_square_error_ns2) / state.period_ns;
   return jitter >= params_.jitter_min && jitter <= params_.jitter_max &&
-         state.product_ns2 <= kWander * state.square_ns2;
+         state.mean_error_product_ns2 <= kWander * state.mean_square_error_ns2;
 }
 
 std::optional<double> SampleClock::jitter_s(const State& state) {
-  if (!state.line) return std::nullopt;
-  return 1e-9 * std::sqrt(state.square_ns2);
+  if (!state.line_fitted) return std::nullopt;
+  return 1e-9 * std::sqrt(state.mean_square_error_ns2);
 }
 
 Status SampleClock::push(TimeNs stamp_ns, State& state, TimeNs& time_ns) const {
   if (state.stamp_ns && stamp_ns <= *state.stamp_ns)
     return {Trouble::time_order, "time_ns", double(stamp_ns), double(*state.stamp_ns)};
   const double step_ns = state.stamp_ns ? after_ns(stamp_ns, *state.stamp_ns) : 0.0;
-  if (state.line) {
+  if (state.line_fitted) {
     follow(step_ns, stamp_ns, state);
   } else {
     state.start[state.samples++] = stamp_ns;
     if (state.samples == kStart) begin(state);
   }
   time_ns = stamp_ns;
-  if (mends(state) && std::abs(stamp_ns) < kLast_ns) {
+  if (corrects_stamps(state) && std::abs(stamp_ns) < kLast_ns) {
     const double bound_ns = 0.5 * state.period_ns;
-    time_ns += std::llround(std::clamp(state.ahead_ns, -bound_ns, bound_ns));
+    time_ns += std::llround(std::clamp(state.fit_minus_stamp_ns, -bound_ns, bound_ns));
   }
   // after an uncorrected stamp or a burst, time must still increase: the stamps catch up
   if (state.stamp_ns && time_ns <= state.time_ns)
@@ -128,42 +128,42 @@ void SampleClock::begin(State& state) const {
   state.samples = 0;
   Numbers numbers = by_steps(x_ns, median_step(x_ns));
   Line line = fit(x_ns, numbers);
-  numbers = by_line(x_ns, numbers, line);
+  numbers = index_from_fit(x_ns, numbers, line);
   line = fit(x_ns, numbers);
   if (!(line.period_ns > 0.0 && line.period_ns < kPeriodMax_ns)) return;
-  if (!(std::sqrt(line.square_ns2) < kNoPeriod * line.period_ns)) return;
-  state.line = true;
+  if (!(std::sqrt(line.mean_square_error_ns2) < kNoPeriod * line.period_ns)) return;
+  state.line_fitted = true;
   state.period_ns = line.period_ns;
-  state.ahead_ns = line.last_ns - x_ns.back();
+  state.fit_minus_stamp_ns = line.last_ns - x_ns.back();
   state.sum = kStart;
   state.sum_n = line.sum_n;
   state.sum_nn = line.sum_nn;
-  state.square_ns2 = line.square_ns2;
-  state.product_ns2 = state.error_ns = 0.0;
-  state.strays = 0;
+  state.mean_square_error_ns2 = line.mean_square_error_ns2;
+  state.mean_error_product_ns2 = state.error_ns = 0.0;
+  state.outliers = 0;
 }
 
 /// Updates the line with a stamp, sample_clock.md (S1), (S2) and (S3). Restarts if the sample's number is uncertain.
 void SampleClock::follow(double step_ns, TimeNs stamp_ns, State& state) const {
-  const double passed_ns = step_ns - state.ahead_ns;
+  const double passed_ns = step_ns - state.fit_minus_stamp_ns;
   const double number = std::max(1.0, std::round(passed_ns / state.period_ns));
   const double error_ns = passed_ns - number * state.period_ns;
-  const double jitter_ns = std::max(std::sqrt(state.square_ns2), params_.jitter_min * state.period_ns);
+  const double jitter_ns = std::max(std::sqrt(state.mean_square_error_ns2), params_.jitter_min * state.period_ns);
   const double before = state.sum * state.sum_nn - state.sum_n * state.sum_n;
   const double unsure_ns = number * jitter_ns * std::sqrt(state.sum / before);
-  state.strays = std::abs(error_ns) > kStray * state.period_ns ? state.strays + 1 : 0;
-  const bool lost = unsure_ns > kNumberSigma * state.period_ns || state.strays > kStraysMax ||
+  state.outliers = std::abs(error_ns) > kStray * state.period_ns ? state.outliers + 1 : 0;
+  const bool lost = unsure_ns > kNumberSigma * state.period_ns || state.outliers > kStraysMax ||
                     jitter_ns > kNoPeriod * state.period_ns;
   if (lost) {
-    state.line = false;
+    state.line_fitted = false;
     state.start.front() = stamp_ns;
     state.samples = 1;
     return;
   }
   const double limited_ns = std::clamp(error_ns, -kOutlier * jitter_ns, kOutlier * jitter_ns);
   const double fading = std::min(0.5, 1e-9 * number * state.period_ns / params_.memory_s);
-  state.square_ns2 += fading * (limited_ns * limited_ns - state.square_ns2);
-  state.product_ns2 += fading * (limited_ns * state.error_ns - state.product_ns2);
+  state.mean_square_error_ns2 += fading * (limited_ns * limited_ns - state.mean_square_error_ns2);
+  state.mean_error_product_ns2 += fading * (limited_ns * state.error_ns - state.mean_error_product_ns2);
   state.error_ns = limited_ns;
 
   // numbers count from this sample; only its residual about the line is not zero
@@ -172,7 +172,7 @@ void SampleClock::follow(double step_ns, TimeNs stamp_ns, State& state) const {
   state.sum_n = keep * (state.sum_n - number * state.sum);
   state.sum = keep * state.sum + 1.0;
   const double determinant = state.sum * state.sum_nn - state.sum_n * state.sum_n;
-  state.ahead_ns = state.sum_nn / determinant * limited_ns - error_ns;
+  state.fit_minus_stamp_ns = state.sum_nn / determinant * limited_ns - error_ns;
   state.period_ns -= state.sum_n / determinant * limited_ns;
 }
 
@@ -181,24 +181,24 @@ Status SampleClock::check_state(const State& state) {
   const auto [early_ns, late_ns] = std::minmax(state.time_ns, *state.stamp_ns);
   if (!(after_ns(late_ns, early_ns) <= state.period_ns + 1.0))
     return {Trouble::out_of_range, "stamps.time_ns", double(state.time_ns), double(*state.stamp_ns)};
-  if (!state.line) return {};
+  if (!state.line_fitted) return {};
   if (!(state.period_ns > 0.0)) return {Trouble::out_of_range, "stamps.period_ns", state.period_ns, 0.0};
   const double determinant = state.sum * state.sum_nn - state.sum_n * state.sum_n;
   if (!(determinant > 0.0)) return {Trouble::out_of_range, "stamps.sum_nn", determinant, 0.0};
   return {};
 }
 
-Status to_sample_times(const SampleClock& clock, std::span<TimeNs> stamps_ns, double& mended_s) {
-  mended_s = 0.0;
+Status to_sample_times(const SampleClock& clock, std::span<TimeNs> stamps_ns, double& corrected_jitter_s) {
+  corrected_jitter_s = 0.0;
   SampleClock::State state;
   std::vector<TimeNs> times_ns(stamps_ns.size());
   double largest_s = 0.0;
   for (std::size_t k = 0; k < stamps_ns.size(); ++k) {
     if (const Status status = clock.push(stamps_ns[k], state, times_ns[k]); !status.ok()) return status;
-    if (clock.mends(state)) largest_s = std::max(largest_s, *SampleClock::jitter_s(state));
+    if (clock.corrects_stamps(state)) largest_s = std::max(largest_s, *SampleClock::jitter_s(state));
   }
   std::copy(times_ns.begin(), times_ns.end(), stamps_ns.begin());
-  mended_s = largest_s;
+  corrected_jitter_s = largest_s;
   return {};
 }
 

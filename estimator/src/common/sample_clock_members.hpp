@@ -12,16 +12,16 @@ void members(Self& s, Visitor& visit) {
   visit.leading("stamps.start", s.start, s.samples);
   visit("stamps.stamp_ns", s.stamp_ns);
   visit("stamps.time_ns", s.time_ns);
-  visit("stamps.line", s.line);
+  visit("stamps.line_fitted", s.line_fitted);
   visit("stamps.period_ns", s.period_ns, 0.0, 1e11);
-  visit("stamps.ahead_ns", s.ahead_ns);
+  visit("stamps.fit_minus_stamp_ns", s.fit_minus_stamp_ns);
   visit("stamps.sum", s.sum, 0.0, 1e9);
   visit("stamps.sum_n", s.sum_n);
   visit("stamps.sum_nn", s.sum_nn);
-  visit("stamps.square_ns2", s.square_ns2, 0.0, 1e30);
-  visit("stamps.product_ns2", s.product_ns2);
+  visit("stamps.mean_square_error_ns2", s.mean_square_error_ns2, 0.0, 1e30);
+  visit("stamps.mean_error_product_ns2", s.mean_error_product_ns2);
   visit("stamps.error_ns", s.error_ns);
-  visit("stamps.strays", s.strays, 0.0, 1e3);
+  visit("stamps.outliers", s.outliers, 0.0, 1e3);
 }
 
 }  // namespace tumble

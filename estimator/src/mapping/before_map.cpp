@@ -18,9 +18,9 @@ using Params = LidarInertialOdometry::Params;
 // Robots of this library are slower, except for moments.
 constexpr double kSpeed_m_s = 10.0, kSpeedTime_s = 1.0;
 
-Belief of_motion(const MotionState& state, const SweepCalibration& calibration, const Motion& weight,
-                 const Motion& error) {
-  Belief out;
+StateEstimate of_motion(const MotionState& state, const SweepCalibration& calibration, const Motion& weight,
+                        const Motion& error) {
+  StateEstimate out;
   out.mean.state = state;
   out.mean.state.covariance = weight;
   out.mean.calibration = calibration;
@@ -58,7 +58,7 @@ void bound_speed(double sigma_m_s, MotionState& state, Motion& C, Motion& E) {
 
 }  // namespace
 
-Belief belief_before_map(const Params& params, const MotionState& levelled) {
+StateEstimate belief_before_map(const Params& params, const MotionState& levelled) {
   SweepCalibration calibration;
   calibration.T_IL = params.T_IL;
   calibration.gravity_W_m_s2 = Eigen::Vector3d(0.0, 0.0, -params.expert.gravity_m_s2);
@@ -67,7 +67,7 @@ Belief belief_before_map(const Params& params, const MotionState& levelled) {
   return of_motion(levelled, calibration, levelled.covariance, error);
 }
 
-Belief without_place(const Belief& reckoned, double step_s) {
+StateEstimate without_place(const StateEstimate& reckoned, double step_s) {
   MotionState state = reckoned.mean.state;
   Motion C = u::block(reckoned.weight, u::motion), E = u::block(reckoned.error, u::motion);
   bound_speed(kSpeed_m_s * std::sqrt(kSpeedTime_s / step_s), state, C, E);
@@ -81,12 +81,12 @@ Belief without_place(const Belief& reckoned, double step_s) {
 
 /// A frame that is turned by the tilt error φ so that the IMU's attitude has no error sees the velocity v and gravity g
 /// turned back: δv + v × φ, g × φ.
-Belief belief_at_first_sweep(const Params& params, const Belief& reckoned) {
+StateEstimate belief_at_first_sweep(const Params& params, const StateEstimate& reckoned) {
   MotionState start = reckoned.mean.state;
   start.covariance.setZero();
   u::variances(start.covariance, u::tilt)
       .setConstant(params.expert.start.level_sigma_rad * params.expert.start.level_sigma_rad);
-  Belief out = belief_at_start(params, start);
+  StateEstimate out = estimate_at_start(params, start);
   Eigen::Matrix<double, 6, 9> T = Eigen::Matrix<double, 6, 9>::Zero();  // of velocity and gravity
   T.block<3, 3>(0, 3) = so3::hat(start.v_WI_m_s);
   T.block<3, 3>(0, 6).setIdentity();
@@ -105,7 +105,7 @@ Belief belief_at_first_sweep(const Params& params, const Belief& reckoned) {
   return out;
 }
 
-WorldCovariance world_at_first_sweep(const Params& params, const Belief& reckoned) {
+WorldCovariance world_at_first_sweep(const Params& params, const StateEstimate& reckoned) {
   WorldCovarianceParams world = params.expert.world;
   world.tilt_sigma_rad = std::sqrt(u::variances(reckoned.error, u::tilt).mean());
   return {world, reckoned.mean.state.q_WI, params.T_IL.translation()};

@@ -24,17 +24,18 @@ Eigen::Matrix<double, SweepCalibration::kErrors, 1> SweepCalibration::minus(cons
   return error;
 }
 
-double GivenCalibration::moved(const SweepCalibration& learnt) const {
-  const auto by = learnt.minus(calibration);
+double StatedCalibration::deviations(const SweepCalibration& estimated) const {
+  const auto by = estimated.minus(calibration);
   const auto share = [](double part, double sigma) { return part == 0.0 ? 0.0 : part / sigma; };
   return std::max({share(by.head<3>().norm(), mount_sigma_rad), share(by.segment<3>(3).norm(), mount_sigma_m),
                    share(std::abs(by[6]), time_offset_sigma_s)});
 }
 
-Status GivenCalibration::verdict(const SweepCalibration& learnt) const {
-  const double by = moved(learnt);
-  if (by <= kBelieved) return {};
-  return {Trouble::out_of_range, "calibration of lidar and IMU, moved in deviations of what was given", by, kBelieved};
+Status StatedCalibration::verdict(const SweepCalibration& estimated) const {
+  const double by = deviations(estimated);
+  if (by <= kMaxDeviations) return {};
+  return {Trouble::out_of_range, "calibration of lidar and IMU, moved in deviations of what was given", by,
+          kMaxDeviations};
 }
 
 }  // namespace tumble

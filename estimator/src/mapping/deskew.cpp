@@ -11,7 +11,7 @@ PointCounts select_points(std::span<const LidarPoint> points, const PointBounds&
                           double sweep_start_s, std::vector<SweepPoint>& selected) {
   selected.clear();
   PointCounts counts;
-  counts.given = points.size();
+  counts.received = points.size();
   const Eigen::Matrix3f R = T_IL.linear().cast<float>();
   const Eigen::Vector3f p = T_IL.translation().cast<float>();
   const float near2 = static_cast<float>(bounds.range_min_m * bounds.range_min_m);

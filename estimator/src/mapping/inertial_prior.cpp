@@ -102,7 +102,7 @@ Status level_at_rest(const LidarInertialOdometry::Params& params, const Eigen::V
   return {};
 }
 
-Eigen::Vector3d believed_rate_sigma(const LidarInertialOdometry::Params& params, const RateState& rate) {
+Eigen::Vector3d assumed_rate_sigma(const LidarInertialOdometry::Params& params, const RateState& rate) {
   Eigen::Vector3d sigma = rate.covariance_rad2_s2.diagonal().cwiseMax(0.0).cwiseSqrt();
   const bool recovered = rate.source == RateSource::recovered_flight || rate.source == RateSource::recovered_contact;
   for (int axis = 0; axis < 3; ++axis) {

@@ -31,6 +31,6 @@ Status level_at_rest(const LidarInertialOdometry::Params& params, const Eigen::V
                      MotionState& state);
 
 /// Returns the uncertainty of a rate method's angular velocity, per IMU axis, limited to the mapper's upper bound.
-Eigen::Vector3d believed_rate_sigma(const LidarInertialOdometry::Params& params, const RateState& rate);
+Eigen::Vector3d assumed_rate_sigma(const LidarInertialOdometry::Params& params, const RateState& rate);
 
 }  // namespace tumble::mapping

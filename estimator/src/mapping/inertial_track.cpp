@@ -47,7 +47,7 @@ RestDetector::Params mapper_rest(const LidarInertialOdometry::Params& params) {
 InertialTrack::InertialTrack(const Params& params) : rests_(mapper_rest(params)) {}
 
 std::optional<TimeNs> InertialTrack::last_ns() const {
-  return samples_.empty() ? border_ns_ : samples_.back().time_ns;
+  return samples_.empty() ? boundary_ns_ : samples_.back().time_ns;
 }
 
 Status InertialTrack::check(const ImuSample& sample) const {
@@ -61,14 +61,14 @@ Status InertialTrack::check(const ImuSample& sample) const {
 void InertialTrack::take(const Params& params, const ImuSample& sample, const RateState& rate) {
   const TimeNs from_ns = last_ns().value_or(sample.time_ns);
   // the first window has the length of the second
-  if (!border_ns_ && samples_.size() == 1) samples_[0].from_ns = 2 * from_ns - sample.time_ns;
+  if (!boundary_ns_ && samples_.size() == 1) samples_[0].from_ns = 2 * from_ns - sample.time_ns;
   MotionSample next;
   next.from_ns = from_ns;
   next.time_ns = sample.time_ns;
   listen_for_rest(params, sample, rate, next);
   if (!next.at_rest) next.w_WI_I_rad_s = rate.w_WI_I_rad_s - initial_.gyro_bias_rad_s;
   next.f_I_m_s2 = sample.specific_force_m_s2;
-  next.rate_sigma_rad_s = believed_rate_sigma(params, rate);
+  next.rate_sigma_rad_s = assumed_rate_sigma(params, rate);
   next.clipped_axes = static_cast<std::uint8_t>(rate.clipped_axes & kClipGyro);
   next.railed_axes = railed_axes(params, sample);
   const bool after_gap = next.time_ns - next.from_ns > kGap_ns;
@@ -77,7 +77,7 @@ void InertialTrack::take(const Params& params, const ImuSample& sample, const Ra
     next.from_ns = std::max(from_ns, next.time_ns - (newest_->time_ns - newest_->from_ns));
   next.bridges_gap = after_gap && next.from_ns == from_ns;
   if (next.bridges_gap) next.rate_sigma_rad_s.setConstant(params.expert.prior.rate_sigma_max_rad_s);
-  const bool in_flight = params.expert.flight.body && !samples_.empty() && tell_flight(params, next, after_gap);
+  const bool in_flight = params.expert.flight.body && !samples_.empty() && detect_flight(params, next, after_gap);
   before_newest_ = newest_;
   newest_ = rate_of(next);
   if (after_gap && !next.bridges_gap) fill_gap(params, in_flight);
@@ -117,7 +117,7 @@ bool InertialTrack::fly_through(const Params& params, const WindowRate& before, 
 
 /// Decides whether the newest sample belongs to a flight, with the rates on both sides of it. Before a gap, uses the
 /// rate predicted by free flight. flight_arc.md (A3), (A4), (A5).
-bool InertialTrack::tell_flight(const Params& params, const MotionSample& next, bool after_gap) {
+bool InertialTrack::detect_flight(const Params& params, const MotionSample& next, bool after_gap) {
   MotionSample& now = samples_.back();
   if (now.in_flight) return true;
   if (now.at_rest || now.bridges_gap || !before_newest_) return false;
@@ -136,13 +136,13 @@ bool InertialTrack::tell_flight(const Params& params, const MotionSample& next, 
 
 void InertialTrack::listen_for_rest(const Params& params, const ImuSample& sample, const RateState& rate,
                                     MotionSample& next) {
-  ImuSample heard = sample;
-  heard.angular_velocity_rad_s = rate.w_WI_I_rad_s;
+  ImuSample received = sample;
+  received.angular_velocity_rad_s = rate.w_WI_I_rad_s;
   const bool clipped = (rate.clipped_axes & kClipGyro) != 0;
   // during the initial rest, its mean is the bias
   const Eigen::Vector3d bias = initial_.lasts ? Eigen::Vector3d(Eigen::Vector3d::Zero()) : initial_.gyro_bias_rad_s;
   if (clipped) rest_ = {};
-  if (!clipped && rests_.observe(heard, rest_, bias)) next.rests_since_ns = rest_.first_ns;
+  if (!clipped && rests_.observe(received, rest_, bias)) next.rests_since_ns = rest_.first_ns;
   if (initial_.lasts) {
     if (!initial_.first_ns) initial_.first_ns = initial_.run_ns = sample.time_ns;
     // the mean of a new run is as noisy as its readings, and noise may restart the run
@@ -153,11 +153,11 @@ void InertialTrack::listen_for_rest(const Params& params, const ImuSample& sampl
       initial_.gyro_bias_rad_s = rest_.mean_rate_rad_s();
   }
   next.at_rest = initial_.lasts;
-  if (rest_.open > 0) {
+  if (rest_.pending_samples > 0) {
     undecided_rad_s_.push_back(rate.w_WI_I_rad_s);
     return;
   }
-  const bool goes_on = next.rests_since_ns && *next.rests_since_ns < rest_.open_first_ns;
+  const bool goes_on = next.rests_since_ns && *next.rests_since_ns < rest_.pending_first_ns;
   if (!goes_on) take_back_rest(next.rests_since_ns);
   undecided_rad_s_.clear();
 }
@@ -196,7 +196,7 @@ std::optional<Eigen::Vector3d> InertialTrack::resting_force(TimeNs time_ns, doub
   return rest_.mean_force_m_s2();
 }
 
-void InertialTrack::leave_out_force(TimeNs end_ns) {
+void InertialTrack::exclude_force(TimeNs end_ns) {
   for (MotionSample& sample : samples_) {
     if (sample.from_ns >= end_ns) break;
     sample.bridges_gap = true;
@@ -204,10 +204,10 @@ void InertialTrack::leave_out_force(TimeNs end_ns) {
   }
 }
 
-void InertialTrack::forget_until(TimeNs end_ns) {
+void InertialTrack::prune_until(TimeNs end_ns) {
   const auto after = [&](const MotionSample& sample) { return sample.time_ns > end_ns; };
   samples_.erase(samples_.begin(), std::find_if(samples_.begin(), samples_.end(), after));
-  border_ns_ = end_ns;
+  boundary_ns_ = end_ns;
 }
 
 }  // namespace tumble::mapping

@@ -28,7 +28,7 @@ class InertialTrack {
   /// Returns the samples that end after `from_ns`.
   std::span<const MotionSample> samples_from(TimeNs from_ns) const;
   /// Returns the end of the last sweep; nothing before the first.
-  std::optional<TimeNs> border_ns() const { return border_ns_; }
+  std::optional<TimeNs> border_ns() const { return boundary_ns_; }
   /// Returns the mean specific force of the current rest, if it had lasted for `lasted_s` by `time_ns`.
   std::optional<Eigen::Vector3d> resting_force(TimeNs time_ns, double lasted_s) const;
   /// Returns whether the rest at the start continues.
@@ -39,9 +39,9 @@ class InertialTrack {
   bool rests_until(TimeNs end_ns) const;
   bool rests_between(TimeNs from_ns, TimeNs end_ns) const;
   /// Marks the forces before `end_ns` as unknown, as in a gap; the rates remain.
-  void leave_out_force(TimeNs end_ns);
+  void exclude_force(TimeNs end_ns);
   /// Deletes samples that ended by `end_ns`, the end of a sweep.
-  void forget_until(TimeNs end_ns);
+  void prune_until(TimeNs end_ns);
 
   template <class Self, class Visitor>
   static void members(Self& s, Visitor& visit);
@@ -59,12 +59,12 @@ class InertialTrack {
 
   void listen_for_rest(const Params& params, const ImuSample& sample, const RateState& rate, MotionSample& next);
   void take_back_rest(std::optional<TimeNs> rests_since_ns);
-  bool tell_flight(const Params& params, const MotionSample& next, bool after_gap);
+  bool detect_flight(const Params& params, const MotionSample& next, bool after_gap);
   void fill_gap(const Params& params, bool in_flight);
   bool fly_through(const Params& params, const WindowRate& before, const WindowRate& after);
 
   std::vector<MotionSample> samples_;
-  std::optional<TimeNs> border_ns_;  // end of the last sweep
+  std::optional<TimeNs> boundary_ns_;  // end of the last sweep
   RestDetector rests_;
   RestDetector::State rest_;
   InitialRest initial_;

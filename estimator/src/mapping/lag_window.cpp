@@ -7,7 +7,7 @@
 
 #include "../common/dense.hpp"
 #include "../common/symmetric.hpp"
-#include "belief.hpp"
+#include "state_estimate.hpp"
 
 namespace tumble::mapping {
 
@@ -55,7 +55,7 @@ void LagWindow::move_inserted(LocalMap& map) const {
   }
 }
 
-void LagWindow::forget_inserted() {
+void LagWindow::clear_inserted() {
   for (WindowSweep& sweep : sweeps_) sweep.inserted.clear();
 }
 

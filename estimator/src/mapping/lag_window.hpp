@@ -42,7 +42,7 @@ class LagWindow {
   /// Moves the map points of all sweeps but the newest to their smoothed positions.
   void move_inserted(LocalMap& map) const;
   /// Keeps all inserted points where they are, because indices of the map changed.
-  void forget_inserted();
+  void clear_inserted();
 
   std::size_t length() const { return length_; }
   const std::deque<WindowSweep>& sweeps() const { return sweeps_; }

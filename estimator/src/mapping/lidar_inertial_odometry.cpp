@@ -31,7 +31,7 @@ LidarInertialOdometry::Impl::Impl(const Params& given)
       window(given.expert.window_sweeps),
       map(given),
       scratch(given) {
-  border.belief.mean.calibration.T_IL = given.T_IL;
+  boundary.state_estimate.mean.calibration.T_IL = given.T_IL;
 }
 
 LidarInertialOdometry::LidarInertialOdometry(const Params& params) : impl_(std::make_unique<Impl>(params)) {}
@@ -67,7 +67,7 @@ Status LidarInertialOdometry::add_reading(const OdometerReading& reading) {
   return status;
 }
 
-void LidarInertialOdometry::leave_out_force() {
+void LidarInertialOdometry::exclude_force() {
   impl_->known = mapping::ConstantVelocity{};
 }
 
@@ -89,10 +89,10 @@ Status LidarInertialOdometry::predict(std::span<const ImuSample> samples, std::s
     if (Status status = track.check(samples[k]); !status.ok()) return status;
     track.take(my.params, samples[k], rates[k]);
   }
-  if (track.samples().empty()) return pose_at(my.border.time_ns(), pose);
+  if (track.samples().empty()) return pose_at(my.boundary.time_ns(), pose);
   const TimeNs end_ns = track.samples().back().time_ns;
-  if (std::holds_alternative<mapping::ConstantVelocity>(my.known)) track.leave_out_force(end_ns);
-  const Registration::Estimate& last = my.border.belief.mean;
+  if (std::holds_alternative<mapping::ConstantVelocity>(my.known)) track.exclude_force(end_ns);
+  const Registration::Estimate& last = my.boundary.state_estimate.mean;
   SweepTrajectory trajectory;
   if (Status status = trajectory.build(last.state, track.samples(), end_ns, last.calibration.gravity_W_m_s2);
       !status.ok())
@@ -100,7 +100,7 @@ Status LidarInertialOdometry::predict(std::span<const ImuSample> samples, std::s
   const int resting_sweeps = my.rests(track, trajectory, end_ns) ? my.resting_sweeps + 1 : 0;
   const mapping::MotionWindow motion{track.samples(), end_ns, resting_sweeps};
   const std::unique_ptr<const mapping::Prediction> at_start(
-      new mapping::Prediction(mapping::predict(my.params, my.border, motion, trajectory, my.known)));
+      new mapping::Prediction(mapping::predict(my.params, my.boundary, motion, trajectory, my.known)));
   const Registration::Estimate& mean = at_start->prior.mean;  // includes an odometer reading
   if (Status status =
           trajectory.build(mean.state, track.samples(), end_ns, mean.calibration.gravity_W_m_s2, mean.deficit_rad_s);
@@ -112,17 +112,17 @@ Status LidarInertialOdometry::predict(std::span<const ImuSample> samples, std::s
 }
 
 SweepCalibration LidarInertialOdometry::calibration() const {
-  SweepCalibration out = impl_->border.belief.mean.calibration;
+  SweepCalibration out = impl_->boundary.state_estimate.mean.calibration;
   out.time_offset_s += impl_->params.time_offset_s;
   return out;
 }
 
 SweepCalibration::Covariance LidarInertialOdometry::calibration_covariance() const {
-  return mapping::unknowns::block(impl_->border.belief.error, mapping::unknowns::calibration);
+  return mapping::unknowns::block(impl_->boundary.state_estimate.error, mapping::unknowns::calibration);
 }
 
 SweepCalibration::Covariance LidarInertialOdometry::calibration_weight() const {
-  return mapping::unknowns::block(impl_->border.belief.weight, mapping::unknowns::calibration);
+  return mapping::unknowns::block(impl_->boundary.state_estimate.weight, mapping::unknowns::calibration);
 }
 
 Status LidarInertialOdometry::pose_at(TimeNs time_ns, PoseState& pose) const {
@@ -140,7 +140,7 @@ Status LidarInertialOdometry::pose_at(TimeNs time_ns, PoseState& pose) const {
   return {};
 }
 
-std::vector<std::vector<PoseState>> LidarInertialOdometry::open_trajectories() const {
+std::vector<std::vector<PoseState>> LidarInertialOdometry::window_trajectories() const {
   std::vector<std::vector<PoseState>> all;
   const mapping::LagWindow& window = impl_->window;
   for (std::size_t k = window.is_full() ? 1 : 0; k < window.sweeps().size(); ++k)

@@ -71,7 +71,7 @@ std::size_t LocalMap::insert(const Params& params, const SweepToInsert& sweep, c
   std::size_t added = add(params.expert.map.sigma_max_m);
   if (empty()) added = add(std::numeric_limits<double>::infinity());  // an uncertain map is better than none
   seen_from_W_m_.push_back(middle.p_WI_m.cast<float>());
-  if (sweep.sure_of_place) look_through(sight_);
+  if (sweep.pose_certain) look_through(sight_);
   return added;
 }
 
@@ -113,7 +113,7 @@ void LocalMap::withdraw(std::uint32_t first_sweep) {
   seen_from_W_m_.resize(first_sweep);
 }
 
-bool LocalMap::knows_its_sweeps() const {
+bool LocalMap::has_sweep_origins() const {
   for (std::uint32_t index = 0; index < map_.index_end(); ++index) {
     if (map_.exists(index) && map_.sweep(index) >= seen_from_W_m_.size()) return false;
   }

@@ -25,7 +25,7 @@ struct SweepToInsert {
   const Registration::Matrix& covariance;
   std::span<const SweepPoint> points;
   bool rings_differ;
-  bool sure_of_place;  ///< its free space may remove points of the map
+  bool pose_certain;  ///< its free space may remove points of the map
 };
 
 /// The map around the sensor: its points, the sensor position at each observation, and their scan lines.
@@ -59,7 +59,7 @@ class LocalMap {
   std::vector<MapPoint> with_normals(const Params& params) const;
 
   /// Returns whether each point has a valid sweep number. Checks loaded maps.
-  bool knows_its_sweeps() const;
+  bool has_sweep_origins() const;
   template <class Self, class Visitor>
   static void members(Self& s, Visitor& visit);
 

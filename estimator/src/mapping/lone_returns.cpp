@@ -78,7 +78,7 @@ bool LoneReturns::is_neighbour(std::size_t at, std::size_t other, float reach2) 
   return !(sine2 > reach2);
 }
 
-bool LoneReturns::is_borne_out(const RangeNoise& noise, std::size_t at, float reach2) const {
+bool LoneReturns::is_confirmed(const RangeNoise& noise, std::size_t at, float reach2) const {
   const Beam& beam = beams_[at];
   // most returns are confirmed by the beam before; an index below 0 wraps beyond the end
   const bool has_before = is_neighbour(at, at - 1, reach2);
@@ -148,7 +148,7 @@ std::size_t LoneReturns::drop(const RangeNoise& noise, std::vector<SweepPoint>& 
   if (step2 > square(kStepMax)) return 0;
   const float reach2 = square(kReachSteps) * step2;
   alone_.resize(points.size());
-  for (std::size_t at = 0; at < beams_.size(); ++at) alone_[order_[at]] = !is_borne_out(noise, at, reach2);
+  for (std::size_t at = 0; at < beams_.size(); ++at) alone_[order_[at]] = !is_confirmed(noise, at, reach2);
   const auto dropped = static_cast<std::size_t>(std::count(alone_.begin(), alone_.end(), 1));
   if (static_cast<float>(dropped) <= kClearShare * static_cast<float>(points.size())) return 0;
   std::size_t kept = 0;

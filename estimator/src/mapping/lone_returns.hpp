@@ -47,7 +47,7 @@ class LoneReturns {
   void measure_steps();
   float median_step2();
   bool is_neighbour(std::size_t at, std::size_t other, float reach2) const;
-  bool is_borne_out(const RangeNoise& noise, std::size_t at, float reach2) const;
+  bool is_confirmed(const RangeNoise& noise, std::size_t at, float reach2) const;
 
   std::vector<std::uint32_t> ring_next_, order_;
   std::vector<Beam> beams_;                    // ring by ring, in order within each

@@ -15,7 +15,7 @@ namespace mapping {
 template <class Self, class Visitor>
 void InertialTrack::members(Self& s, Visitor& visit) {
   visit("track.samples", s.samples_);
-  visit("track.border_ns", s.border_ns_);
+  visit("track.boundary_ns", s.boundary_ns_);
   visit.scratch(s.rests_);
   visit("track.rest", s.rest_);
   visit("track.initial", s.initial_);
@@ -48,10 +48,10 @@ void LagWindow::members(Self& s, Visitor& visit) {
 
 template <StateOf<DeadReckoning> Self, class Visitor>
 void members(Self& s, Visitor& visit) {
-  visit("other.border", s.border);
+  visit("other.boundary", s.boundary);
   visit("other.window", s.window);
   visit("other.world", s.world);
-  visit("other.drawn_from", s.drawn_from);
+  visit("other.inserted_from", s.inserted_from);
 }
 
 template <class Self, class Visitor>
@@ -86,7 +86,7 @@ void LidarInertialOdometry::Impl::members(Self& s, Visitor& visit) {
   visit.scratch(s.params);
   visit_variant("tracking", s.tracking, visit);
   visit("track", s.track);
-  visit("border", s.border);
+  visit("boundary", s.boundary);
   visit_variant("known", s.known, visit);
   visit("resting_sweeps", s.resting_sweeps, 0.0, 1e9);
   visit("window", s.window);

@@ -8,7 +8,7 @@
 
 namespace tumble::mapping {
 
-struct Border;
+struct SweepBoundary;
 struct MotionWindow;
 struct Prediction;
 
@@ -28,7 +28,7 @@ struct KnownVelocity {
 
 /// The velocity continues with the uncertainty of impacts, and the gyro is used, for an accelerometer that is absent or
 /// always saturated. Needs neither function: the samples are treated as those of a gap
-/// (InertialTrack::leave_out_force), which also gives the noise.
+/// (InertialTrack::exclude_force), which also gives the noise.
 struct ConstantVelocity {};
 
 using MotionPrior = std::variant<InertialPrior, KnownVelocity, OdometerReading, ConstantVelocity>;
@@ -43,12 +43,12 @@ inline void impose(const MotionPrior& prior, Prediction& prediction) {
 
 /// Updates the prediction of a sweep by a reading from within: mapping.md (R34) to (R37). `within` is a part of the
 /// sweep's noise. An unusable reading, or one outside of the window, has no effect.
-void weigh_reading(const OdometerReading& reading, const Border& border, const MotionWindow& window,
+void weigh_reading(const OdometerReading& reading, const SweepBoundary& boundary, const MotionWindow& window,
                    const MotionNoise& within, Prediction& prediction);
-inline void weigh(const MotionPrior& prior, const Border& border, const MotionWindow& window, const MotionNoise& within,
-                  Prediction& prediction) {
+inline void weigh(const MotionPrior& prior, const SweepBoundary& boundary, const MotionWindow& window,
+                  const MotionNoise& within, Prediction& prediction) {
   if (const auto* const reading = std::get_if<OdometerReading>(&prior))
-    weigh_reading(*reading, border, window, within, prediction);
+    weigh_reading(*reading, boundary, window, within, prediction);
 }
 
 }  // namespace tumble::mapping

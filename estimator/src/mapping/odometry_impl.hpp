@@ -23,7 +23,7 @@ void require_params(const LidarInertialOdometry::Params& params);
 /// Unknowns at a sweep's start, predicted and updated, and the motion of the latter.
 struct UpdatedSweep {
   const Prediction& prediction;
-  const Belief& start;
+  const StateEstimate& start;
   const SweepTrajectory& trajectory;
 };
 
@@ -52,33 +52,33 @@ struct LidarInertialOdometry::Impl {
   /// Before there is a map: ok where this sweep starts it; else the state goes on by inertia to the sweep's end.
   Status start_map(TimeNs start_ns, TimeNs end_ns, std::span<const LidarPoint> returns, SweepReport& report);
   Status dead_reckon(TimeNs end_ns);
-  bool rests(const mapping::InertialTrack& heard, const SweepTrajectory& motion, TimeNs end_ns) const;
+  bool rests(const mapping::InertialTrack& inertial, const SweepTrajectory& motion, TimeNs end_ns) const;
   /// `trajectory` is the IMU's motion from the boundary on. On return it is that of the alignment, if there is one,
   /// otherwise that of a failed attempt.
   void register_to_map(const mapping::Prediction& prediction, const mapping::MotionWindow& motion,
                        mapping::SweepPoints& points, SweepTrajectory& trajectory, SweepReport& report,
                        mapping::Placed& placed);
   /// Returns the updated state. After tracking failure at rest, the prediction is that of the rest.
-  mapping::Belief update(const mapping::MotionWindow& motion, const mapping::Placed& placed,
-                         mapping::Prediction& prediction) const;
+  mapping::StateEstimate update(const mapping::MotionWindow& motion, const mapping::Placed& placed,
+                                mapping::Prediction& prediction) const;
   std::vector<mapping::InsertedPoint> insert(const mapping::UpdatedSweep& sweep, mapping::SweepPoints& points,
                                              bool rings_differ, const mapping::Placed& placed, SweepReport& report);
-  void carry_on(const mapping::UpdatedSweep& sweep, const mapping::Placed& placed, const mapping::MotionWindow& motion,
-                std::vector<mapping::InsertedPoint> inserted, SweepReport& report);
+  void propagate(const mapping::UpdatedSweep& sweep, const mapping::Placed& placed, const mapping::MotionWindow& motion,
+                 std::vector<mapping::InsertedPoint> inserted, SweepReport& report);
   /// Adds a sweep that continues from there.
   static mapping::WindowSweep& enter_window(const mapping::UpdatedSweep& sweep, const mapping::MotionWindow& motion,
-                                            const mapping::Border& from, mapping::LagWindow& into);
+                                            const mapping::SweepBoundary& from, mapping::LagWindow& into);
   /// For tracking failure, if only the IMU provides the motion.
-  void stop_at_rest(const mapping::MotionWindow& motion, const mapping::Border& from,
+  void stop_at_rest(const mapping::MotionWindow& motion, const mapping::SweepBoundary& from,
                     mapping::Prediction& prediction) const;
-  void carry_on_other(const mapping::MotionWindow& motion, bool doubted_before);
-  Status go_on_by_inertia(const mapping::MotionWindow& motion, bool rests, mapping::Border& at,
+  void propagate_alternative(const mapping::MotionWindow& motion, bool unconfirmed_before);
+  Status go_on_by_inertia(const mapping::MotionWindow& motion, bool rests, mapping::SweepBoundary& at,
                           mapping::LagWindow* into) const;
   void go_back_to_inertia();
   /// After tracking failure: the state at the boundary by the contradicted relocalisation; null if there was none.
-  const MotionState* by_the_place() const;
-  void part_from_world(const mapping::UpdatedSweep& sweep, const SweepReport& report);
-  void forget_until(TimeNs end_ns);
+  const MotionState* rejected_relocalisation() const;
+  void add_map_drift(const mapping::UpdatedSweep& sweep, const SweepReport& report);
+  void prune_until(TimeNs end_ns);
 
   PoseState pose_along(const SweepTrajectory& motion, double t_s, const Registration::Matrix& errors) const;
   /// Returns the poses at the ends of the IMU's windows, and at `end_ns` for the last; `errors` are those of the
@@ -96,9 +96,9 @@ struct LidarInertialOdometry::Impl {
   Params params;
   mapping::TrackingState tracking;
   mapping::InertialTrack track;
-  mapping::Border border;      // between the last sweep and the next
-  mapping::MotionPrior known;  // of the next sweep
-  int resting_sweeps = 0;      // consecutive sweeps at rest, by the IMU
+  mapping::SweepBoundary boundary;  // between the last sweep and the next
+  mapping::MotionPrior known;       // of the next sweep
+  int resting_sweeps = 0;           // consecutive sweeps at rest, by the IMU
   mapping::LagWindow window;
   mapping::LocalMap map;
   mapping::WorldCovariance world;

@@ -56,7 +56,7 @@ void members(Self& s, Visitor& visit) {
   visit("report.weakest_direction", s.weakest_direction);
   visit("report.saturation_deficit_rad_s", s.saturation_deficit_rad_s);
   visit("report.points_used", s.points_used);
-  visit("report.points_alone", s.points_alone);
+  visit("report.lone_points", s.lone_points);
   visit("report.points_registered", s.points_registered);
   visit("report.map_points_added", s.map_points_added);
 }

@@ -15,7 +15,7 @@ constexpr TimeNs kStamp_ns = 3'070'000'000'000'000'000;
 
 /// Parameters that an earlier run may have estimated: SecondPass.
 template <StateOf<LidarInertialOdometry::Params> Self, class Visitor>
-void visit_taught(Self& p, Visitor& visit) {
+void visit_estimated(Self& p, Visitor& visit) {
   visit("T_IL", p.T_IL);
   visit("time_offset_s", p.time_offset_s);
   visit("mount_sigma_rad", p.mount_sigma_rad);
@@ -35,10 +35,10 @@ Status check_window(const mapping::LagWindow& window, std::size_t length) {
 
 Status LidarInertialOdometry::Impl::check_other() const {
   if (!other) return {};
-  if (!mapping::is_to_be_borne_out(tracking) && !mapping::is_lost(tracking))
+  if (!mapping::is_unconfirmed(tracking) && !mapping::is_lost(tracking))
     return {Trouble::out_of_range, "other", 1.0, 0.0};
-  if (other->drawn_from > map.sweeps())
-    return {Trouble::out_of_range, "other.drawn_from", double(other->drawn_from), double(map.sweeps())};
+  if (other->inserted_from > map.sweeps())
+    return {Trouble::out_of_range, "other.inserted_from", double(other->inserted_from), double(map.sweeps())};
   for (const mapping::WindowSweep& sweep : other->window.sweeps()) {
     if (!sweep.inserted.empty()) return {Trouble::out_of_range, "other.inserted", double(sweep.inserted.size()), 0.0};
   }
@@ -55,7 +55,7 @@ Status LidarInertialOdometry::Impl::check_state() const {
         return {Trouble::out_of_range, "inserted.index", double(inserted.index), double(map.voxels().index_end())};
     }
   }
-  if (!map.knows_its_sweeps()) return {Trouble::out_of_range, "map.sweep", 1.0, 0.0};
+  if (!map.has_sweep_origins()) return {Trouble::out_of_range, "map.sweep", 1.0, 0.0};
   const std::span<const MotionSample> samples = track.samples();
   for (std::size_t k = 0; k < samples.size(); ++k) {
     if (samples[k].from_ns > samples[k].time_ns || (k > 0 && samples[k].time_ns <= samples[k - 1].time_ns))
@@ -65,18 +65,18 @@ Status LidarInertialOdometry::Impl::check_state() const {
   }
   const std::optional<TimeNs> last_ns = track.last_ns();
   if (last_ns && (*last_ns < -kStamp_ns || *last_ns > kStamp_ns))
-    return {Trouble::out_of_range, "track.border_ns", double(*last_ns), double(kStamp_ns)};
+    return {Trouble::out_of_range, "track.boundary_ns", double(*last_ns), double(kStamp_ns)};
   return {};
 }
 
 void LidarInertialOdometry::save(StateWriter& out) const {
-  visit_taught(std::as_const(impl_->params), out);
+  visit_estimated(std::as_const(impl_->params), out);
   Impl::members(std::as_const(*impl_), out);
 }
 
 void LidarInertialOdometry::load(StateReader& in) {
   Params params = impl_->params;
-  visit_taught(params, in);
+  visit_estimated(params, in);
   if (in.going()) in.refuse(check_odometry_params(params));
   if (!in.going()) return;
   auto fresh = std::make_unique<Impl>(params);
@@ -86,7 +86,7 @@ void LidarInertialOdometry::load(StateReader& in) {
 }
 
 void LidarInertialOdometry::describe(StateLayout& out) const {
-  visit_taught(std::as_const(impl_->params), out);
+  visit_estimated(std::as_const(impl_->params), out);
   Impl::members(std::as_const(*impl_), out);
 }
 

@@ -12,7 +12,7 @@
 
 namespace tumble {
 
-using mapping::Belief, mapping::InsertedPoint, mapping::MotionWindow, mapping::Placed, mapping::Prediction;
+using mapping::StateEstimate, mapping::InsertedPoint, mapping::MotionWindow, mapping::Placed, mapping::Prediction;
 using mapping::UpdatedSweep, mapping::WindowSweep;
 
 namespace {
@@ -27,13 +27,13 @@ Status LidarInertialOdometry::Impl::add_sweep(TimeNs start_ns, TimeNs end_ns, st
   if (Status status = check_sweep(start_ns, end_ns, returns); !status.ok()) return status;
   if (Status status = level_at_first(); !status.ok()) return status;
 
-  if (std::holds_alternative<mapping::ConstantVelocity>(known)) track.leave_out_force(end_ns);
+  if (std::holds_alternative<mapping::ConstantVelocity>(known)) track.exclude_force(end_ns);
   if (!mapping::has_started(tracking)) {
     if (Status status = start_map(start_ns, end_ns, returns, report); !status.ok()) return status;
   }
   // starts as the inertial prediction from the boundary; an alignment refines it
   SweepTrajectory& trajectory = scratch.trajectory;
-  const Registration::Estimate& before = border.belief.mean;
+  const Registration::Estimate& before = boundary.state_estimate.mean;
   if (Status status = trajectory.build(before.state, track.samples(), end_ns, before.calibration.gravity_W_m_s2);
       !status.ok())
     return status;
@@ -41,15 +41,15 @@ Status LidarInertialOdometry::Impl::add_sweep(TimeNs start_ns, TimeNs end_ns, st
   resting_sweeps = rests(track, trajectory, end_ns) ? resting_sweeps + 1 : 0;
   const MotionWindow motion{track.samples(), end_ns, resting_sweeps};
   const std::unique_ptr<Prediction> prediction(
-      new Prediction(mapping::predict(params, border, motion, trajectory, known)));  // 27 KiB: not on the stack
+      new Prediction(mapping::predict(params, boundary, motion, trajectory, known)));  // 27 KiB: not on the stack
 
   // a sweep without usable returns gets the inertial prediction
   mapping::SweepPoints& points = scratch.points;
   mapping::SweepPoints::Counts counts;
   const Status points_status = points.select(params, returns, end_ns - start_ns, before.calibration,
-                                             seconds(start_ns - border.time_ns()), counts);
+                                             seconds(start_ns - boundary.time_ns()), counts);
   report.points_used = counts.used;
-  report.points_alone = counts.alone;
+  report.lone_points = counts.lone;
   const auto placed = std::make_unique<Placed>();
   if (points_status.ok()) register_to_map(*prediction, motion, points, trajectory, report, *placed);
   if (other && mapping::contradicts(tracking, placed->placement)) {  // restart from tracking failure
@@ -61,7 +61,7 @@ Status LidarInertialOdometry::Impl::add_sweep(TimeNs start_ns, TimeNs end_ns, st
   report.verdict = placed->verdict;
 
   // updated state and motion, map update, and state for the next sweep
-  const std::unique_ptr<const Belief> start(new Belief(update(motion, *placed, *prediction)));
+  const std::unique_ptr<const StateEstimate> start(new StateEstimate(update(motion, *placed, *prediction)));
   if (!placed->alignment) {  // a failed attempt may have changed it
     const Registration::Estimate& mean = start->mean;
     const Status status = trajectory.build(mean.state, motion.samples, motion.end_ns, mean.calibration.gravity_W_m_s2,
@@ -71,9 +71,9 @@ Status LidarInertialOdometry::Impl::add_sweep(TimeNs start_ns, TimeNs end_ns, st
   const UpdatedSweep sweep{*prediction, *start, trajectory};
   // if the map had too few points, insertion follows the prior; LocalMap excludes points that are too uncertain
   std::vector<InsertedPoint> inserted;
-  if (placed->verdict != SweepVerdict::rejected || placed->map_says_nothing)
+  if (placed->verdict != SweepVerdict::rejected || placed->map_too_sparse)
     inserted = insert(sweep, points, counts.rings_differ, *placed, report);
-  carry_on(sweep, *placed, motion, std::move(inserted), report);
+  propagate(sweep, *placed, motion, std::move(inserted), report);
   return points_status;
 }
 
@@ -82,8 +82,8 @@ Status LidarInertialOdometry::Impl::check_sweep(TimeNs start_ns, TimeNs end_ns,
   const bool started = mapping::has_started(tracking) || track.border_ns();
   const std::span<const MotionSample> samples = track.samples();
   if (end_ns < start_ns) return {Trouble::time_order, "end_ns", double(end_ns), double(start_ns)};
-  if (started && start_ns < border.time_ns())
-    return {Trouble::time_order, "start_ns", double(start_ns), double(border.time_ns())};
+  if (started && start_ns < boundary.time_ns())
+    return {Trouble::time_order, "start_ns", double(start_ns), double(boundary.time_ns())};
   if (samples.empty() && returns.empty()) return {Trouble::empty, "points", 0.0, 1.0};
   if (samples.empty()) return {Trouble::too_few, "imu samples", 0.0, 1.0};
   if (samples.back().time_ns < end_ns) {
@@ -101,7 +101,7 @@ Status LidarInertialOdometry::Impl::level_at_first() {
   if (mapping::has_started(tracking) || track.border_ns()) return {};
   MotionState levelled;
   if (Status status = mapping::start_at_rest(params, track.samples(), levelled); !status.ok()) return status;
-  border.belief = mapping::belief_at_start(params, levelled);
+  boundary.state_estimate = mapping::estimate_at_start(params, levelled);
   world = mapping::WorldCovariance(params.expert.world, levelled.q_WI, params.T_IL.translation());
   return {};
 }
@@ -110,20 +110,20 @@ Status LidarInertialOdometry::Impl::level_at_first() {
 /// levelled state; otherwise it is the result of dead reckoning (mapping.md, "Start").
 Status LidarInertialOdometry::Impl::start_map(TimeNs start_ns, TimeNs end_ns, std::span<const LidarPoint> returns,
                                               SweepReport& report) {
-  const SweepCalibration calibration = border.belief.mean.calibration;
+  const SweepCalibration calibration = boundary.state_estimate.mean.calibration;
   mapping::SweepPoints::Counts counts;
   const Status selected = scratch.points.select(params, returns, end_ns - start_ns, calibration, 0.0, counts);
   report.points_used = counts.used;
-  report.points_alone = counts.alone;
+  report.lone_points = counts.lone;
   const std::size_t points = selected.ok() ? scratch.points.all().size() : 0;
   const bool usable = points >= params.expert.matching.least;
-  if (usable && !track.border_ns() && seconds(start_ns - border.time_ns()) <= kTogether_s) return {};
+  if (usable && !track.border_ns() && seconds(start_ns - boundary.time_ns()) <= kTogether_s) return {};
   if (usable) {
     const mapping::MotionPrior of_sweep = std::exchange(known, mapping::InertialPrior{});
     if (Status status = dead_reckon(start_ns); !status.ok()) return status;
     known = of_sweep;
-    world = mapping::world_at_first_sweep(params, border.belief);
-    border.belief = mapping::belief_at_first_sweep(params, border.belief);
+    world = mapping::world_at_first_sweep(params, boundary.state_estimate);
+    boundary.state_estimate = mapping::belief_at_first_sweep(params, boundary.state_estimate);
     return {};
   }
   if (Status status = dead_reckon(end_ns); !status.ok()) return status;
@@ -137,7 +137,7 @@ Status LidarInertialOdometry::Impl::dead_reckon(TimeNs end_ns) {
   MotionState levelled;
   if (!track.border_ns()) {
     if (Status status = mapping::start_at_rest(params, track.samples(), levelled); !status.ok()) return status;
-    border.belief = mapping::belief_before_map(params, levelled);
+    boundary.state_estimate = mapping::belief_before_map(params, levelled);
   }
   if (const std::optional<Eigen::Vector3d> force = track.resting_force(end_ns, params.expert.rest.levels_s)) {
     if (Status status = mapping::level_at_rest(params, *force, levelled); !status.ok()) return status;
@@ -146,24 +146,25 @@ Status LidarInertialOdometry::Impl::dead_reckon(TimeNs end_ns) {
       mapping::unknowns::variances(levelled.covariance, mapping::unknowns::velocity)
           .setConstant(std::pow(params.expert.standstill.creep_max_m_s, 2));
     }
-    border = mapping::Border{.belief = mapping::belief_before_map(params, levelled)};
+    boundary = mapping::SweepBoundary{.state_estimate = mapping::belief_before_map(params, levelled)};
   }
-  while (border.time_ns() < end_ns) {
-    const TimeNs from_ns = border.time_ns(), to_ns = std::min(end_ns, from_ns + kStep_ns);
+  while (boundary.time_ns() < end_ns) {
+    const TimeNs from_ns = boundary.time_ns(), to_ns = std::min(end_ns, from_ns + kStep_ns);
     const MotionWindow motion{track.samples_from(from_ns), to_ns, 0};
-    if (Status status = go_on_by_inertia(motion, track.rests_between(from_ns, to_ns), border, nullptr); !status.ok())
+    if (Status status = go_on_by_inertia(motion, track.rests_between(from_ns, to_ns), boundary, nullptr); !status.ok())
       return status;
-    border.belief = mapping::without_place(border.belief, seconds(to_ns - from_ns));
+    boundary.state_estimate = mapping::without_place(boundary.state_estimate, seconds(to_ns - from_ns));
   }
-  track.forget_until(end_ns);
+  track.prune_until(end_ns);
   return {};
 }
 
 /// Returns whether the IMU measures only gravity, and no more than gravity by the estimated attitude.
-bool LidarInertialOdometry::Impl::rests(const mapping::InertialTrack& heard, const SweepTrajectory& motion,
+bool LidarInertialOdometry::Impl::rests(const mapping::InertialTrack& inertial, const SweepTrajectory& motion,
                                         TimeNs end_ns) const {
-  if (!heard.rests_until(end_ns)) return false;
-  const Eigen::Vector3d gained_m_s = motion.state(motion.duration_s()).v_WI_m_s - border.belief.mean.state.v_WI_m_s;
+  if (!inertial.rests_until(end_ns)) return false;
+  const Eigen::Vector3d gained_m_s =
+      motion.state(motion.duration_s()).v_WI_m_s - boundary.state_estimate.mean.state.v_WI_m_s;
   return !(gained_m_s.norm() > params.expert.rest.force_m_s2 * motion.duration_s());
 }
 
@@ -174,11 +175,11 @@ void LidarInertialOdometry::Impl::register_to_map(const Prediction& prediction, 
     if (points.all().size() >= params.expert.matching.least) placed.verdict = SweepVerdict::first;
     return;
   }
-  const bool prior_trusted = mapping::prior_is_trusted(params, border, motion, trajectory);
+  const bool prior_certain = mapping::prior_is_certain(params, boundary, motion, trajectory);
   points.choose(params, trajectory);
   const mapping::Scene scene{motion.samples, motion.end_ns, points.chosen(), map.voxels()};
-  const mapping::Attempt attempt = mapping::attempt(params, {tracking, prediction.prior, by_the_place()}, scene,
-                                                    scratch.aligner, trajectory, placed.alignment);
+  const mapping::Attempt attempt = mapping::attempt(params, {tracking, prediction.prior, rejected_relocalisation()},
+                                                    scene, scratch.aligner, trajectory, placed.alignment);
   report.points_registered = scene.points.size();
   report.iterations = attempt.iterations;
   report.inlier_share = attempt.inlier_share;
@@ -191,20 +192,20 @@ void LidarInertialOdometry::Impl::register_to_map(const Prediction& prediction, 
     report.weakest_sigma_m = aligned.weakest_sigma_m;
     report.saturation_deficit_rad_s = aligned.mean.deficit_rad_s.rowwise().mean();
   }
-  mapping::judge(params, tracking, scene.points.size(), prior_trusted, attempt, placed);
+  mapping::judge(params, tracking, scene.points.size(), prior_certain, attempt, placed);
 }
 
 /// Returns the state at the sweep's start. After tracking failure at rest, first corrects the prediction, because the
 /// window uses it, too.
-Belief LidarInertialOdometry::Impl::update(const MotionWindow& motion, const Placed& placed,
-                                           Prediction& prediction) const {
+StateEstimate LidarInertialOdometry::Impl::update(const MotionWindow& motion, const Placed& placed,
+                                                  Prediction& prediction) const {
   if (placed.alignment) return mapping::posterior(prediction, *placed.alignment);
   // the inertial prior remains; an IMU at rest stops its velocity drift
-  if (mapping::is_lost(tracking)) stop_at_rest(motion, border, prediction);
+  if (mapping::is_lost(tracking)) stop_at_rest(motion, boundary, prediction);
   return mapping::posterior(prediction);
 }
 
-void LidarInertialOdometry::Impl::stop_at_rest(const MotionWindow& motion, const mapping::Border& from,
+void LidarInertialOdometry::Impl::stop_at_rest(const MotionWindow& motion, const mapping::SweepBoundary& from,
                                                Prediction& prediction) const {
   if (std::holds_alternative<mapping::InertialPrior>(known) && track.rests_until(motion.end_ns))
     mapping::predict_rest(params, from, prediction);
@@ -213,120 +214,120 @@ void LidarInertialOdometry::Impl::stop_at_rest(const MotionWindow& motion, const
 std::vector<InsertedPoint> LidarInertialOdometry::Impl::insert(const UpdatedSweep& sweep, mapping::SweepPoints& points,
                                                                bool rings_differ, const Placed& placed,
                                                                SweepReport& report) {
-  const Belief& before = border.belief;
+  const StateEstimate& before = boundary.state_estimate;
   if (mapping::unknowns::variances(before.weight, mapping::unknowns::calibration).maxCoeff() > 0.0) {
     const SweepCalibration& now = sweep.start.mean.calibration;
     points.move(now, now.time_offset_s - before.mean.calibration.time_offset_s);
   }
   std::vector<InsertedPoint> inserted;
-  const bool sure = placed.verdict == SweepVerdict::registered && !mapping::is_lost(tracking) &&
-                    !mapping::is_to_be_borne_out(tracking);
+  const bool sure =
+      placed.verdict == SweepVerdict::registered && !mapping::is_lost(tracking) && !mapping::is_unconfirmed(tracking);
   report.map_points_added = map.insert(params, {sweep.trajectory, sweep.start.weight, points.all(), rings_differ, sure},
                                        scratch.aligner.registration(), inserted);
   return inserted;
 }
 
 /// Updates the persistent state after a sweep. The window links the sweep to the last one by the old boundary, so the
-/// sweep enters it before border_after() replaces the boundary.
-void LidarInertialOdometry::Impl::carry_on(const UpdatedSweep& sweep, const Placed& placed, const MotionWindow& motion,
-                                           std::vector<InsertedPoint> inserted, SweepReport& report) {
+/// sweep enters it before boundary_after() replaces the boundary.
+void LidarInertialOdometry::Impl::propagate(const UpdatedSweep& sweep, const Placed& placed, const MotionWindow& motion,
+                                            std::vector<InsertedPoint> inserted, SweepReport& report) {
   const Registration::Result* aligned = placed.alignment ? &*placed.alignment : nullptr;
-  const bool doubted_before = mapping::is_to_be_borne_out(tracking);
+  const bool unconfirmed_before = mapping::is_unconfirmed(tracking);
   tracking = mapping::after_sweep(tracking, placed.placement, placed.verdict);
-  report.unconfirmed = mapping::is_to_be_borne_out(tracking);
-  carry_on_other(motion, doubted_before);
+  report.unconfirmed = mapping::is_unconfirmed(tracking);
+  propagate_alternative(motion, unconfirmed_before);
   report.lost_sweeps = mapping::lost_sweeps(tracking);
   if (aligned && placed.verdict == SweepVerdict::degenerate && motion.resting_sweeps == 0)
     world.add_drift(report.weakest_sigma_m, report.weakest_direction);
   report.trajectory = poses_along(sweep.trajectory, motion.end_ns, sweep.start.error);
-  enter_window(sweep, motion, border, window).inserted = std::move(inserted);
+  enter_window(sweep, motion, boundary, window).inserted = std::move(inserted);
   if (aligned) {
     window.smooth();
     window.move_inserted(map);
   }
   // no later sweep refines it; it leaves with the next one
   if (window.is_full()) report.smoothed = poses_of(window.sweeps().front());
-  mapping::border_after(params, sweep.start, motion, sweep.trajectory, aligned, border);
-  report.pose = border.belief.mean.state.pose();
+  mapping::boundary_after(params, sweep.start, motion, sweep.trajectory, aligned, boundary);
+  report.pose = boundary.state_estimate.mean.state.pose();
   report.pose.covariance = report.trajectory.back().covariance;
-  if (placed.verdict != SweepVerdict::first) part_from_world(sweep, report);
-  forget_until(motion.end_ns);
+  if (placed.verdict != SweepVerdict::first) add_map_drift(sweep, report);
+  prune_until(motion.end_ns);
 }
 
 /// Points of the sweep have the error of its pose, which adds to the map's error where the robot is.
-void LidarInertialOdometry::Impl::part_from_world(const UpdatedSweep& sweep, const SweepReport& report) {
+void LidarInertialOdometry::Impl::add_map_drift(const UpdatedSweep& sweep, const SweepReport& report) {
   const double inserted_share =
       report.points_used == 0 ? 0.0 : double(report.map_points_added) / double(report.points_used);
   world.add_insertion(inserted_share, sweep.trajectory, sweep.start.error,
-                      border.belief.mean.calibration.T_IL.translation());
+                      boundary.state_estimate.mean.calibration.T_IL.translation());
 }
 
 /// All inputs up to the boundary have been used.
-void LidarInertialOdometry::Impl::forget_until(TimeNs end_ns) {
+void LidarInertialOdometry::Impl::prune_until(TimeNs end_ns) {
   known = mapping::InertialPrior{};
-  track.forget_until(end_ns);
-  if (mapping::is_to_be_borne_out(tracking))
+  track.prune_until(end_ns);
+  if (mapping::is_unconfirmed(tracking))
     return;  // withdrawing its points needs their sweep numbers, which pruning changes
-  if (map.prune(params, border.belief.mean.state.p_WI_m)) window.forget_inserted();
+  if (map.prune(params, boundary.state_estimate.mean.state.p_WI_m)) window.clear_inserted();
 }
 
 /// Propagates the alternative pose by inertial prediction. This pose is the one without an unconfirmed relocalisation,
 /// or a contradicted one after tracking failed again.
-void LidarInertialOdometry::Impl::carry_on_other(const MotionWindow& motion, bool doubted_before) {
-  const bool doubted = mapping::is_to_be_borne_out(tracking);
-  if (doubted && !doubted_before) {
+void LidarInertialOdometry::Impl::propagate_alternative(const MotionWindow& motion, bool unconfirmed_before) {
+  const bool unconfirmed = mapping::is_unconfirmed(tracking);
+  if (unconfirmed && !unconfirmed_before) {
     mapping::DeadReckoning& from_here = other.emplace();  // constructed in place: too large for the stack
-    from_here.border = border;
+    from_here.boundary = boundary;
     from_here.window = window;
-    from_here.window.forget_inserted();
+    from_here.window.clear_inserted();
     from_here.world = world;
-    from_here.drawn_from = map.sweeps() - 1;
+    from_here.inserted_from = map.sweeps() - 1;
   }
-  if (!doubted && !mapping::is_lost(tracking)) other.reset();
+  if (!unconfirmed && !mapping::is_lost(tracking)) other.reset();
   if (!other) return;
   const bool rests = std::holds_alternative<mapping::InertialPrior>(known) && track.rests_until(motion.end_ns);
-  if (!go_on_by_inertia(motion, rests, other->border, &other->window).ok()) other.reset();
+  if (!go_on_by_inertia(motion, rests, other->boundary, &other->window).ok()) other.reset();
 }
 
 /// From a border to a sweep's end without its points. `rests`: the velocity is known to be 0. The sweep enters the
 /// window, if there is one.
-Status LidarInertialOdometry::Impl::go_on_by_inertia(const MotionWindow& motion, bool rests, mapping::Border& at,
+Status LidarInertialOdometry::Impl::go_on_by_inertia(const MotionWindow& motion, bool rests, mapping::SweepBoundary& at,
                                                      mapping::LagWindow* into) const {
-  const Registration::Estimate& before = at.belief.mean;
+  const Registration::Estimate& before = at.state_estimate.mean;
   SweepTrajectory trajectory;
   if (Status status = trajectory.build(before.state, motion.samples, motion.end_ns, before.calibration.gravity_W_m_s2);
       !status.ok())
     return status;
   const std::unique_ptr<Prediction> prediction(new Prediction(mapping::predict(params, at, motion, trajectory, known)));
   if (rests) mapping::predict_rest(params, at, *prediction);
-  const std::unique_ptr<const Belief> start(new Belief(mapping::posterior(*prediction)));
+  const std::unique_ptr<const StateEstimate> start(new StateEstimate(mapping::posterior(*prediction)));
   const Registration::Estimate& mean = start->mean;
   if (Status status = trajectory.build(mean.state, motion.samples, motion.end_ns, mean.calibration.gravity_W_m_s2,
                                        mean.deficit_rad_s);
       !status.ok())
     return status;
   if (into != nullptr) enter_window({*prediction, *start, trajectory}, motion, at, *into);
-  mapping::border_after(params, *start, motion, trajectory, nullptr, at);
+  mapping::boundary_after(params, *start, motion, trajectory, nullptr, at);
   return {};
 }
 
 /// Reverts a contradicted relocalisation: removes its points from the map and returns to inertial prediction. The
 /// contradicted pose remains as a start of the search.
 void LidarInertialOdometry::Impl::go_back_to_inertia() {
-  map.withdraw(std::exchange(other->drawn_from, 0));  // pruning changes sweep numbers
-  std::swap(border, other->border);
+  map.withdraw(std::exchange(other->inserted_from, 0));  // pruning changes sweep numbers
+  std::swap(boundary, other->boundary);
   std::swap(window, other->window);
-  other->window.forget_inserted();
+  other->window.clear_inserted();
   std::swap(world, other->world);
   tracking = mapping::given_up(tracking);
 }
 
-const MotionState* LidarInertialOdometry::Impl::by_the_place() const {
-  return other && mapping::is_lost(tracking) ? &other->border.belief.mean.state : nullptr;
+const MotionState* LidarInertialOdometry::Impl::rejected_relocalisation() const {
+  return other && mapping::is_lost(tracking) ? &other->boundary.state_estimate.mean.state : nullptr;
 }
 
 WindowSweep& LidarInertialOdometry::Impl::enter_window(const UpdatedSweep& sweep, const MotionWindow& motion,
-                                                       const mapping::Border& from, mapping::LagWindow& into) {
+                                                       const mapping::SweepBoundary& from, mapping::LagWindow& into) {
   WindowSweep& newest = into.enter();
   newest.predicted.mean = sweep.prediction.prior.mean;
   newest.predicted.errors = sweep.prediction.errors;

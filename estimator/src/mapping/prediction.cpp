@@ -20,18 +20,19 @@ namespace u = unknowns;
 using Params = LidarInertialOdometry::Params;
 
 /// Continues the deficit of an axis that is saturated at the boundary, with exponential decay: mapping.md (R48).
-void carry_deficit(const Params& params, const Border& border, const SweepTrajectory& trajectory, Prediction& next) {
+void carry_deficit(const Params& params, const SweepBoundary& boundary, const SweepTrajectory& trajectory,
+                   Prediction& next) {
   constexpr int kLast = SweepTrajectory::kKnots - 1;
   u::rows(next.by_last, u::deficit).setZero();
   if (!params.expert.rails.estimate_deficit) return;
   const Eigen::Vector3d share_at_start = trajectory.deficit_share_at_start();
   const double rho = knot_correlation(params, trajectory);
   for (int axis = 0; axis < 3; ++axis) {
-    if (!(share_at_start[axis] > 0.0 && border.deficit_share[axis] > 0.0)) continue;
+    if (!(share_at_start[axis] > 0.0 && boundary.deficit_share[axis] > 0.0)) continue;
     double remains =
-        std::clamp(border.deficit_share[axis] / share_at_start[axis], 0.0, params.expert.rails.deficit_carry_max);
+        std::clamp(boundary.deficit_share[axis] / share_at_start[axis], 0.0, params.expert.rails.deficit_carry_max);
     for (int knot = 0; knot <= kLast; ++knot) {
-      next.prior.mean.deficit_rad_s(axis, knot) = remains * border.belief.mean.deficit_rad_s(axis, kLast);
+      next.prior.mean.deficit_rad_s(axis, knot) = remains * boundary.state_estimate.mean.deficit_rad_s(axis, kLast);
       next.by_last(u::deficit_at(axis, knot), u::deficit_at(axis, kLast)) = remains;
       remains *= rho;
     }
@@ -79,9 +80,9 @@ double knot_correlation(const Params& params, const SweepTrajectory& trajectory)
 }
 
 /// mapping.md (R32).
-void Prediction::compose(const Belief& at_border) {
-  sandwich(by_last, at_border.weight, prior.covariance);
-  sandwich(by_last, at_border.error, errors);
+void Prediction::compose(const StateEstimate& at_boundary) {
+  sandwich(by_last, at_boundary.weight, prior.covariance);
+  sandwich(by_last, at_boundary.error, errors);
   prior.covariance += noise;
   errors += noise;
 }
@@ -102,16 +103,16 @@ void impose(const KnownVelocity& known, Prediction& prediction) {
   u::rows(prediction.by_last, u::velocity) = -so3::hat(v_WI_m_s) * u::rows(prediction.by_last, u::attitude);
 }
 
-Prediction predict(const Params& params, const Border& border, const MotionWindow& window,
+Prediction predict(const Params& params, const SweepBoundary& boundary, const MotionWindow& window,
                    const SweepTrajectory& trajectory, const MotionPrior& known) {
   Prediction next;
-  next.prior.mean.state = border.belief.mean.state;
-  next.prior.mean.calibration = border.belief.mean.calibration;
-  carry_deficit(params, border, trajectory, next);
+  next.prior.mean.state = boundary.state_estimate.mean.state;
+  next.prior.mean.calibration = boundary.state_estimate.mean.calibration;
+  carry_deficit(params, boundary, trajectory, next);
   if (window.samples.front().at_rest) next.zero_velocity_update(params.expert.standstill.start_sigma_m_s);
   // without this, a slow drive with well constrained sweeps would count as rest
-  const bool creeps = border.belief.mean.state.v_WI_m_s.norm() < params.expert.standstill.creep_max_m_s;
-  if (window.resting_sweeps >= params.expert.standstill.sweeps_min && !border.held && creeps)
+  const bool creeps = boundary.state_estimate.mean.state.v_WI_m_s.norm() < params.expert.standstill.creep_max_m_s;
+  if (window.resting_sweeps >= params.expert.standstill.sweeps_min && !boundary.constrained && creeps)
     next.zero_velocity_update(params.expert.standstill.sigma_m_s);
   impose(known, next);
   const std::uint8_t axes = params.expert.rails.estimate_deficit ? trajectory.clipped_axes() : 0;
@@ -119,32 +120,32 @@ Prediction predict(const Params& params, const Border& border, const MotionWindo
   const Eigen::Matrix3d railed_m2_s2 = railed_velocity_variance(params, trajectory, window.samples);
   u::block(next.noise, u::motion) += within;
   // a force late in a segment hardly changes the fitted velocity, so it is also added to the next segment
-  u::block(next.noise, u::velocity) += border.railed_velocity_m2_s2 + railed_m2_s2;
+  u::block(next.noise, u::velocity) += boundary.railed_velocity_m2_s2 + railed_m2_s2;
   u::block(within, u::velocity) += railed_m2_s2;
   add_deficit_noise(params, window, trajectory, next);
-  weigh(known, border, window, within, next);
+  weigh(known, boundary, window, within, next);
   next.prior.deficit_start_rad_s = next.prior.mean.deficit_rad_s;
-  next.compose(border.belief);
+  next.compose(boundary.state_estimate);
   return next;
 }
 
-void predict_rest(const Params& params, const Border& border, Prediction& prediction) {
+void predict_rest(const Params& params, const SweepBoundary& boundary, Prediction& prediction) {
   prediction.zero_velocity_update(params.expert.standstill.sigma_m_s);
-  prediction.compose(border.belief);
+  prediction.compose(boundary.state_estimate);
 }
 
-bool prior_is_trusted(const Params& params, const Border& border, const MotionWindow& window,
+bool prior_is_certain(const Params& params, const SweepBoundary& boundary, const MotionWindow& window,
                       const SweepTrajectory& trajectory) {
   const Eigen::Matrix<double, 9, 9> P =
-      border.belief.mean.state.covariance + inertial_noise(params, trajectory, window.samples, 0);
+      boundary.state_estimate.mean.state.covariance + inertial_noise(params, trajectory, window.samples, 0);
   return u::variances(P, u::position).maxCoeff() <=
-             params.expert.tracking.trusted_m * params.expert.tracking.trusted_m &&
+             params.expert.tracking.extend_sigma_max_m * params.expert.tracking.extend_sigma_max_m &&
          u::variances(P, u::attitude).maxCoeff() <=
-             params.expert.tracking.trusted_rad * params.expert.tracking.trusted_rad;
+             params.expert.tracking.extend_sigma_max_rad * params.expert.tracking.extend_sigma_max_rad;
 }
 
-Belief posterior(const Prediction& prediction) {
-  Belief start{prediction.prior.mean, prediction.prior.covariance, prediction.errors};
+StateEstimate posterior(const Prediction& prediction) {
+  StateEstimate start{prediction.prior.mean, prediction.prior.covariance, prediction.errors};
   start.mean.state.covariance = u::block(start.weight, u::motion);
   return start;
 }
@@ -165,8 +166,8 @@ namespace {
 
 /// Computes the errors of the unknowns after the registration: mapping.md (R52). The errors of the prior and the
 /// gradient of the surfaces, with the measured score_covariance, pass through the same normal equations.
-Belief posterior(const Prediction& prediction, const Registration::Result& aligned) {
-  Belief start{aligned.mean, aligned.covariance, Registration::Matrix::Zero()};
+StateEstimate posterior(const Prediction& prediction, const Registration::Result& aligned) {
+  StateEstimate start{aligned.mean, aligned.covariance, Registration::Matrix::Zero()};
   const auto from_prior = std::make_unique<Registration::Matrix>();
   weigh_prior(prediction, aligned, *from_prior);
   sandwich(*from_prior, prediction.errors, start.error);
@@ -192,15 +193,15 @@ bool is_expected(const Params& params, const Prediction& prediction, const Regis
          away_m.norm() <= params.expert.matching.distance_m;
 }
 
-void border_after(const Params& params, const Belief& start, const MotionWindow& window,
-                  const SweepTrajectory& trajectory, const Registration::Result* alignment, Border& border) {
-  border.end_by_start = unknowns_at(trajectory, trajectory.duration_s());
-  at_end(start, trajectory, border.end_by_start, window.end_ns, border.belief);
-  border.railed_velocity_m2_s2 = railed_velocity_variance(params, trajectory, window.samples);
+void boundary_after(const Params& params, const StateEstimate& start, const MotionWindow& window,
+                    const SweepTrajectory& trajectory, const Registration::Result* alignment, SweepBoundary& boundary) {
+  boundary.end_by_start = unknowns_at(trajectory, trajectory.duration_s());
+  at_end(start, trajectory, boundary.end_by_start, window.end_ns, boundary.state_estimate);
+  boundary.railed_velocity_m2_s2 = railed_velocity_variance(params, trajectory, window.samples);
   const bool aligned = alignment != nullptr;
-  border.deficit_share = Eigen::Vector3d::Zero();
-  if (aligned) border.deficit_share = trajectory.deficit_share_at_end();
-  border.held = aligned && alignment->weakest_sigma_m <= params.expert.matching.degenerate_sigma_m;
+  boundary.deficit_share = Eigen::Vector3d::Zero();
+  if (aligned) boundary.deficit_share = trajectory.deficit_share_at_end();
+  boundary.constrained = aligned && alignment->weakest_sigma_m <= params.expert.matching.degenerate_sigma_m;
 }
 
 }  // namespace tumble::mapping

@@ -3,21 +3,21 @@
 
 #include <span>
 
-#include "belief.hpp"
 #include "motion_prior.hpp"
+#include "state_estimate.hpp"
 
 namespace tumble::mapping {
 
 /// State at the boundary of two sweeps: everything that the next sweep needs.
-struct Border {
-  Belief belief;                                                         ///< at the boundary
+struct SweepBoundary {
+  StateEstimate state_estimate;                                          ///< at the boundary
   Registration::Matrix end_by_start = Registration::Matrix::Identity();  ///< derivative by the last start
   /// |s_j| of the saturation deficit at the boundary, on saturated axes; 0 if the last sweep was not aligned.
   Eigen::Vector3d deficit_share = Eigen::Vector3d::Zero();
   Eigen::Matrix3d railed_velocity_m2_s2 = Eigen::Matrix3d::Zero();  ///< variance from the last sweep's saturation, W
-  bool held = false;  ///< the last sweep was constrained in all directions
+  bool constrained = false;  ///< the last sweep was constrained in all directions
 
-  TimeNs time_ns() const { return belief.mean.state.time_ns; }
+  TimeNs time_ns() const { return state_estimate.mean.state.time_ns; }
 };
 
 /// Motion from the boundary to a sweep's end, measured by the IMU.
@@ -35,27 +35,27 @@ struct Prediction {
   Registration::Matrix errors = Registration::Matrix::Zero();       ///< covariance of the mean's errors, as reported
 
   /// Computes weight and errors from those at the boundary, after all other members are set.
-  void compose(const Belief& at_border);
+  void compose(const StateEstimate& at_boundary);
   /// Sets the velocity to zero and decorrelates it, for a robot known to be at rest. Call before compose().
   void zero_velocity_update(double sigma_m_s);
 };
 
 /// Predicts the unknowns of a sweep; `trajectory` is the inertial motion from the boundary's state.
-Prediction predict(const LidarInertialOdometry::Params& params, const Border& border, const MotionWindow& window,
-                   const SweepTrajectory& trajectory, const MotionPrior& known);
+Prediction predict(const LidarInertialOdometry::Params& params, const SweepBoundary& boundary,
+                   const MotionWindow& window, const SweepTrajectory& trajectory, const MotionPrior& known);
 
 /// After tracking failure with the IMU at rest: assumes no motion, which stops the velocity drift.
-void predict_rest(const LidarInertialOdometry::Params& params, const Border& border, Prediction& prediction);
+void predict_rest(const LidarInertialOdometry::Params& params, const SweepBoundary& boundary, Prediction& prediction);
 
 /// Returns whether the prior alone is accurate enough to insert points. Clipped axes have full weight, even if their
 /// deficit is estimated.
-bool prior_is_trusted(const LidarInertialOdometry::Params& params, const Border& border, const MotionWindow& window,
-                      const SweepTrajectory& trajectory);
+bool prior_is_certain(const LidarInertialOdometry::Params& params, const SweepBoundary& boundary,
+                      const MotionWindow& window, const SweepTrajectory& trajectory);
 
 /// Posterior of a sweep without alignment: the prediction.
-Belief posterior(const Prediction& prediction);
+StateEstimate posterior(const Prediction& prediction);
 /// Posterior of an aligned sweep: mapping.md (R52).
-Belief posterior(const Prediction& prediction, const Registration::Result& aligned);
+StateEstimate posterior(const Prediction& prediction, const Registration::Result& aligned);
 
 /// See SweepReport::innovation; mapping.md (R62).
 double innovation(const Prediction& prediction, const Registration::Estimate& aligned);
@@ -67,8 +67,8 @@ bool is_expected(const LidarInertialOdometry::Params& params, const Prediction& 
 
 /// Computes the boundary at the end of a sweep with the motion `trajectory`, from its posterior at the start.
 /// `alignment` may be null.
-void border_after(const LidarInertialOdometry::Params& params, const Belief& start, const MotionWindow& window,
-                  const SweepTrajectory& trajectory, const Registration::Result* alignment, Border& border);
+void boundary_after(const LidarInertialOdometry::Params& params, const StateEstimate& start, const MotionWindow& window,
+                    const SweepTrajectory& trajectory, const Registration::Result* alignment, SweepBoundary& boundary);
 
 /// Correlation of the saturation deficit between adjacent knots: mapping.md (R46).
 double knot_correlation(const LidarInertialOdometry::Params& params, const SweepTrajectory& trajectory);

@@ -36,7 +36,7 @@ struct Offsets {
 struct Expected {
   Rows<kUnknowns> by_start;
   Rows<kMotion> by_noise;
-  Values off;  ///< innovation: the reading minus its prediction
+  Values residual;  ///< innovation: the reading minus its prediction
   Covariance variance;
 };
 
@@ -113,7 +113,7 @@ Expected expect(const VelocityReading& reading, const Sweep& sweep, const Offset
   u::columns(by_moment, u::attitude) = to_I * so3::hat(now.v_WI_m_s);
   u::columns(by_moment, u::velocity) = to_I;
   add(by_moment, now, out);
-  out.off = reading.v_WI_I_m_s - to_I * now.v_WI_m_s;
+  out.residual = reading.v_WI_I_m_s - to_I * now.v_WI_m_s;
   out.variance.diagonal().setConstant(reading.sigma_m_s * reading.sigma_m_s);
   return out;
 }
@@ -128,8 +128,8 @@ Expected expect(const MotionReading& reading, const Sweep& sweep, const Offsets&
   const Eigen::Quaterniond read(Eigen::Matrix3d(reading.T_from_to.linear()));
   const Eigen::Vector3d off_rad = so3::log((read * turned.conjugate()).normalized());
   const Eigen::Matrix3d by_turn = so3::left_jacobian_inverse(off_rad).transpose() * to_I;
-  out.off.head<3>() = reading.T_from_to.translation() - to_I * moved_W_m;
-  out.off.tail<3>() = off_rad;
+  out.residual.head<3>() = reading.T_from_to.translation() - to_I * moved_W_m;
+  out.residual.tail<3>() = off_rad;
   OfMotion<kMost> by_from = OfMotion<kMost>::Zero(), by_to = by_from;
   by_to.topLeftCorner<3, 3>() = to_I;
   by_to.block<3, 3>(3, 3) = by_turn;
@@ -178,8 +178,8 @@ bool find_gains(const MotionNoise& within, Work& work) {
   for (int iteration = 0; iteration < kIterations; ++iteration) {
     work.expected = std::visit([&](const auto& kind) { return expect(kind, sweep, work.offsets); }, reading);
     if (!find_gains(within, work)) return false;
-    const Values innovation =
-        work.expected.off + work.expected.by_start * work.offsets.start + work.expected.by_noise * work.offsets.noise;
+    const Values innovation = work.expected.residual + work.expected.by_start * work.offsets.start +
+                              work.expected.by_noise * work.offsets.noise;
     const Offsets next{work.by_start * innovation, work.by_noise * innovation};
     if (!next.start.allFinite() || !next.noise.allFinite()) return false;
     const double change = std::max((next.start - work.offsets.start).cwiseAbs().maxCoeff(),
@@ -216,13 +216,13 @@ bool find_gains(const MotionNoise& within, Work& work) {
 
 }  // namespace
 
-void weigh_reading(const OdometerReading& reading, const Border& border, const MotionWindow& window,
+void weigh_reading(const OdometerReading& reading, const SweepBoundary& boundary, const MotionWindow& window,
                    const MotionNoise& within, Prediction& prediction) {
   const Sweep sweep(prediction.prior.mean, window);
   if (!holds(sweep, reading)) return;
   const auto work = std::make_unique<Work>();
   // weighted like the registration: by C, mapping.md section 6
-  sandwich(prediction.by_last, border.belief.weight, work->at_start);
+  sandwich(prediction.by_last, boundary.state_estimate.weight, work->at_start);
   Matrix& before = work->before;  // noise at the start: of the deficit, and of earlier saturation
   before = prediction.noise;
   u::block(before, u::motion) -= within;

@@ -8,8 +8,8 @@
 #include <memory>
 
 #include "../common/dense.hpp"
-#include "belief.hpp"
 #include "registration_sums.hpp"
+#include "state_estimate.hpp"
 #include "tumble/common/so3.hpp"
 #include "unknowns.hpp"
 
@@ -193,7 +193,7 @@ Status Registration::conclude(const Problem& problem, const Descent& at, SweepTr
   Matrix posterior = Matrix::Identity();  // mapping.md (R24)
   dense::solve_semidefinite(at.H, posterior);
   result.covariance = 0.5 * (posterior + posterior.transpose());
-  problem.unknowns.clear_held(result.covariance);
+  problem.unknowns.clear_fixed(result.covariance);
   result.mean = at.now;
   result.mean.state.covariance = u::block(result.covariance, u::motion);
   result.verdict = at.verdict;

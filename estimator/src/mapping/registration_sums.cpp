@@ -52,7 +52,7 @@ void Registration::Unknowns::hold(Matrix& H, Vector& g) const {
   }
 }
 
-void Registration::Unknowns::cut_held(Matrix& M) const {
+void Registration::Unknowns::cut_fixed(Matrix& M) const {
   for (int i = 0; i < kUnknowns; ++i) {
     if (is_free(i)) continue;
     M.row(i).setZero();
@@ -60,7 +60,7 @@ void Registration::Unknowns::cut_held(Matrix& M) const {
   }
 }
 
-void Registration::Unknowns::clear_held(Matrix& covariance) const {
+void Registration::Unknowns::clear_fixed(Matrix& covariance) const {
   for (int i = 0; i < kUnknowns; ++i) {
     if (!is_free(i)) covariance(i, i) = 0.0;
   }
@@ -271,7 +271,7 @@ struct Registration::Pulls {
     Matrix lower = Matrix::Zero();
     for (const Vector& pull : pulls) lower.selfadjointView<Eigen::Lower>().rankUpdate(pull);
     Matrix out = lower.selfadjointView<Eigen::Lower>();
-    unknowns.cut_held(out);
+    unknowns.cut_fixed(out);
     return out;
   }
 };

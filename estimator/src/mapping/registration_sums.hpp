@@ -21,8 +21,8 @@ struct Registration::Unknowns {
   void expand(const Sums& sum, Matrix& H, Vector& g) const;
   /// Removes the fixed unknowns: their step is 0.
   void hold(Matrix& H, Vector& g) const;
-  void cut_held(Matrix& M) const;
-  void clear_held(Matrix& covariance) const;
+  void cut_fixed(Matrix& M) const;
+  void clear_fixed(Matrix& covariance) const;
 
  private:
   bool is_free(int unknown) const {

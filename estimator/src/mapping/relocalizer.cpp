@@ -27,7 +27,7 @@ bool converged(const Registration::Result& found) {
 
 /// Returns whether the matched surfaces fit. mapping.md (R68).
 bool fits(const Params& params, const Registration::Result& found) {
-  return double(found.inliers) >= params.expert.tracking.borne_out_share * double(found.matches);
+  return double(found.inliers) >= params.expert.tracking.confirm_inlier_ratio * double(found.matches);
 }
 
 /// Registers the sweep. If this fails and a clipped axis may have a deficit, tries larger saturation deficits. Reason:
@@ -61,7 +61,7 @@ void track(const Params& params, const Registration::Prior& prior, const Scene& 
 
 /// Searches for the pose from the prior and from starts around it, until the surfaces fit; otherwise returns the pose
 /// with most inliers. The search continues with the next sweep, to limit the cost per sweep.
-void search(const Params& params, const Whereabouts& from, const Scene& scene, Aligner& aligner,
+void search(const Params& params, const SearchContext& from, const Scene& scene, Aligner& aligner,
             SweepTrajectory& trajectory, Registration::Result& found) {
   const RelocalizationParams& starts = params.expert.search;
   const Registration::Prior& prior = from.prior;
@@ -113,7 +113,7 @@ void move_start(const RelocalizationParams& params, int index, Registration::Pri
   }
 }
 
-Attempt attempt(const Params& params, const Whereabouts& from, const Scene& scene, Aligner& aligner,
+Attempt attempt(const Params& params, const SearchContext& from, const Scene& scene, Aligner& aligner,
                 SweepTrajectory& trajectory, std::optional<Registration::Result>& alignment) {
   Registration::Result& found = alignment.emplace();
   found.points = scene.points.size();
@@ -130,22 +130,22 @@ Attempt attempt(const Params& params, const Whereabouts& from, const Scene& scen
   return out;
 }
 
-void judge(const Params& params, const TrackingState& before, std::size_t points, bool prior_trusted,
+void judge(const Params& params, const TrackingState& before, std::size_t points, bool prior_certain,
            const Attempt& attempt, Placed& out) {
   if (out.alignment) {
     const bool holds = out.alignment->weakest_sigma_m <= params.expert.matching.degenerate_sigma_m;
     out.verdict = holds ? SweepVerdict::registered : SweepVerdict::degenerate;
     const bool fits =
-        double(out.alignment->inliers) >= params.expert.tracking.borne_out_share * double(out.alignment->matches);
-    const bool doubtful = (is_lost(before) && !(out.expected && fits)) || (is_to_be_borne_out(before) && !fits);
-    out.placement = doubtful ? Placement::doubtful : Placement::found;
+        double(out.alignment->inliers) >= params.expert.tracking.confirm_inlier_ratio * double(out.alignment->matches);
+    const bool unconfirmed = (is_lost(before) && !(out.expected && fits)) || (is_unconfirmed(before) && !fits);
+    out.placement = unconfirmed ? Placement::unconfirmed : Placement::found;
     return;
   }
   const bool enough = points >= params.expert.matching.least;
   const bool given_up = failed_searches(before) + 1 >= params.expert.tracking.lost_sweeps_max;
   out.placement = Placement::failed;
-  out.map_says_nothing = enough && attempt.too_few_matches;
-  if (enough && ((attempt.too_few_matches && prior_trusted) || given_up)) out.verdict = SweepVerdict::degenerate;
+  out.map_too_sparse = enough && attempt.too_few_matches;
+  if (enough && ((attempt.too_few_matches && prior_certain) || given_up)) out.verdict = SweepVerdict::degenerate;
 }
 
 }  // namespace tumble::mapping

@@ -16,7 +16,7 @@ struct Attempt {
 };
 
 /// Candidates for the start of a sweep.
-struct Whereabouts {
+struct SearchContext {
   const TrackingState& tracking;
   const Registration::Prior& prior;
   /// State by a relocalisation that this sweep contradicted, as a start of the search. Null: none.
@@ -25,7 +25,7 @@ struct Whereabouts {
 
 /// Aligns a sweep by all means that its tracking state allows. `trajectory` is that of the alignment, or of a failed
 /// attempt. `alignment` is that of the sweep's start, empty if none was found.
-Attempt attempt(const LidarInertialOdometry::Params& params, const Whereabouts& from, const Scene& scene,
+Attempt attempt(const LidarInertialOdometry::Params& params, const SearchContext& from, const Scene& scene,
                 Aligner& aligner, SweepTrajectory& trajectory, std::optional<Registration::Result>& alignment);
 
 /// Result of registering a sweep to the map.
@@ -33,7 +33,7 @@ struct Placed {
   SweepVerdict verdict = SweepVerdict::rejected;
   bool expected = true;  ///< the alignment agrees with the inertial prediction
   Placement placement = Placement::not_tried;
-  bool map_says_nothing = false;                  ///< the sweep has points, but the map has too few nearby
+  bool map_too_sparse = false;                    ///< the sweep has points, but the map has too few nearby
   std::optional<Registration::Result> alignment;  ///< of its start
 };
 
@@ -41,7 +41,7 @@ struct Placed {
 /// expected. If the map had too few points, or after enough failed searches, the motion continues by inertial
 /// prediction as `degenerate`.
 void judge(const LidarInertialOdometry::Params& params, const TrackingState& before, std::size_t points,
-           bool prior_trusted, const Attempt& attempt, Placed& placed);
+           bool prior_certain, const Attempt& attempt, Placed& placed);
 
 /// Computes start number `index` of a search: the prior itself, then shifts along each axis by its uncertainty, closest
 /// first, mapping.md (R66).

@@ -15,7 +15,7 @@ Status check_offsets(TimeNs span_ns, std::span<const LidarPoint> points) {
 }
 
 Status check_selection(TimeNs span_ns, std::span<const LidarPoint> points, const PointCounts& counts) {
-  if (counts.given == 0) return {Trouble::empty, "points", 0.0, 1.0};
+  if (counts.received == 0) return {Trouble::empty, "points", 0.0, 1.0};
   if (counts.finite == 0) return {Trouble::non_finite, "position_L_m", std::numeric_limits<double>::quiet_NaN(), 0.0};
   if (counts.used == 0) return {Trouble::too_few, "points in range", 0.0, 1.0};
   const auto differs = [&](const LidarPoint& point) { return point.offset_ns != points.front().offset_ns; };

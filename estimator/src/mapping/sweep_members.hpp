@@ -58,20 +58,20 @@ void members(Self& s, Visitor& visit) {
 
 namespace mapping {
 
-template <StateOf<Belief> Self, class Visitor>
+template <StateOf<StateEstimate> Self, class Visitor>
 void members(Self& s, Visitor& visit) {
-  visit("belief.mean", s.mean);
-  visit("belief.weight", s.weight);
-  visit("belief.error", s.error);
+  visit("state_estimate.mean", s.mean);
+  visit("state_estimate.weight", s.weight);
+  visit("state_estimate.error", s.error);
 }
 
-template <StateOf<Border> Self, class Visitor>
+template <StateOf<SweepBoundary> Self, class Visitor>
 void members(Self& s, Visitor& visit) {
-  visit("border.belief", s.belief);
-  visit("border.end_by_start", s.end_by_start);
-  visit("border.deficit_share", s.deficit_share);
-  visit("border.railed_velocity_m2_s2", s.railed_velocity_m2_s2);
-  visit("border.held", s.held);
+  visit("boundary.state_estimate", s.state_estimate);
+  visit("boundary.end_by_start", s.end_by_start);
+  visit("boundary.deficit_share", s.deficit_share);
+  visit("boundary.railed_velocity_m2_s2", s.railed_velocity_m2_s2);
+  visit("boundary.constrained", s.constrained);
 }
 
 template <StateOf<WaitingForStart> Self, class Visitor>
@@ -88,11 +88,11 @@ void members(Self& s, Visitor& visit) {
   visit("lost.failed_searches", s.failed_searches, 0.0, 1e9);
 }
 
-template <StateOf<FoundAgain> Self, class Visitor>
+template <StateOf<Relocalised> Self, class Visitor>
 void members(Self& s, Visitor& visit) {
-  visit("found_again.after_sweeps", s.after_sweeps, 0.0, 1e9);
-  visit("found_again.failed_searches", s.failed_searches, 0.0, 1e9);
-  visit("found_again.agreeing", s.agreeing, 0.0, 1e9);
+  visit("relocalised.after_sweeps", s.after_sweeps, 0.0, 1e9);
+  visit("relocalised.failed_searches", s.failed_searches, 0.0, 1e9);
+  visit("relocalised.agreeing", s.agreeing, 0.0, 1e9);
 }
 
 template <StateOf<InertialPrior> Self, class Visitor>

@@ -19,8 +19,8 @@ class SweepPoints {
   explicit SweepPoints(const Params& params);
 
   struct Counts {
-    std::size_t used = 0;   ///< finite, in range, not on the robot itself
-    std::size_t alone = 0;  ///< of these, lone returns that were dropped
+    std::size_t used = 0;  ///< finite, in range, not on the robot itself
+    std::size_t lone = 0;  ///< of these, lone returns that were dropped
     bool rings_differ = false;
   };
   /// Processes a sweep that starts `start_s` after its trajectory. Returns the errors of check_selection.

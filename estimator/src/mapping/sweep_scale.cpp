@@ -27,10 +27,10 @@ constexpr double kHuber = 1.5, kPerMedian = 1.4826;  // standard deviations; per
 using Change = SweepScaleWatch::Change;
 
 /// Integrals of the IMU along the run's attitudes.
-class FeltMotion {
+class ImuMotion {
  public:
   template <class Sweeps>
-  FeltMotion(std::span<const ImuSample> samples, const Sweeps& sweeps, double gravity_m_s2)
+  ImuMotion(std::span<const ImuSample> samples, const Sweeps& sweeps, double gravity_m_s2)
       : samples_(samples), gravity_W_m_s2_(0.0, 0.0, -gravity_m_s2) {
     for (const SweepReport& sweep : sweeps)
       attitudes_.insert(attitudes_.end(), sweep.trajectory.begin(), sweep.trajectory.end());
@@ -89,13 +89,14 @@ std::size_t sweeps_in(double span_s, const Sweeps& sweeps) {
 
 /// Over the two spans that end with sweep `last`; empty if unknown or too small.
 template <class Sweeps>
-std::optional<Change> change_until(std::size_t last, std::size_t span, const Sweeps& sweeps, const FeltMotion& felt) {
+std::optional<Change> change_until(std::size_t last, std::size_t span, const Sweeps& sweeps,
+                                   const ImuMotion& imu_motion) {
   for (std::size_t k = last - 2 * span; k <= last; ++k) {
     if (!is_placed(sweeps[k])) return std::nullopt;
   }
   const PoseState &from = sweeps[last - 2 * span].pose, &middle = sweeps[last - span].pose, &to = sweeps[last].pose;
   if (!(from.time_ns < middle.time_ns && middle.time_ns < to.time_ns)) return std::nullopt;
-  const auto by_imu = felt.change(from.time_ns, middle.time_ns, to.time_ns);
+  const auto by_imu = imu_motion.change(from.time_ns, middle.time_ns, to.time_ns);
   if (!by_imu || !(by_imu->norm() >= kChange_m_s)) return std::nullopt;
   return Change{*by_imu, (to.p_WA_m - middle.p_WA_m) / seconds(to.time_ns - middle.time_ns) -
                              (middle.p_WA_m - from.p_WA_m) / seconds(middle.time_ns - from.time_ns)};
@@ -142,10 +143,10 @@ Status SweepScale::verdict() const {
 SweepScale find_sweep_scale(std::span<const ImuSample> samples, std::span<const SweepReport> sweeps,
                             double gravity_m_s2) {
   std::vector<Change> changes;
-  const FeltMotion felt(samples, sweeps, gravity_m_s2);
+  const ImuMotion imu_motion(samples, sweeps, gravity_m_s2);
   const std::size_t span = sweeps_in(kSpan_s, sweeps);
   for (std::size_t k = 2 * span; k < sweeps.size(); ++k) {
-    if (const auto change = change_until(k, span, sweeps, felt)) changes.push_back(*change);
+    if (const auto change = change_until(k, span, sweeps, imu_motion)) changes.push_back(*change);
   }
   return fit(changes);
 }
@@ -173,8 +174,8 @@ void SweepScaleWatch::add(const SweepReport& sweep) {
   const TimeNs from_ns = sweeps_.front().pose.time_ns;
   std::erase_if(samples_, [&](const ImuSample& earlier) { return earlier.time_ns <= from_ns; });
   if (sweeps_.size() < 2 * span + 1) return;
-  const FeltMotion felt(samples_, sweeps_, gravity_m_s2_);
-  const std::optional<Change> change = change_until(2 * span, span, sweeps_, felt);
+  const ImuMotion imu_motion(samples_, sweeps_, gravity_m_s2_);
+  const std::optional<Change> change = change_until(2 * span, span, sweeps_, imu_motion);
   if (!change) return;
   changes_.push_back(*change);
   if (changes_.size() > kChangesMax) changes_.pop_front();

@@ -8,7 +8,7 @@ namespace {
 constexpr int kAgreeing = 2;  // sweeps that confirm a relocalisation: a single one may fit by chance
 
 bool is_found(Placement placement) {
-  return placement == Placement::found || placement == Placement::doubtful;
+  return placement == Placement::found || placement == Placement::unconfirmed;
 }
 
 }  // namespace
@@ -16,19 +16,19 @@ bool is_found(Placement placement) {
 TrackingState after_sweep(const TrackingState& before, Placement placement, SweepVerdict verdict) {
   const int failed = is_found(placement) ? 0 : failed_searches(before) + (placement == Placement::failed);
   if (verdict == SweepVerdict::rejected) return Lost{lost_sweeps(before) + 1, failed};
-  if (is_lost(before) && placement == Placement::doubtful)
-    return FoundAgain{lost_sweeps(before), failed_searches(before), 0};
-  if (const FoundAgain* found = std::get_if<FoundAgain>(&before); found != nullptr && found->agreeing + 1 < kAgreeing)
-    return FoundAgain{found->after_sweeps, found->failed_searches, found->agreeing + 1};
+  if (is_lost(before) && placement == Placement::unconfirmed)
+    return Relocalised{lost_sweeps(before), failed_searches(before), 0};
+  if (const Relocalised* found = std::get_if<Relocalised>(&before); found != nullptr && found->agreeing + 1 < kAgreeing)
+    return Relocalised{found->after_sweeps, found->failed_searches, found->agreeing + 1};
   return Tracking{failed};
 }
 
 bool contradicts(const TrackingState& before, Placement placement) {
-  return is_to_be_borne_out(before) && placement != Placement::found;
+  return is_unconfirmed(before) && placement != Placement::found;
 }
 
-Lost given_up(const TrackingState& found_again) {
-  const FoundAgain* found = std::get_if<FoundAgain>(&found_again);
+Lost given_up(const TrackingState& relocalised) {
+  const Relocalised* found = std::get_if<Relocalised>(&relocalised);
   if (found == nullptr) return {};
   return {found->after_sweeps + 1 + found->agreeing, found->failed_searches + 1};
 }
@@ -41,8 +41,8 @@ bool is_lost(const TrackingState& state) {
   return std::holds_alternative<Lost>(state);
 }
 
-bool is_to_be_borne_out(const TrackingState& state) {
-  return std::holds_alternative<FoundAgain>(state);
+bool is_unconfirmed(const TrackingState& state) {
+  return std::holds_alternative<Relocalised>(state);
 }
 
 int lost_sweeps(const TrackingState& state) {

@@ -22,19 +22,19 @@ struct Lost {
 
 /// An unconfirmed relocalisation. Inertial prediction continues in parallel (DeadReckoning) and replaces it if a sweep
 /// contradicts it. mapping.md (R67), (R68).
-struct FoundAgain {
+struct Relocalised {
   int after_sweeps = 0;  ///< rejected sweeps before it
   int failed_searches = 0;
   int agreeing = 0;  ///< confirming sweeps since
 };
 
-using TrackingState = std::variant<WaitingForStart, Tracking, Lost, FoundAgain>;
+using TrackingState = std::variant<WaitingForStart, Tracking, Lost, Relocalised>;
 
 /// Result of a sweep.
 enum class Placement : std::uint8_t {
   not_tried,  ///< no points, or no map yet
   failed,
-  doubtful,  ///< found by a search against the inertial prediction, or surfaces fit too badly to confirm
+  unconfirmed,  ///< found by a search against the inertial prediction, or surfaces fit too badly to confirm
   found,
 };
 
@@ -43,11 +43,11 @@ TrackingState after_sweep(const TrackingState& before, Placement placement, Swee
 /// Returns whether a sweep with this result contradicts the relocalisation.
 bool contradicts(const TrackingState& before, Placement placement);
 /// Returns the state after a relocalisation is reverted.
-Lost given_up(const TrackingState& found_again);
+Lost given_up(const TrackingState& relocalised);
 
 bool has_started(const TrackingState& state);
 bool is_lost(const TrackingState& state);
-bool is_to_be_borne_out(const TrackingState& state);
+bool is_unconfirmed(const TrackingState& state);
 int lost_sweeps(const TrackingState& state);      ///< 0 unless tracking failed
 int failed_searches(const TrackingState& state);  ///< consecutive
 

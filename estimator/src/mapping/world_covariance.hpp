@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "belief.hpp"
+#include "state_estimate.hpp"
 
 namespace tumble::mapping {
 

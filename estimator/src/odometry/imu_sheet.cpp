@@ -7,7 +7,7 @@
 
 namespace tumble {
 
-double sure_range(double stated_range) {
+double unsaturated_range(double stated_range) {
   return stated_range > 0.0 ? (1.0 - kBesideRail) * stated_range : std::numeric_limits<double>::infinity();
 }
 

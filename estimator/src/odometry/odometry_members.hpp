@@ -78,7 +78,7 @@ void TumblingOdometry::members(Self& s, Visitor& visit) {
   visit.scratch(s.clock_);
   visit("stamps", s.stamps_);
   visit("pass", s.pass_);
-  visit("again", s.again_);
+  visit("second_pass", s.second_pass_);
   visit("newest_ns", s.newest_ns_);
   visit("after_gap", s.after_gap_);
   visit("registered_ns", s.registered_ns_);

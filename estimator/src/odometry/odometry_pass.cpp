@@ -33,9 +33,9 @@ RateState for_the_mapper(const RateState& rate, const ImuSample& sample, double 
 }
 
 /// Samples as RateStream classified them, with saturated forces flagged. Must be queried in time order.
-class SeenByTheStream {
+class ClassifiedSamples {
  public:
-  SeenByTheStream(std::span<const ImuSample> samples, const RateStream::State& state)
+  ClassifiedSamples(std::span<const ImuSample> samples, const RateStream::State& state)
       : samples_(samples), window_(state.window) {}
 
   ImuSample at(TimeNs time_ns) {
@@ -127,23 +127,23 @@ Status OdometryPass::newest(PoseState& pose) const {
   std::vector<RateState> rates;
   rates_.flush(rate_state_, rates);
   std::vector<ImuSample> samples;
-  SeenByTheStream seen(pending_.all(), rate_state_.rate);
-  std::erase_if(rates, [&](const RateState& rate) { return told_ns_ && rate.time_ns <= *told_ns_; });
+  ClassifiedSamples classified(pending_.all(), rate_state_.rate);
+  std::erase_if(rates, [&](const RateState& rate) { return last_mapped_ns_ && rate.time_ns <= *last_mapped_ns_; });
   for (RateState& rate : rates) {
-    samples.push_back(seen.at(rate.time_ns));
+    samples.push_back(classified.at(rate.time_ns));
     rate = for_the_mapper(rate, samples.back(), rate_sigma_max_rad_s_);
   }
   return mapper_.predict(samples, rates, pose);
 }
 
 void OdometryPass::take_rate(const RateState& rate) {
-  const ImuSample sample = SeenByTheStream(pending_.all(), rate_state_.rate).at(rate.time_ns);
+  const ImuSample sample = ClassifiedSamples(pending_.all(), rate_state_.rate).at(rate.time_ns);
   pending_.drop_until(rate.time_ns);
   smoothed_ = rate;
-  if (told_ns_ && rate.time_ns <= *told_ns_) return;
-  told_ns_ = rate.time_ns;
+  if (last_mapped_ns_ && rate.time_ns <= *last_mapped_ns_) return;
+  last_mapped_ns_ = rate.time_ns;
   scale_.add(sample);
-  if (!mapper_.add_imu(sample, for_the_mapper(rate, sample, rate_sigma_max_rad_s_)).ok()) ++refused_samples_;
+  if (!mapper_.add_imu(sample, for_the_mapper(rate, sample, rate_sigma_max_rad_s_)).ok()) ++rejected_samples_;
 }
 
 void OdometryPass::flush_until(TimeNs time_ns) {
@@ -169,7 +169,7 @@ void OdometryPass::take_map(OdometryPass&& other) {
   scale_ = std::move(other.scale_);
   localisation_ = other.localisation_;
   time_offset_s_ = other.time_offset_s_;
-  told_ns_ = other.told_ns_;
+  last_mapped_ns_ = other.last_mapped_ns_;
 }
 
 }  // namespace tumble

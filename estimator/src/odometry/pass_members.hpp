@@ -18,7 +18,7 @@ namespace odometry {
 
 /// Parameters of the rates that may come from an earlier run.
 template <StateOf<RegimeStream::Params> Self, class Visitor>
-void visit_taught(Self& p, Visitor& visit) {
+void visit_estimated(Self& p, Visitor& visit) {
   visit("calibration", p.rate.model.calibration);
   visit("known rails", p.rate.expert.planes.known);
   visit("known rails of the accelerometer", p.rate.expert.accel_planes.known);
@@ -43,7 +43,7 @@ void OdometryPass::Queue::members(Self& s, Visitor& visit) {
 template <class Self, class Visitor>
 void OdometryPass::members(Self& s, Visitor& visit) {
   RegimeStream::Params rate = s.rates_.params();
-  odometry::visit_taught(rate, visit);
+  odometry::visit_estimated(rate, visit);
   visit.scratch(s.rates_);
   if constexpr (!std::is_const_v<Self>) {
     if (visit.going() && rate.rate.model.calibration) visit.refuse(check_calibration(*rate.rate.model.calibration));
@@ -58,8 +58,8 @@ void OdometryPass::members(Self& s, Visitor& visit) {
   visit("pass.time_offset_s", s.time_offset_s_, -1.0, 1.0);  // same bounds as the mapper's parameter
   visit("pass.pending", s.pending_);
   visit("pass.smoothed", s.smoothed_);
-  visit("pass.told_ns", s.told_ns_);
-  visit("pass.refused_samples", s.refused_samples_);
+  visit("pass.last_mapped_ns", s.last_mapped_ns_);
+  visit("pass.rejected_samples", s.rejected_samples_);
   visit.scratch(s.gravity_);  // of the parameters
   visit("pass.gravity", s.gravity_state_);
 }
@@ -85,29 +85,29 @@ void SecondPass::members(Self& s, Visitor& visit) {
   visit.scratch(s.params_);
   visit.scratch(s.rate_);
   visit.scratch(s.mapping_);
-  visit("again.wanted", s.wanted_);
-  visit("again.taken", s.taken_);
+  visit("second_pass.wanted", s.wanted_);
+  visit("second_pass.taken", s.taken_);
   visit.scratch(s.rests_);
-  visit("again.rest", s.rest_);
-  visit("again.moves_ns", s.moves_ns_);
-  visit("again.samples", s.samples_);
-  visit("again.sweeps", s.sweeps_);
+  visit("second_pass.rest", s.rest_);
+  visit("second_pass.moves_ns", s.moves_ns_);
+  visit("second_pass.samples", s.samples_);
+  visit("second_pass.sweeps", s.sweeps_);
   bool under_way = s.pass_.has_value();
-  visit("again.under_way", under_way);
+  visit("second_pass.under_way", under_way);
   if constexpr (!std::is_const_v<Self>) {
     s.pass_.reset();
     if (under_way && visit.going()) s.pass_.emplace(s.lagging_rate(), s.mapping_);
   }
   // has the members of the first pass, which the layout already contains
-  if (s.pass_ && !Visitor::kDescribes) visit("again.pass", *s.pass_);
+  if (s.pass_ && !Visitor::kDescribes) visit("second_pass.pass", *s.pass_);
   visit.scratch(s.pass_);
-  visit("again.next_sample", s.next_sample_, 0.0, double(s.samples_.all().size()));
-  visit("again.next_sweep", s.next_sweep_, 0.0, double(s.sweeps_.size()));
-  visit("again.rejected_by_first", s.rejected_by_first_);
-  visit("again.rejected", s.rejected_);
-  visit("again.lost", s.lost_);
-  visit("again.early", s.early_);
-  visit("again.tried", s.tried_);
+  visit("second_pass.next_sample", s.next_sample_, 0.0, double(s.samples_.all().size()));
+  visit("second_pass.next_sweep", s.next_sweep_, 0.0, double(s.sweeps_.size()));
+  visit("second_pass.rejected_by_first", s.rejected_by_first_);
+  visit("second_pass.rejected", s.rejected_);
+  visit("second_pass.lost", s.lost_);
+  visit("second_pass.early", s.early_);
+  visit("second_pass.tried", s.tried_);
 }
 
 }  // namespace tumble

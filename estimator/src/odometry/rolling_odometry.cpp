@@ -51,8 +51,8 @@ ImuMerge::Params merge_params(const RollingOdometry::Params& params) {
     require_within("T_BI translation", unit.T_BI.translation().norm(), 0.0, params.radius_m);
     out.T_CI[k] = unit.T_BI;
     const ImuSheet& sheet = unit.sheet;
-    out.gyro_range_rad_s = std::min(out.gyro_range_rad_s, sure_range(sheet.gyro_range_rad_s));
-    out.accel_range_m_s2 = std::min(out.accel_range_m_s2, sure_range(sheet.accel_range_m_s2));
+    out.gyro_range_rad_s = std::min(out.gyro_range_rad_s, unsaturated_range(sheet.gyro_range_rad_s));
+    out.accel_range_m_s2 = std::min(out.accel_range_m_s2, unsaturated_range(sheet.accel_range_m_s2));
   }
   return out;
 }
@@ -219,7 +219,7 @@ Status RollingOdometry::add_inliers(std::span<const ImuSample> samples) {
   Frozen frozen = frozen_;
   for (std::size_t k = 0; k < samples.size(); ++k) watches_[k].step(samples[k], frozen[k]);
   const std::span<ImuSample> judged = std::span(flagged).first(samples.size());
-  if (Status status = leave_out_frozen(frozen, judged); !status.ok()) {
+  if (Status status = exclude_frozen(frozen, judged); !status.ok()) {
     frozen_ = frozen;  // for doubt()
     return status;
   }
@@ -246,23 +246,23 @@ std::size_t RollingOdometry::rejected_readings() const {
 }
 
 /// Sets the readings of frozen units to NaN. Returns an error if no unit remains.
-Status RollingOdometry::leave_out_frozen(const Frozen& states, std::span<ImuSample> samples) const {
-  bool any = false, heard = false;
+Status RollingOdometry::exclude_frozen(const Frozen& states, std::span<ImuSample> samples) const {
+  bool any = false, received = false;
   for (std::size_t k = 0; k < samples.size(); ++k) {
     const bool finite = check_sample(samples[k]).ok();
     const bool frozen = finite && !watches_[k].verdict(states[k]).ok();
     if (frozen) leave_out(samples[k]);
     any = any || frozen;
-    heard = heard || (finite && !frozen);
+    received = received || (finite && !frozen);
   }
-  return any && !heard ? frozen_axis(states) : Status{};
+  return any && !received ? frozen_axis(states) : Status{};
 }
 
-std::optional<double> RollingOdometry::mended_jitter_s() const {
-  return clock_.mends(stamps_) ? SampleClock::jitter_s(stamps_) : std::nullopt;
+std::optional<double> RollingOdometry::estimated_jitter_s() const {
+  return clock_.corrects_stamps(stamps_) ? SampleClock::jitter_s(stamps_) : std::nullopt;
 }
 
-Status RollingOdometry::doubt() const {
+Status RollingOdometry::health() const {
   Status status = frozen_axis(frozen_);
   for (std::size_t unit = 0; unit < watches_.size() && status.ok(); ++unit)
     status = gravity_.size_verdict(gravity_state_[unit]);

@@ -14,7 +14,8 @@ namespace {
 
 constexpr double kBefore_s = 0.1;       // samples before the first buffered sweep, because clocks may differ
 constexpr std::size_t kMoreShare = 20;  // per this many sweeps, the second pass may reject one more than the first
-constexpr std::size_t kTellsShare = 5;  // with more than one rejected sweep in this many, the calibration is not used
+// With more than one rejected sweep in this many, the calibration is not used.
+constexpr std::size_t kSweepsPerRejection = 5;
 
 /// Starts with the saturation levels that the stream detected, with the same inflation as the calibration.
 void start_from_rails(const KnownRails& known, double inflation, RateStream::Params& params) {
@@ -38,7 +39,7 @@ SecondPass::SecondPass(const Params& params, const RegimeStream::Params& rate,
       rests_(mapping::mapper_rest(mapping)) {
   require_fields(params);
   if (!wanted_) return;
-  const double most_s = params.rest_s + kBefore_s + params.remembered_s;
+  const double most_s = params.rest_s + kBefore_s + params.abandon_after_s;
   samples_.samples.reserve(static_cast<std::size_t>(std::ceil(most_s / rate.rate.period_s)) + 16);
 }
 
@@ -50,22 +51,22 @@ void SecondPass::give_up() {
   next_sample_ = next_sweep_ = 0;  // refer to cleared buffers; check_state() requires 0
 }
 
-void SecondPass::remember(const ImuSample& sample) {
+void SecondPass::store(const ImuSample& sample) {
   if (!wanted_) return;
   if (!moves_ns_ && !rests_.observe(sample, rest_)) moves_ns_ = sample.time_ns;
   if (!moves_ns_) {
     const TimeNs from_ns = sample.time_ns - static_cast<TimeNs>(1e9 * params_.rest_s);
     while (!sweeps_.empty() && sweeps_.front().start_ns < from_ns) sweeps_.pop_front();
     samples_.drop_until(from_ns - static_cast<TimeNs>(1e9 * kBefore_s));
-  } else if (seconds(sample.time_ns - counts_from_ns()) > params_.remembered_s) {
+  } else if (seconds(sample.time_ns - counts_from_ns()) > params_.abandon_after_s) {
     give_up();
     return;
   }
   samples_.push(sample);
 }
 
-void SecondPass::remember(TimeNs start_ns, TimeNs end_ns, std::vector<LidarPoint> points,
-                          const std::optional<OdometerReading>& reading, SweepVerdict verdict) {
+void SecondPass::store(TimeNs start_ns, TimeNs end_ns, std::vector<LidarPoint> points,
+                       const std::optional<OdometerReading>& reading, SweepVerdict verdict) {
   if (!wanted_) return;
   sweeps_.push_back({start_ns, end_ns, std::move(points), reading, verdict});
   rejected_by_first_ += verdict == SweepVerdict::rejected;
@@ -94,7 +95,7 @@ RegimeStream::Params SecondPass::lagging_rate() const {
   return out;
 }
 
-RegimeStream::Params SecondPass::learnt_rate(const OdometryPass& first) const {
+RegimeStream::Params SecondPass::calibrated_rate(const OdometryPass& first) const {
   RegimeStream::Params out = lagging_rate();
   const RateStream::State& state = first.rate_state().rate;
   out.rate.model.calibration = first.rates().rate().calibration(state);
@@ -103,9 +104,9 @@ RegimeStream::Params SecondPass::learnt_rate(const OdometryPass& first) const {
   return out;
 }
 
-LidarInertialOdometry::Params SecondPass::learnt_mapping(const OdometryPass& first) const {
+LidarInertialOdometry::Params SecondPass::calibrated_mapping(const OdometryPass& first) const {
   LidarInertialOdometry::Params out = mapping_;
-  if (kTellsShare * rejected_by_first_ > sweeps_.size()) return out;
+  if (kSweepsPerRejection * rejected_by_first_ > sweeps_.size()) return out;
   const SweepCalibration learnt = first.mapper().calibration();
   const auto sigma = first.mapper().calibration_weight().diagonal().cwiseSqrt().eval();
   out.T_IL = learnt.T_IL;
@@ -117,8 +118,8 @@ LidarInertialOdometry::Params SecondPass::learnt_mapping(const OdometryPass& fir
 }
 
 bool SecondPass::begin(const OdometryPass& first) {
-  const RegimeStream::Params rate = learnt_rate(first);
-  const LidarInertialOdometry::Params mapping = learnt_mapping(first);
+  const RegimeStream::Params rate = calibrated_rate(first);
+  const LidarInertialOdometry::Params mapping = calibrated_mapping(first);
   if (!check_calibration(*rate.rate.model.calibration).ok() || !check_odometry_params(mapping).ok()) {
     give_up();  // the estimated calibration is out of bounds
     return false;

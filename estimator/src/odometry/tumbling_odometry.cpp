@@ -68,7 +68,7 @@ LidarInertialOdometry::Params mapper_params(const TumblingOdometry::Params& para
   out.range_min_m = params.lidar.range_min_m;
   out.range_max_m = params.lidar.range_max_m;
   out.own_body_L = params.own_body_L;
-  if (params.imu.accel_range_m_s2 > 0.0) out.expert.rails.accel_m_s2 = sure_range(params.imu.accel_range_m_s2);
+  if (params.imu.accel_range_m_s2 > 0.0) out.expert.rails.accel_m_s2 = unsaturated_range(params.imu.accel_range_m_s2);
   return out;
 }
 
@@ -98,7 +98,7 @@ TumblingOdometry::TumblingOdometry(const Params& params)
       filter_(outlier_params(params)),
       clock_(params.expert.stamps),
       pass_(rate_params(params), mapper_params(params)),
-      again_(params.expert.again, rate_params(params), mapper_params(params)) {}
+      second_pass_(params.expert.second_pass, rate_params(params), mapper_params(params)) {}
 
 Status TumblingOdometry::add_imu(const ImuSample& sample) {
   if (sample.time_ns < -kStampMax_ns || sample.time_ns > kStampMax_ns)
@@ -120,7 +120,7 @@ Status TumblingOdometry::add_inlier(const ImuSample& sample) {
     return status;
   }
   const ImuSample first = *after_gap_;
-  begin_anew();
+  restart();
   ++gaps_;
   if (const Status begun = take_in(first); !begun.ok()) return begun;
   return take_in(sample);
@@ -133,7 +133,7 @@ Status TumblingOdometry::take_in(const ImuSample& sample) {
   if (const Status status = pass_.add_imu(timed); !status.ok()) return status;
   stamps_ = stamps;
   OutlierFilter::pass(sample, outliers_);
-  again_.remember(timed);
+  second_pass_.store(timed);
   newest_ns_ = timed.time_ns;
   after_gap_.reset();
   if (!registered_ns_) {
@@ -192,25 +192,25 @@ Status TumblingOdometry::newest(PoseState& pose) const {
   return pass_.newest(pose);
 }
 
-std::optional<double> TumblingOdometry::mended_jitter_s() const {
-  return clock_.mends(stamps_) ? SampleClock::jitter_s(stamps_) : std::nullopt;
+std::optional<double> TumblingOdometry::estimated_jitter_s() const {
+  return clock_.corrects_stamps(stamps_) ? SampleClock::jitter_s(stamps_) : std::nullopt;
 }
 
-Status TumblingOdometry::doubt() const {
-  const Status of_imu = pass_.rates().rate().doubt(pass_.rate_state().rate);
+Status TumblingOdometry::health() const {
+  const Status of_imu = pass_.rates().rate().health(pass_.rate_state().rate);
   if (!of_imu.ok()) return of_imu;
   if (const Status of_force = pass_.force_at_rest(); !of_force.ok()) return of_force;
   const Status of_ranges = pass_.sweep_scale().verdict();
   if (!of_ranges.ok()) return of_ranges;
   const Status of_localisation = pass_.localisation().verdict();
-  return of_localisation.ok() ? params_.given_calibration().verdict(mapper().calibration()) : of_localisation;
+  return of_localisation.ok() ? params_.stated_calibration().verdict(mapper().calibration()) : of_localisation;
 }
 
 void TumblingOdometry::finish() {
   OutlierFilter::finish(outliers_);
   if (!newest_rate()) return;  // no samples since the last call
   flush_all();
-  again_.complete(pass_);
+  second_pass_.complete(pass_);
   begin_rates();
 }
 
@@ -225,8 +225,8 @@ void TumblingOdometry::register_sweep(TimeNs start_ns, TimeNs end_ns, std::vecto
   out.status = pass_.add_sweep(start_ns, end_ns, points, reading, out.report);
   registered_ns_ = end_ns;
   if (out.report.trajectory.empty()) return;
-  again_.remember(start_ns, end_ns, std::move(points), reading, out.report.verdict);
-  again_.advance(pass_);
+  second_pass_.store(start_ns, end_ns, std::move(points), reading, out.report.verdict);
+  second_pass_.advance(pass_);
 }
 
 /// Returns whether the sweep would be more than lag_s old at the sample after the newest one. In addition, the covering
@@ -263,9 +263,9 @@ void TumblingOdometry::flush_all() {
   register_covered();
 }
 
-void TumblingOdometry::begin_anew() {
+void TumblingOdometry::restart() {
   flush_all();
-  again_.give_up();
+  second_pass_.give_up();
   begin_rates();
 }
 

@@ -27,7 +27,7 @@ void LastPass::run(const Checkpoint& start, std::size_t cut) {
     if (loaded_ != segment) go_again(segment);
     kept_[segment].end = adjoint_;
     smooth_back(adjoint_, records_);
-    smoothed_start_ = -reported_rows(kept_[segment].start.filter.P) * adjoint_.lambda;
+    smoothed_start_ = -output_covariance_rows(kept_[segment].start.filter.P) * adjoint_.lambda;
     for (std::size_t k = 0; k < records_.size(); ++k) {
       const auto& P = records_[k].smoothed_P;
       horizontal_m2_[first_of(segment) + k] = P(kPosition, kPosition) + P(kPosition + 1, kPosition + 1);
@@ -43,7 +43,7 @@ void LastPass::forward(std::size_t segment, Checkpoint& at) {
   points_.clear();
   moved_at_end_.setZero();
   auto& [filter, cursor] = at;
-  if (segment == 0 && cursor.next == 1) remember(cursor.time_ns, filter.nominal, cursor.last_rate_rad_s, 0);
+  if (segment == 0 && cursor.next == 1) store(cursor.time_ns, filter.nominal, cursor.last_rate_rad_s, 0);
   RollingSums sums;
   Readings readings(params_, samples_, cursor);
   Reading reading;
@@ -62,8 +62,8 @@ void LastPass::forward(std::size_t segment, Checkpoint& at) {
     }
     const std::size_t node = first + records_.size();
     if (reading.in_gap) {
-      integrate_gap(params_, average, reading.doubt, filter.nominal, sums);
-      if (reading.end > reading.first) remember(reading.end_ns, filter.nominal, rate, node);
+      integrate_gap(params_, average, reading.uncertainty, filter.nominal, sums);
+      if (reading.end > reading.first) store(reading.end_ns, filter.nominal, rate, node);
     } else {
       ImuAverage so_far;
       TimeNs last_ns = cursor.time_ns;
@@ -71,7 +71,7 @@ void LastPass::forward(std::size_t segment, Checkpoint& at) {
         const ImuSample& sample = samples_[k];
         so_far.add(sample, seconds(sample.time_ns - last_ns));
         last_ns = sample.time_ns;
-        remember(last_ns, carried_on(params_, so_far, filter.nominal), so_far.mean.angular_velocity_rad_s, node);
+        store(last_ns, carried_on(params_, so_far, filter.nominal), so_far.mean.angular_velocity_rad_s, node);
       }
       if (reading.whole) integrate(params_, average, filter.nominal, sums);
     }
@@ -87,8 +87,8 @@ void LastPass::go_again(std::size_t segment) {
   forward(segment, again_);
 }
 
-void LastPass::remember(TimeNs time_ns, const RollingNominal& nominal, const Eigen::Vector3d& rate_I_rad_s,
-                        std::size_t node) {
+void LastPass::store(TimeNs time_ns, const RollingNominal& nominal, const Eigen::Vector3d& rate_I_rad_s,
+                     std::size_t node) {
   points_.push_back({time_ns, nominal.q_WI, nominal.v_WI_m_s, nominal.p_WI_m, rate_I_rad_s, node});
 }
 
@@ -98,7 +98,7 @@ void LastPass::load(std::size_t segment) {
   go_again(segment);
   adjoint_ = kept.end;
   smooth_back(adjoint_, records_);
-  smoothed_start_ = -reported_rows(kept.start.filter.P) * adjoint_.lambda;
+  smoothed_start_ = -output_covariance_rows(kept.start.filter.P) * adjoint_.lambda;
 }
 
 void LastPass::give(std::size_t until, const std::function<void(const Smoothed&)>& take) {

@@ -65,7 +65,7 @@ class LastPass {
   void forward(std::size_t segment, Checkpoint& at);
   void go_again(std::size_t segment);
   void load(std::size_t segment);
-  void remember(TimeNs time_ns, const RollingNominal& nominal, const Eigen::Vector3d& rate_I_rad_s, std::size_t node);
+  void store(TimeNs time_ns, const RollingNominal& nominal, const Eigen::Vector3d& rate_I_rad_s, std::size_t node);
   void give_segment(std::size_t segment, std::size_t until, const std::function<void(const Smoothed&)>& take) const;
 
   const RollingParams& params_;

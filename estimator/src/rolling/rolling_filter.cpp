@@ -77,14 +77,14 @@ void RollingFilter::bridge(const ImuSample& sample, double gap_s, State& state, 
   before.angular_velocity_rad_s = state.last_rate_rad_s;
   const int pieces = rolling::gap_pieces(params_, gap_s);
   for (int k = 0; k < pieces; ++k) {
-    rolling::GapDoubt doubt;
-    const ImuAverage piece = rolling::gap_piece(params_, before, sample, gap_s, k, doubt);
+    rolling::GapUncertainty uncertainty;
+    const ImuAverage piece = rolling::gap_piece(params_, before, sample, gap_s, k, uncertainty);
     const Eigen::Vector3d& rate = piece.mean.angular_velocity_rad_s;
     if (state.sums.node_s >= params_.expert.node_s - 0.5 * piece.length_s) {
       close_node(rate, state);
       listener.call(listener.to, state);
     }
-    rolling::integrate_gap(params_, piece, doubt, state.nominal, state.sums);
+    rolling::integrate_gap(params_, piece, uncertainty, state.nominal, state.sums);
     state.last_rate_rad_s = rate;
   }
   ++state.gaps;
@@ -120,7 +120,7 @@ void RollingFilter::close_node(const Eigen::Vector3d& next_rate_rad_s, State& st
   call_uncertain(state);
   weigh_events(state);
   rebase(lost_heading, state);
-  hold(state);
+  constrain_position(state);
   state.sums = {};
   ++state.node;
 }
@@ -171,8 +171,8 @@ Eigen::Matrix3d RollingFilter::position_spread(const State& state) {
 void RollingFilter::call_uncertain(State& state) const {
   const double variance_m2 = state.position_covariance_m2(0, 0) + state.position_covariance_m2(1, 1);
   const bool event = slips(state.hypotheses[0].mode);
-  if (!event) state.before_event_m2 = variance_m2;
-  state.uncertain = event && variance_m2 - state.before_event_m2 > squared(params_.expert.modes.uncertain_m);
+  if (!event) state.variance_before_event_m2 = variance_m2;
+  state.uncertain = event && variance_m2 - state.variance_before_event_m2 > squared(params_.expert.modes.uncertain_m);
 }
 
 void RollingFilter::weigh_events(State& state) {
@@ -189,16 +189,16 @@ void RollingFilter::weigh_events(State& state) {
 }
 
 /// Decides whether the reported position is constant until the next node.
-void RollingFilter::hold(State& state) const {
-  const bool quiet = seconds(state.rest.quiet_ns) >= std::min(rolling::kHeldAfter_s, params_.expert.rest.rest_s) &&
+void RollingFilter::constrain_position(State& state) const {
+  const bool quiet = seconds(state.rest.quiet_ns) >= std::min(rolling::kConstrainAfter_s, params_.expert.rest.rest_s) &&
                      !slips(state.hypotheses[0].mode);
   const bool revised = state.hypotheses[0].parent != 0;
-  const bool stands = quiet && !revised && state.v_WG_m_s.norm() < rolling::kHeldSpeed_m_s;
-  if (!stands || !state.held) {
-    state.held = false;
+  const bool stands = quiet && !revised && state.v_WG_m_s.norm() < rolling::kConstrainSpeed_m_s;
+  if (!stands || !state.position_constrained) {
+    state.position_constrained = false;
     report(state);
   }
-  state.held = stands;
+  state.position_constrained = stands;
 }
 
 /// Moves the errors of the best hypothesis into the nominal trajectory and constants; the others are expressed relative
@@ -222,7 +222,7 @@ void RollingFilter::report(State& state) const {
   const Eigen::Vector3d arm_W = nominal.q_WI * (params_.lever_arm_m + nominal.lever_arm_error_m);
   const Eigen::Vector3d w_W = nominal.q_WI * (rate - nominal.gyro_bias_rad_s);
   state.q_WI = nominal.q_WI;
-  if (!state.held) state.p_WG_m = nominal.p_WI_m - arm_W;
+  if (!state.position_constrained) state.p_WG_m = nominal.p_WI_m - arm_W;
   state.v_WG_m_s = nominal.v_WI_m_s - w_W.cross(arm_W);
   state.mode = state.hypotheses[0].mode;
   state.contact_velocity_m_s = state.hypotheses[0].u_W_m_s;

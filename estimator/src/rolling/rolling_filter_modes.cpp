@@ -28,7 +28,7 @@ constexpr double kRise_m_s = 0.03, kHit_m_s = 0.3, kRiseShare = 0.7;  // vertica
 constexpr std::int64_t kAgesApart = 4;
 // Minimum number of hypotheses that do not contain the best one's last mode change. Reason: a slip with constant spin
 // looks like grip until it ends, when a hundred variants of the last nodes are more probable.
-constexpr std::size_t kDoubters = 6;
+constexpr std::size_t kDissenters = 6;
 constexpr double kRoughCost = 0.2;  // per node: less than the residual of a slope, more than that of grip on a plane
 constexpr double kInclineAfterBump = 4.0;  // the foot of a ramp is a bump
 constexpr RollingMode kModes[] = {RollingMode::grip, RollingMode::slip, RollingMode::bump, RollingMode::incline,
@@ -63,13 +63,13 @@ double log_still(const rolling::Contact& c, const RollingFilter::Hypothesis& h, 
                  const RollingParams& params) {
   RollingFilter::Vector x = h.x;
   Eigen::Matrix<double, 3, rolling::kStates> H = c.H;
-  const bool anew = rolling::forgets_slope(h.mode, mode);
-  if (anew) {
+  const bool slope_reset = rolling::resets_slope(h.mode, mode);
+  if (slope_reset) {
     x.segment<2>(rolling::kSlope) = -c.slope;
     H.middleCols<2>(rolling::kSlope).setZero();
   }
   Eigen::Matrix3d S = H * h.P * H.transpose();
-  if (anew && mode == RollingMode::incline) {
+  if (slope_reset && mode == RollingMode::incline) {
     const Eigen::Matrix<double, 3, 2> by_slope = c.H.middleCols<2>(rolling::kSlope);
     S += squared(params.expert.contact.slope_sigma) * by_slope * by_slope.transpose();
   }
@@ -174,13 +174,13 @@ struct Kept {
   std::size_t count = 0;
 };
 
-/// Selects the candidates that remain: the most probable of each mode and start, with kDoubters reserved.
+/// Selects the candidates that remain: the most probable of each mode and start, with kDissenters reserved.
 Kept keep(std::span<const Candidate> candidates, std::int64_t node, double node_s) {
   Kept kept;
   for (const Candidate& candidate : candidates) {
     if (kept.count == kept.of.size() || candidate.log_weight < candidates[0].log_weight + kDropped) break;
-    const bool doubts = candidate.switched_node < candidates[0].switched_node;
-    if (kept.count + kDoubters >= kept.of.size() && !doubts) continue;
+    const bool dissents = candidate.switched_node < candidates[0].switched_node;
+    if (kept.count + kDissenters >= kept.of.size() && !dissents) continue;
     const std::int64_t since = beginning(candidate.switched_node, node, node_s);
     const auto same = [&](const Candidate& other) {
       return other.mode == candidate.mode && beginning(other.switched_node, node, node_s) == since;

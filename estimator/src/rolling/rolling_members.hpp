@@ -78,8 +78,8 @@ void members(Self& s, Visitor& visit) {
   visit("live.pruned_spread_m2", s.pruned_spread_m2);
   visit("live.rest", s.rest);
   visit("live.slow_rate_rad_s", s.slow_rate_rad_s);
-  visit("live.held", s.held);
-  visit("live.before_event_m2", s.before_event_m2);
+  visit("live.position_constrained", s.position_constrained);
+  visit("live.variance_before_event_m2", s.variance_before_event_m2);
   visit("live.last_rate_rad_s", s.last_rate_rad_s);
   visit("live.count", s.count, 0.0, RollingFilter::kHypotheses);
   visit.leading("live.hypotheses", s.hypotheses, static_cast<std::size_t>(s.count));
@@ -104,8 +104,8 @@ void members(Self& s, Visitor& visit) {
   visit("committed.P", s.P);
   visit("committed.mode", s.mode, RollingMode::rough);
   visit("committed.event_variance_m2", s.event_variance_m2);
-  visit("committed.held_p_WG_m", s.held_p_WG_m);
-  visit("committed.held", s.held);
+  visit("committed.constrained_p_WG_m", s.constrained_p_WG_m);
+  visit("committed.position_constrained", s.position_constrained);
   visit("committed.last_time_ns", s.last_time_ns);
   visit("committed.last_rate_rad_s", s.last_rate_rad_s);
   visit("committed.gap_rate_rad_s", s.gap_rate_rad_s);
@@ -120,7 +120,7 @@ void members(Self& s, Visitor& visit) {
   visit("rolling.committed", s.committed);
   visit("rolling.samples", s.samples);
   visit("rolling.steps", s.steps);
-  visit("rolling.learnt", s.learnt);
+  visit("rolling.constants", s.constants);
   visit("rolling.radius_sigma_m", s.radius_sigma_m);
 }
 

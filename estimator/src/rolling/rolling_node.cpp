@@ -28,7 +28,7 @@ constexpr double kOffCentre_m = 0.02;                 // of an IMU: explains for
 constexpr double kHiddenFrom = 0.3, kHiddenTo = 0.6;  // as fractions of the accelerometer's range
 constexpr double kForceTilt_rad = 0.35;               // direction error of a force in motion
 constexpr double kLostTilt_rad = kForceTilt_rad;      // a tilt with a larger standard deviation is levelled by a force
-constexpr double kDoubtfulTilt_rad = 0.1;             // same at rest, where the force is gravity
+constexpr double kUncertainTilt_rad = 0.1;            // same at rest, where the force is gravity
 constexpr double kRestTilt_rad = 5e-3;
 // as a fraction of gravity: larger differences are a push or a fast rotation
 constexpr double kPush = 0.15;
@@ -201,7 +201,7 @@ int gap_pieces(const RollingParams& params, double gap_s) {
 }
 
 ImuAverage gap_piece(const RollingParams& params, const ImuSample& before, const ImuSample& after, double gap_s, int k,
-                     GapDoubt& doubt) {
+                     GapUncertainty& uncertainty) {
   const int pieces = gap_pieces(params, gap_s);
   const double share = (k + 0.5) / pieces;
   const Eigen::Vector3d change = after.angular_velocity_rad_s - before.angular_velocity_rad_s;
@@ -213,22 +213,22 @@ ImuAverage gap_piece(const RollingParams& params, const ImuSample& before, const
       kGapStill_rad_s2 + params.expert.gap.gap_acceleration_rad_s2 * std::min(1.0, turning / kGapRate_rad_s);
   // a parabola between two known rates has the integral a T^3 / 12: rolling.md (R31)
   const double off_rad = acceleration * gap_s * gap_s * gap_s / 12.0 + kGapStep * change.norm() * gap_s;
-  doubt.rad2 = off_rad * off_rad / pieces;
+  uncertainty.rad2 = off_rad * off_rad / pieces;
   // rolling.md (R32)
-  doubt.rate_rad2_s = squared(off_rad / gap_s) * gap_s;  // common to all pieces, hence a factor gap_s
-  doubt.speed_m2_s2 = squared(kGapTurned * params.radius_m * change.norm()) / pieces;  // rolling.md (R33)
+  uncertainty.rate_rad2_s = squared(off_rad / gap_s) * gap_s;  // common to all pieces, hence a factor gap_s
+  uncertainty.speed_m2_s2 = squared(kGapTurned * params.radius_m * change.norm()) / pieces;  // rolling.md (R33)
   ImuAverage piece;
   piece.add(sample, gap_s / pieces);
   return piece;
 }
 
-void integrate_gap(const RollingParams& params, const ImuAverage& piece, const GapDoubt& doubt, RollingNominal& nominal,
-                   RollingSums& sums) {
+void integrate_gap(const RollingParams& params, const ImuAverage& piece, const GapUncertainty& uncertainty,
+                   RollingNominal& nominal, RollingSums& sums) {
   integrate(params, piece, nominal, sums, Force::unknown);
   sums.gap_s += piece.length_s;
-  sums.gap_rad2 += doubt.rad2;
-  sums.gap_rate_rad2_s += doubt.rate_rad2_s;
-  sums.gap_speed_m2_s2 += doubt.speed_m2_s2;
+  sums.gap_rad2 += uncertainty.rad2;
+  sums.gap_rate_rad2_s += uncertainty.rate_rad2_s;
+  sums.gap_speed_m2_s2 += uncertainty.speed_m2_s2;
 }
 
 /// rolling.md (R10).
@@ -321,7 +321,7 @@ std::optional<double> lost_velocity_variance(const RollingParams& params, double
   return squared(params.expert.contact.speed_sigma_m_s) * kSpeedWindow_s / node_s;
 }
 
-bool forgets_slope(RollingMode from, RollingMode to) {
+bool resets_slope(RollingMode from, RollingMode to) {
   return from != to && !slips(to);
 }
 
@@ -333,7 +333,7 @@ void change_floor(const RollingParams& params, RollingMode from, RollingMode to,
   }
   // on a rough floor, the sphere travels less than it rotates, depending on the steepness
   if (to == RollingMode::rough) P(kRadius, kRadius) += squared(params.expert.contact.rough_radius_walk_m_sqrts) * h_s;
-  if (!forgets_slope(from, to)) return;
+  if (!resets_slope(from, to)) return;
   P.middleRows<2>(kSlope).setZero();
   P.middleCols<2>(kSlope).setZero();
   const double sigma = to == RollingMode::incline ? params.expert.contact.slope_sigma : kLevelSlopeSigma;
@@ -348,7 +348,7 @@ bool reset_tilt(const RollingParams& params, const RollingSums& sums, bool at_re
   if (sums.rotated_rad2_s > squared(kFastRate_rad_s) * sums.node_s) return false;
   const Eigen::Vector3d f_I_m_s2 = sums.f_I_m_s / sums.node_s;
   const double tilt_variance = std::max(P(kAttitude, kAttitude), P(kAttitude + 1, kAttitude + 1));
-  if (tilt_variance < squared(at_rest ? kDoubtfulTilt_rad : kLostTilt_rad)) return false;
+  if (tilt_variance < squared(at_rest ? kUncertainTilt_rad : kLostTilt_rad)) return false;
   const double force = f_I_m_s2.norm();
   if (!(force > 0.1 * params.gravity_m_s2)) return false;
   if (!at_rest && std::abs(force - params.gravity_m_s2) > kPush * params.gravity_m_s2) return false;

@@ -22,7 +22,7 @@ using Covariance = Eigen::Matrix<double, kStates, kStates>;
 using Moving = Eigen::Matrix<double, 9, kStates>;
 
 /// The sphere is at rest, and the reported position constant, after this time without motion and below this speed.
-inline constexpr double kHeldAfter_s = 0.1, kHeldSpeed_m_s = 0.02;
+inline constexpr double kConstrainAfter_s = 0.1, kConstrainSpeed_m_s = 0.02;
 
 /// Contact velocity of the nominal trajectory and its derivative by the error state.
 struct Contact {
@@ -60,14 +60,14 @@ RollingNominal carried_on(const RollingParams& params, const ImuAverage& reading
 int gap_pieces(const RollingParams& params, double gap_s);
 
 /// Uncertainty of a piece of a gap, with interpolated rate and without force.
-struct GapDoubt {
+struct GapUncertainty {
   double rad2 = 0.0, rate_rad2_s = 0.0, speed_m2_s2 = 0.0;
 };
 ImuAverage gap_piece(const RollingParams& params, const ImuSample& before, const ImuSample& after, double gap_s, int k,
-                     GapDoubt& doubt);
+                     GapUncertainty& uncertainty);
 
-void integrate_gap(const RollingParams& params, const ImuAverage& piece, const GapDoubt& doubt, RollingNominal& nominal,
-                   RollingSums& sums);
+void integrate_gap(const RollingParams& params, const ImuAverage& piece, const GapUncertainty& uncertainty,
+                   RollingNominal& nominal, RollingSums& sums);
 
 /// Returns the transition of the error over the node: x <- x + (B x on top).
 Moving transition(const RollingSums& sums);
@@ -87,7 +87,7 @@ void change_floor(const RollingParams& params, RollingMode from, RollingMode to,
 std::optional<double> lost_velocity_variance(const RollingParams& params, double node_s, const Covariance& P);
 
 /// Returns whether this mode change makes the slope unknown.
-bool forgets_slope(RollingMode from, RollingMode to);
+bool resets_slope(RollingMode from, RollingMode to);
 
 /// Levels a tilt that was lost during clipping, by the node's mean force, at rest or not, and resets the velocity.
 /// Returns false if not needed, or if the node's force is not usable.

@@ -63,11 +63,12 @@ Eigen::Matrix<double, 6, 6> pose_covariance(const rolling::NodeRecord& node, con
 }
 
 /// Keeps the reported position constant while the sphere is at rest.
-void hold(const rolling::PathNode& node, RollingSmoother::Committed& committed, RollingEstimate& estimate) {
-  const bool stands = node.stands && !slips(node.mode) && estimate.v_WG_m_s.norm() < rolling::kHeldSpeed_m_s;
-  if (stands && !committed.held) committed.held_p_WG_m = estimate.p_WG_m;
-  if (stands) estimate.p_WG_m = committed.held_p_WG_m;
-  committed.held = stands;
+void constrain_position(const rolling::PathNode& node, RollingSmoother::Committed& committed,
+                        RollingEstimate& estimate) {
+  const bool stands = node.stands && !slips(node.mode) && estimate.v_WG_m_s.norm() < rolling::kConstrainSpeed_m_s;
+  if (stands && !committed.position_constrained) committed.constrained_p_WG_m = estimate.p_WG_m;
+  if (stands) estimate.p_WG_m = committed.constrained_p_WG_m;
+  committed.position_constrained = stands;
 }
 
 RollingSmoother::Take appending(std::vector<RollingEstimate>& out) {
@@ -151,7 +152,7 @@ struct RollingSmoother::Path {
 };
 
 bool RollingSmoother::State::operator==(const State& other) const {
-  return live == other.live && committed == other.committed && steps == other.steps && learnt == other.learnt &&
+  return live == other.live && committed == other.committed && steps == other.steps && constants == other.constants &&
          radius_sigma_m == other.radius_sigma_m &&
          std::equal(samples.begin(), samples.end(), other.samples.begin(), other.samples.end(), equal);
 }
@@ -165,7 +166,7 @@ RollingSmoother::RollingSmoother(const Params& p) : params_(p), filter_(p.filter
   block_nodes_ = static_cast<std::size_t>(std::ceil(p.block_s / p.filter.expert.node_s - 1e-9));
 }
 
-std::size_t RollingSmoother::samples_set_aside() const {
+std::size_t RollingSmoother::preallocated_samples() const {
   return static_cast<std::size_t>(std::ceil((params_.lag_s + params_.block_s + 1.0) * params_.rate_max_hz));
 }
 
@@ -175,7 +176,7 @@ Status RollingSmoother::check_state(const State& state) const {
   const std::size_t most = lag_nodes_ + block_nodes_;
   if (params_.lag_s < kWholeRun && state.steps.size() > most)
     return {Trouble::out_of_range, "rolling.steps", double(state.steps.size()), double(most)};
-  const std::size_t samples_most = kBeyondStorage * samples_set_aside();
+  const std::size_t samples_most = kBeyondStorage * preallocated_samples();
   if (params_.lag_s < kWholeRun && state.samples.size() > samples_most)
     return {Trouble::out_of_range, "rolling.samples", double(state.samples.size()), double(samples_most)};
   const Committed& committed = state.committed;
@@ -197,7 +198,7 @@ Status RollingSmoother::check_state(const State& state) const {
 Status RollingSmoother::step(const ImuSample& sample, State& state, std::vector<RollingEstimate>& out) const {
   if (!state.live.started && params_.lag_s < kWholeRun) {
     state.steps.reserve(std::min(lag_nodes_ + block_nodes_ + 1, kSetAsideMost));
-    state.samples.reserve(std::min(samples_set_aside(), kSetAsideMost));
+    state.samples.reserve(std::min(preallocated_samples(), kSetAsideMost));
   }
   const auto closed = [&steps = state.steps](const RollingFilter::State& live) {
     Step step;
@@ -255,14 +256,14 @@ void RollingSmoother::finish(std::span<const RollingMode> known, State& state, c
 RollingSmoother::Path RollingSmoother::best_path(const State& state) const {
   Path path;
   path.nodes.resize(state.steps.size());
-  const double stands_after_s = std::min(rolling::kHeldAfter_s, params_.filter.expert.rest.rest_s);
+  const double constrain_after_s = std::min(rolling::kConstrainAfter_s, params_.filter.expert.rest.rest_s);
   std::size_t which = 0;
   double lasts_s = 0.0;  // duration of the rest that contains a node
   for (std::size_t n = path.nodes.size(); n-- > 0;) {
     const Step& step = state.steps[n];
     rolling::PathNode& node = path.nodes[n];
     lasts_s = step.rest_s > 0.0 ? std::max(lasts_s, step.rest_s) : 0.0;
-    node.stands = lasts_s > 0.0 && lasts_s >= stands_after_s;
+    node.stands = lasts_s > 0.0 && lasts_s >= constrain_after_s;
     node.mode = step.mode[which];
     node.at_rest = step.at_rest;
     node.spins_in_place = step.spins_in_place;
@@ -278,12 +279,12 @@ void RollingSmoother::run_window(const Path& path, std::size_t emitted, State& s
   if (emitted > path.nodes.size() && params_.known_distance_m > 0.0) {
     distance = {params_.known_distance_m, params_.known_distance_sigma_m};
   }
-  const auto held = std::make_unique<rolling::LastPass>(path_params_, state.samples, path.nodes, distance);
-  rolling::LastPass& pass = *held;
+  const auto owned_pass = std::make_unique<rolling::LastPass>(path_params_, state.samples, path.nodes, distance);
+  rolling::LastPass& pass = *owned_pass;
   const auto start = std::make_unique<rolling::LastPass::Checkpoint>();
   start_window(params_.filter, path_params_, state, *start);
   pass.run(*start, emitted);
-  state.learnt = pass.end().nominal;
+  state.constants = pass.end().nominal;
   state.radius_sigma_m = std::sqrt(std::max(0.0, pass.end().P(rolling::kRadius, rolling::kRadius)));
 
   const Events events = find_events(params_, path.nodes, pass.horizontal_m2(), emitted, state.committed);
@@ -291,7 +292,7 @@ void RollingSmoother::run_window(const Path& path, std::size_t emitted, State& s
     RollingEstimate estimate = estimate_at(params_, at);
     if (at.node != nullptr) {
       estimate.uncertain = events.uncertain[at.index];
-      if (params_.lag_s < kWholeRun) hold(at.node->path, state.committed, estimate);
+      if (params_.lag_s < kWholeRun) constrain_position(at.node->path, state.committed, estimate);
     }
     take(estimate);
   });

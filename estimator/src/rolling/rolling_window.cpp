@@ -12,17 +12,17 @@ namespace tumble::rolling {
 
 namespace {
 
-constexpr double kBelievedSigmas = 5.0;
+constexpr double kMaxSigmas = 5.0;
 constexpr double kNoDirection_m = 0.05;  // minimum distance of two positions with a defined direction
 
-/// Reduces the weight of a measurement beyond kBelievedSigmas, because large linear corrections would distort the whole
+/// Reduces the weight of a measurement beyond kMaxSigmas, because large linear corrections would distort the whole
 /// run: rolling.md (R37).
 void measure(const Row& H, double measured, double variance, NodeRecord& record, Vector& x, Covariance& P) {
   const auto k = static_cast<std::size_t>(record.rows++);
   const Vector PHt = P * H.transpose();
   record.H[k] = H;
   record.innovation[k] = measured - H.dot(x);
-  record.variance[k] = std::max(H.dot(PHt) + variance, squared(record.innovation[k] / kBelievedSigmas));
+  record.variance[k] = std::max(H.dot(PHt) + variance, squared(record.innovation[k] / kMaxSigmas));
   record.gain[k] = PHt / record.variance[k];
   x += record.gain[k] * record.innovation[k];
   P.noalias() -= PHt * record.gain[k].transpose();
@@ -53,7 +53,7 @@ bool Readings::next_piece(double gap_s, Reading& out) {
   ImuSample before;
   before.angular_velocity_rad_s = cursor_.gap_rate_rad_s;
   const int pieces = gap_pieces(params_, gap_s);
-  out.average = gap_piece(params_, before, after, gap_s, cursor_.gap_piece, out.doubt);
+  out.average = gap_piece(params_, before, after, gap_s, cursor_.gap_piece, out.uncertainty);
   out.in_gap = true;
   ++cursor_.gap_piece;
   const bool last = cursor_.gap_piece == pieces;
@@ -97,7 +97,7 @@ bool Readings::next(Reading& out) {
   return true;
 }
 
-Eigen::Matrix<double, kReported, kStates> reported_rows(const Covariance& P) {
+Eigen::Matrix<double, kReported, kStates> output_covariance_rows(const Covariance& P) {
   Eigen::Matrix<double, kReported, kStates> out;
   out << P.topRows<9>(), P.middleRows<3>(kLeverArm);
   return out;
@@ -110,7 +110,7 @@ void close_node(const RollingParams& params, const RollingSums& sums, const Eige
   Vector x = Vector::Zero();
   predict(params, sums, record.B, x, filter.P);
   record.tilt_reset = reset_tilt(params, sums, path.at_rest, filter.nominal, filter.P);
-  record.forgets_slope = forgets_slope(filter.mode, path.mode);
+  record.resets_slope = resets_slope(filter.mode, path.mode);
   change_floor(params, filter.mode, path.mode, sums.node_s, filter.nominal, x, filter.P);
   record.lost_heading = lost_heading(filter.P);
   const auto take = [&](const auto& row, double measured, double variance) {
@@ -132,7 +132,7 @@ void close_node(const RollingParams& params, const RollingSums& sums, const Eige
   }
   filter.mode = path.mode;
   record.correction = reported(x);
-  record.P_rows = reported_rows(filter.P);
+  record.P_rows = output_covariance_rows(filter.P);
   record.nominal = filter.nominal;
 }
 
@@ -161,7 +161,7 @@ Reported measure_distance(const RollingParams& params, double distance_m, double
   make_symmetric(filter.P);
   rebase(x, filter.nominal);
   last.correction += reported(x);
-  last.P_rows = reported_rows(filter.P);
+  last.P_rows = output_covariance_rows(filter.P);
   last.nominal = filter.nominal;
   return reported(x);
 }
@@ -186,7 +186,7 @@ void smooth_back(Adjoint& adjoint, std::span<NodeRecord> nodes) {
       Lambda += H.transpose().lazyProduct(seen) - H.transpose().lazyProduct(through.transpose()) -
                 through.lazyProduct(H);  // avoids a temporary matrix of 13 KiB for each
     }
-    if (node.forgets_slope) {
+    if (node.resets_slope) {
       lambda.segment<2>(kSlope).setZero();
       Lambda.middleRows<2>(kSlope).setZero();
       Lambda.middleCols<2>(kSlope).setZero();

@@ -29,7 +29,7 @@ struct NodeRecord {
   std::array<Vector, kRowsMax> gain;
   std::array<double, kRowsMax> innovation{}, variance{};
   int rows = 0;
-  bool forgets_slope = false;
+  bool resets_slope = false;
   bool tilt_reset = false;
   bool lost_heading = false;
   Eigen::Matrix<double, kReported, kStates> P_rows;  ///< after the update
@@ -45,7 +45,7 @@ struct NodeRecord {
 /// One input of the live filter: averaged readings, or a piece of a gap.
 struct Reading {
   ImuAverage average;
-  GapDoubt doubt;
+  GapUncertainty uncertainty;
   bool in_gap = false;
   bool whole = true;               ///< false: the last one of the run, too short to be processed
   std::size_t first = 0, end = 0;  ///< its samples; in a gap, only the last piece has one
@@ -95,7 +95,7 @@ struct PathFilter {
   RollingMode mode = RollingMode::grip;
 };
 
-Eigen::Matrix<double, kReported, kStates> reported_rows(const Covariance& P);
+Eigen::Matrix<double, kReported, kStates> output_covariance_rows(const Covariance& P);
 
 /// Closes a node: prediction, measurements, correction of the nominal. `record` is blank.
 void close_node(const RollingParams& params, const RollingSums& sums, const Eigen::Vector3d& rate_I_rad_s,

@@ -58,7 +58,7 @@ void Feed::finish() {
   waiting_.clear();  // no sample covers them
   odometry().attr("finish")();
   save_words();
-  save_poses(odometry().attr("open_trajectory")());
+  save_poses(odometry().attr("window_trajectory")());
 }
 
 void Feed::add_imu(evalio::ImuMeasurement given) {

@@ -30,7 +30,7 @@ NB_MODULE(tumble_evalio, m) {
   nb::class_<Feed, evalio::Pipeline>(m, "Feed", "A pipeline of evalio over an estimator that `begin` is given.")
       .def(nb::init<>())
       .def("begin", &Feed::begin, nb::arg("odometry"), nb::arg("sweep_length_ns"),
-           "odometry: has add_imu, add_sweep, take_all, open_trajectory, finish and map, as TumblingOdometry.")
+           "odometry: has add_imu, add_sweep, take_all, window_trajectory, finish and map, as TumblingOdometry.")
       .def("finish", &Feed::finish,
            "At the end of a run: saves what has not been saved. A sweep that the IMU did not cover has no pose.");
 }

@@ -127,7 +127,7 @@ def tumbling(recording: Recording, on_sample: Callable[[_tumble.TumblingOdometry
     done += odometry.take_all()
     placed = [sweep.report for sweep in done if sweep.placed]
     words = [report.smoothed for report in placed if len(report.smoothed) > 0]
-    return Tumble(poses=_tumble.Poses.joined([*words, odometry.open_trajectory()]), sweeps=placed,
+    return Tumble(poses=_tumble.Poses.joined([*words, odometry.window_trajectory()]), sweeps=placed,
                   refused=[sweep.message for sweep in done if not sweep.placed], map=odometry.map(), odometry=odometry)
 
 

@@ -133,7 +133,7 @@ bool is_lost(const StandstillSmoother::Params& p, const ImuSample& sample, const
 }
 
 // Restarts attitude and velocity without correlation to the past; the rate continues.
-void start_anew(const ImuSample& sample, Belief& belief, ErrorCovariance& F) {
+void restart(const ImuSample& sample, Belief& belief, ErrorCovariance& F) {
   constexpr double kAnyTilt = 10.0, kAnyVelocity = 1e4;  // variances
   Navigation& n = belief.mean;
   const Vector3d up = (n.q_WI * sample.specific_force_m_s2).normalized();
@@ -209,7 +209,7 @@ Status StandstillSmoother::estimate(std::span<const ImuSample> samples, std::vec
     const double dt_s = k == 0 ? 0.0 : seconds(samples[k].time_ns - samples[k - 1].time_ns);
     if (k > 0) predict(params_, process, noise, samples[k], dt_s, belief, step.transition);
     if (k > 0 && rest[k] && !rest[k - 1] && is_lost(params_, samples[k], belief)) {
-      start_anew(samples[k], belief, step.transition);
+      restart(samples[k], belief, step.transition);
     }
     step.before = belief;
     const int clipped = clippings[k].gyro | clippings[k].missing_gyro;

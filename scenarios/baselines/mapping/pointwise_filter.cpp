@@ -144,13 +144,13 @@ void PointwiseFilter::take_points(TimeNs start_ns, TimeNs end_ns, LidarInertialO
   };
   // A reading is applied at the middle of its window. Its pose is output at the end, before the middle of the next
   // window.
-  const auto tell = [&](TimeNs at_ns) {
+  const auto record_pose = [&](TimeNs at_ns) {
     if (at_ns <= start_ns || at_ns > end_ns) return;
     take_until(at_ns);
     advance(at_ns);
     report.trajectory.push_back(pose());
   };
-  tell(window_end_ns_);
+  record_pose(window_end_ns_);
   while (!readings_.empty() && readings_.front().middle_ns <= end_ns) {
     const Reading reading = readings_.front();
     readings_.pop_front();
@@ -158,7 +158,7 @@ void PointwiseFilter::take_points(TimeNs start_ns, TimeNs end_ns, LidarInertialO
     advance(reading.middle_ns);
     take(reading);
     window_end_ns_ = reading.end_ns;
-    tell(window_end_ns_);
+    record_pose(window_end_ns_);
   }
   take_until(end_ns);
   advance(end_ns);

@@ -151,7 +151,7 @@ Status PublishedChain::add(const Sweep& sweep, SweepReport& report) {
   const Status trouble = trouble_of(sweep, points.size());
   if (!trouble.ok()) points.clear();
   const bool registered = registers(sweep, at_ns, points, report);
-  tell_poses(sweep, report);
+  report_poses(sweep, report);
   if (registered) feed_back(at_ns);
   return trouble;
 }
@@ -203,7 +203,7 @@ void PublishedChain::extend(std::span<const TrimmedIcp::Point> points, const Eig
 }
 
 /// In the map's frame.
-void PublishedChain::tell_poses(const Sweep& sweep, SweepReport& report) {
+void PublishedChain::report_poses(const Sweep& sweep, SweepReport& report) {
   const auto at = [&](TimeNs time_ns) {
     return pose_state(T_map_odom_ * odometry_.pose(time_ns), T_map_odom_.linear() * odometry_.velocity_m_s(time_ns),
                       time_ns);

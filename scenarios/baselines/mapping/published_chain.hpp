@@ -97,7 +97,7 @@ class PublishedChain {
  private:
   bool registers(const Sweep& sweep, TimeNs at_ns, std::span<const TrimmedIcp::Point> points, SweepReport& report);
   void extend(std::span<const TrimmedIcp::Point> points, const Eigen::Isometry3d& T_WL, SweepReport& report);
-  void tell_poses(const Sweep& sweep, SweepReport& report);
+  void report_poses(const Sweep& sweep, SweepReport& report);
   void feed_back(TimeNs at_ns);
 
   Params params_;

@@ -11,8 +11,8 @@
 #include "scenarios/recordings/import.hpp"
 #include "scenarios/recordings/recording_check.hpp"
 #include "scenarios/recordings/tables/csv_text.hpp"
-#include "scenarios/recordings/tables/held_readings.hpp"
 #include "scenarios/recordings/tables/imu_readings.hpp"
+#include "scenarios/recordings/tables/repeated_readings.hpp"
 
 namespace tumble::scenarios {
 

@@ -170,18 +170,18 @@ GravityRotation gravity_rotation(const sim::ImuRecord& imu, RotationWindows wind
 
 namespace {
 
-bool tells_rotation(const GravityRotation& turn) {
+bool has_sufficient_rotation(const GravityRotation& turn) {
   return turn.windows >= kLeastWindows && std::abs(turn.correlation) >= kLeastCorrelation;
 }
 
-GravityRotation telling_rotation(const sim::ImuRecord& imu) {
+GravityRotation sufficient_rotation(const sim::ImuRecord& imu) {
   const GravityRotation turn = gravity_rotation(imu, RotationWindows::even);
   // a rolling sphere rotates too far in even windows
-  return tells_rotation(turn) ? turn : gravity_rotation(imu, RotationWindows::brisk);
+  return has_sufficient_rotation(turn) ? turn : gravity_rotation(imu, RotationWindows::brisk);
 }
 
 /// Explains why the motion does not suffice.
-std::string untold_text(const GravityRotation& turn) {
+std::string undetermined_text(const GravityRotation& turn) {
   if (turn.windows < kLeastWindows) return "gravity's rotation in the accelerometer is too small to check them";
   return fmt::format(
       "the force rotates in the accelerometer, but agrees too little with the gyro to check them ({} windows, "
@@ -193,14 +193,14 @@ std::string untold_text(const GravityRotation& turn) {
 
 std::string require_plausible_rates(const std::string& where, const sim::ImuRecord& imu, GyroUnit unit) {
   require_rates_in_range(where, imu, unit);
-  const GravityRotation turn = telling_rotation(imu);
+  const GravityRotation turn = sufficient_rotation(imu);
   const bool dead =
       std::all_of(imu.gyro_rad_s.begin(), imu.gyro_rad_s.end(), [](const auto& w) { return w.isZero(0.0); });
   if (dead) {
     return fmt::format("caution: the gyro reads 0 on all axes in all {} samples; it may be defective or not recorded",
                        imu.gyro_rad_s.size());
   }
-  if (!tells_rotation(turn)) return "";
+  if (!has_sufficient_rotation(turn)) return "";
   const std::string seen = fmt::format(
       "gravity's rotation in the accelerometer is {} times the gyro's rotation ({} windows, correlation {})",
       rounded(turn.ratio), turn.windows, rounded(turn.correlation));
@@ -216,10 +216,10 @@ std::string require_plausible_rates(const std::string& where, const sim::ImuReco
 }
 
 std::string rates_text(const std::string& where, const sim::ImuRecord& imu, GyroUnit unit) {
-  const std::string told = require_plausible_rates(where, imu, unit);
-  if (!told.empty()) return told;
+  const std::string warning = require_plausible_rates(where, imu, unit);
+  if (!warning.empty()) return warning;
   return fmt::format("rates are read in {}, with unchanged signs and axes: {}",
-                     unit == GyroUnit::deg_s ? "deg/s" : "rad/s", untold_text(telling_rotation(imu)));
+                     unit == GyroUnit::deg_s ? "deg/s" : "rad/s", undetermined_text(sufficient_rotation(imu)));
 }
 
 sim::ImuRecord without_readings(sim::ImuRecord device) {

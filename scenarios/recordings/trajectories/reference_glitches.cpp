@@ -82,7 +82,7 @@ void leave_out_unsound(std::vector<ReferencePose>& poses, GlitchReport& report) 
   leave_out(poses, out);
 }
 
-void leave_out_frozen(std::vector<ReferencePose>& poses, GlitchReport& report) {
+void exclude_frozen(std::vector<ReferencePose>& poses, GlitchReport& report) {
   std::vector<bool> out(poses.size());
   for (std::size_t first = 0; first < poses.size();) {
     std::size_t last = first;
@@ -127,7 +127,7 @@ GlitchReport leave_out_glitches(std::vector<ReferencePose>& poses) {
   for (const ReferencePose& pose : poses) times.push_back(pose.time_ns);
   const std::int64_t step_ns = median_step_ns(times);
   leave_out_unsound(poses, report);
-  leave_out_frozen(poses, report);
+  exclude_frozen(poses, report);
   leave_out_leaps(poses, report);
   for (std::size_t k = 1; k < poses.size(); ++k) {
     if (2 * (poses[k].time_ns - poses[k - 1].time_ns) > 5 * step_ns) ++report.gaps;

@@ -130,10 +130,10 @@ TEST(FlightSense, OfABodyThatIsPerhapsHeldOnlyTheClearestIsTold) {
   const auto nothing = [](ImuSample&) {};
   const Eigen::Vector3d mirrored = kFlightArm_m.cwiseProduct(Eigen::Vector3d(-1.0, 1.0, 1.0));
   const auto x_flipped = [](ImuSample& s) { s.specific_force_m_s2.x() *= -1.0; };
-  EXPECT_EQ(sense_told(thrown_flight(), FlightSense::Body::perhaps_held, 100.0, x_flipped), "");
-  EXPECT_EQ(sense_told(thrown_flight(), FlightSense::Body::perhaps_held, 100.0, other_senses()[0].second),
+  EXPECT_EQ(sense_told(thrown_flight(), FlightSense::Body::may_be_hand_held, 100.0, x_flipped), "");
+  EXPECT_EQ(sense_told(thrown_flight(), FlightSense::Body::may_be_hand_held, 100.0, other_senses()[0].second),
             other_senses()[0].first);
-  EXPECT_EQ(sense_told(swung(mirrored), FlightSense::Body::perhaps_held, 100.0, nothing), "");
+  EXPECT_EQ(sense_told(swung(mirrored), FlightSense::Body::may_be_hand_held, 100.0, nothing), "");
   EXPECT_EQ(sense_told(swung(kFlightArm_m), FlightSense::Body::thrown, 100.0, nothing), "");
   EXPECT_NE(sense_told(swung(-kFlightArm_m), FlightSense::Body::thrown, 100.0, nothing), "")
       << "the lever arm's own sense";

@@ -274,7 +274,7 @@ TEST(RailJudgement, TheWatchKeepsTheFirstReadingsAndTheLatest) {
       watch.observe(sample, state);
     }
     const std::vector<Vector3d>& kept = state.memory[0].readings;
-    ASSERT_TRUE(state.memory[0].forgot);
+    ASSERT_TRUE(state.memory[0].pruned);
     ASSERT_LE(kept.size(), static_cast<std::size_t>(readings_max));
     const int first = readings_max == 64 ? 12 : 48;
     for (int k = 0; k < first; ++k) EXPECT_EQ(kept[static_cast<std::size_t>(k)], reading(k)) << k;

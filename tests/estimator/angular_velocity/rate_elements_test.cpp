@@ -10,7 +10,7 @@
 #include "estimator/angular_velocity/drawn_elements.hpp"
 #include "estimator/angular_velocity/quantile.hpp"
 #include "estimator/angular_velocity/tumble_recording.hpp"
-#include "estimator/src/angular_velocity/unseen_rails.hpp"
+#include "estimator/src/angular_velocity/possible_saturation.hpp"
 #include "tumble/angular_velocity/detail/rate_model.hpp"
 #include "tumble/angular_velocity/rate_smoother.hpp"
 
@@ -70,7 +70,7 @@ TEST(RateElements, WhatIsLearntOfTheElementsIsNearTheTruth) {
   std::vector<RateState> states;
   RateReport report;
   ASSERT_TRUE(RateSmoother(with_lever_arm<RateSmoother::Params>()).estimate(tumble.samples, states, report).ok());
-  EXPECT_FALSE(report.rails_upright);
+  EXPECT_FALSE(report.rails_axis_aligned);
   ASSERT_TRUE(report.planes.any());
   double known = 0.0;
   for (int i = 0; i < 6; ++i) {
@@ -87,7 +87,7 @@ TEST(RateElements, AnUprightDeviceIsTakenForOne) {
   std::vector<RateState> states;
   RateReport report;
   ASSERT_TRUE(RateSmoother(with_lever_arm<RateSmoother::Params>()).estimate(tumble.samples, states, report).ok());
-  EXPECT_TRUE(report.rails_upright);
+  EXPECT_TRUE(report.rails_axis_aligned);
 }
 
 // A rate about y that rises and falls along straight lines and is cut at a level; another element's rail is known.
@@ -116,10 +116,10 @@ TEST(UnseenRails, APlateauOfTheMotionNearTheOthersMayHideWhereItsSlopesMeet) {
   for (const int sign : {-1, 1}) {
     for (const double down : {0.25, 0.5}) {
       std::vector<RateObservation> tops = cut_tops(8.5, 0.4, down, sign);
-      doubt_motion_plateaus(plane_of_x(8.7), {}, 0.02, 0.005, tops);
+      inflate_motion_plateaus(plane_of_x(8.7), {}, 0.02, 0.005, tops);
       EXPECT_NEAR(2.0 * tops[30].lost_sigma_rad_s.y(), 2.0, 0.5 * (0.4 + down)) << down;
-      EXPECT_EQ(tops[30].doubted, 2u);
-      EXPECT_EQ(tops[5].doubted, 0u);
+      EXPECT_EQ(tops[30].suspect, 2u);
+      EXPECT_EQ(tops[5].suspect, 0u);
       EXPECT_EQ(tops[30].lost_sigma_rad_s.x(), 0.0);
       // neither clipped nor measured, as the stream has it
       EXPECT_EQ(rate_source(tops[30], {}, Eigen::Matrix3d::Identity(), 0.5), RateSource::bounded_only);
@@ -129,20 +129,20 @@ TEST(UnseenRails, APlateauOfTheMotionNearTheOthersMayHideWhereItsSlopesMeet) {
 }
 
 TEST(UnseenRails, NothingIsDoubtedThatIsKnownOrFarFromTheRails) {
-  const auto doubted = [](const RailPlanes& planes, std::vector<RateObservation> tops) {
-    doubt_motion_plateaus(planes, {}, 0.02, 0.005, tops);
-    return std::any_of(tops.begin(), tops.end(), [](const RateObservation& o) { return o.doubted != 0; });
+  const auto suspect = [](const RailPlanes& planes, std::vector<RateObservation> tops) {
+    inflate_motion_plateaus(planes, {}, 0.02, 0.005, tops);
+    return std::any_of(tops.begin(), tops.end(), [](const RateObservation& o) { return o.suspect != 0; });
   };
   const std::vector<RateObservation> top = cut_tops(8.5, 0.4, 0.4, 1);
-  EXPECT_TRUE(doubted(plane_of_x(8.7), top));
-  EXPECT_FALSE(doubted({}, top));
-  EXPECT_FALSE(doubted(plane_of_x(9.2), top));  // a rail 6 % away is another's
+  EXPECT_TRUE(suspect(plane_of_x(8.7), top));
+  EXPECT_FALSE(suspect({}, top));
+  EXPECT_FALSE(suspect(plane_of_x(9.2), top));  // a rail 6 % away is another's
   RailPlanes own = plane_of_x(8.7);
   own.element[1] = own.element[0];
-  EXPECT_FALSE(doubted(own, top));
+  EXPECT_FALSE(suspect(own, top));
   std::vector<RateObservation> flagged = top;
   flagged[3].sample.device_clip_flags = 1;
-  EXPECT_FALSE(doubted(plane_of_x(8.7), flagged));
+  EXPECT_FALSE(suspect(plane_of_x(8.7), flagged));
 }
 
 // A rail of 0.06 of tilt lies no lower than 9.5 - 0.06 * 2 where 9.5 was read beside 2; a reading of 8.5 beside 0.5 is
@@ -159,11 +159,11 @@ TEST(UnseenRails, WhatWasReadFarBeyondRefutesThem) {
   for (const bool beyond : {false, true}) {
     std::vector<RateObservation> top = cut_tops(8.5, 0.4, 0.4, 1);
     const LeastRails known = beyond ? least : LeastRails{};
-    doubt_motion_plateaus(plane_of_x(8.7), known, 0.02, 0.005, top);
-    EXPECT_EQ(top[30].doubted != 0, !beyond);
+    inflate_motion_plateaus(plane_of_x(8.7), known, 0.02, 0.005, top);
+    EXPECT_EQ(top[30].suspect != 0, !beyond);
     RateObservation single = top[30];
-    single.doubted = 0;
-    doubt_unseen_rails(plane_of_x(8.5), known, 0.005, &top[20].sample, single, &top[40].sample);
+    single.suspect = 0;
+    inflate_possible_saturation(plane_of_x(8.5), known, 0.005, &top[20].sample, single, &top[40].sample);
     EXPECT_EQ(single.lone != 0, !beyond);
   }
 }

@@ -34,7 +34,7 @@ Point random_point(oracles::Gaussian& noise) {
 Derivative analytic(const Factor& factor, const Point& p) {
   const RateFactor f = factor(p.knot, p.rig);
   Derivative d;
-  d << f.by_knot, f.by_rig;
+  d << f.by_knot, f.jacobian_calibration;
   return d;
 }
 
@@ -226,10 +226,10 @@ TEST(LateFlight, ByTheRigAloneIsTheSameToTheBit) {
     const RateFactor whole = late_flight_factor(p.knot, p.rig, kReading, delay_s, nullptr),
                      part = late_flight_by_rig(p.knot, p.rig, kReading, delay_s);
     EXPECT_EQ(part.residual, whole.residual);
-    EXPECT_EQ(part.by_rig.leftCols<9>(), whole.by_rig.leftCols<9>());
+    EXPECT_EQ(part.jacobian_calibration.leftCols<9>(), whole.jacobian_calibration.leftCols<9>());
     EXPECT_TRUE(part.by_knot.isZero(0.0));
-    EXPECT_TRUE(part.by_rig.rightCols<RigConstants::kSize - 9>().isZero(0.0));
-    EXPECT_FALSE(whole.by_rig.middleCols<5>(9).isZero(0.0) && delay_s > 0.0) << "by inertia too";
+    EXPECT_TRUE(part.jacobian_calibration.rightCols<RigConstants::kSize - 9>().isZero(0.0));
+    EXPECT_FALSE(whole.jacobian_calibration.middleCols<5>(9).isZero(0.0) && delay_s > 0.0) << "by inertia too";
   }
 }
 

@@ -10,7 +10,7 @@
 
 #include "estimator/angular_velocity/streamed_rates.hpp"
 #include "estimator/angular_velocity/tumble_recording.hpp"
-#include "tumble/angular_velocity/detail/device_doubt.hpp"
+#include "tumble/angular_velocity/detail/device_uncertainty.hpp"
 #include "tumble/angular_velocity/detail/stroke_sums.hpp"
 #include "tumble/angular_velocity/rate_smoother.hpp"
 #include "tumble/angular_velocity/rate_stream.hpp"
@@ -62,13 +62,13 @@ TumbleRecording long_late_tumble(std::uint64_t seed, int late) {
 
 RateStream::Params looking(bool looks_for_it = true) {
   auto out = with_lever_arm<RateStream::Params>();
-  if (!looks_for_it) out.model.expert.error_sizes.delay_unknown_s = out.model.expert.error_sizes.delay_s;
+  if (!looks_for_it) out.model.expert.error_sizes.delay_uncalibrated_s = out.model.expert.error_sizes.delay_s;
   return out;
 }
 
 TEST(StrokeSums, TellADelayThatIsThere) {
   for (const int late : {-20, -3, 0, 8, 13, 30}) {
-    const TriadDelay told = struck_every_tenth(late, 200).told(kStrokePeriod_s, kStrokePeriod_s);
+    const TriadDelay told = struck_every_tenth(late, 200).estimate_delay(kStrokePeriod_s, kStrokePeriod_s);
     EXPECT_NEAR(told.delay_s, late * kStrokePeriod_s / 8.0, 1e-9) << late;
     EXPECT_DOUBLE_EQ(told.sigma_s, 0.15 * kStrokePeriod_s);
     EXPECT_NEAR(struck_every_tenth(late, 200).correlation_at(told.delay_s, kStrokePeriod_s), 1.0, 0.01);
@@ -76,15 +76,15 @@ TEST(StrokeSums, TellADelayThatIsThere) {
 }
 
 TEST(StrokeSums, TellNothingOfFewOrOfAHandOrAtTheEnds) {
-  EXPECT_EQ(struck_every_tenth(8, 29).told(kStrokePeriod_s, kStrokePeriod_s).sigma_s, 0.0);
-  EXPECT_EQ(struck_every_tenth(8, 200, 10.0).told(kStrokePeriod_s, kStrokePeriod_s).sigma_s, 0.0)
+  EXPECT_EQ(struck_every_tenth(8, 29).estimate_delay(kStrokePeriod_s, kStrokePeriod_s).sigma_s, 0.0);
+  EXPECT_EQ(struck_every_tenth(8, 200, 10.0).estimate_delay(kStrokePeriod_s, kStrokePeriod_s).sigma_s, 0.0)
       << "never without a force";
-  EXPECT_EQ(struck_every_tenth(36, 200).told(kStrokePeriod_s, kStrokePeriod_s).sigma_s, 0.0);
+  EXPECT_EQ(struck_every_tenth(36, 200).estimate_delay(kStrokePeriod_s, kStrokePeriod_s).sigma_s, 0.0);
   // what is forgotten counts for less of each, and for the same delay
   StrokeSums half = struck_every_tenth(8, 200);
-  half.forget(0.5);
+  half.decay(0.5);
   EXPECT_NEAR(half.intervals, 100.0, 1e-12);
-  EXPECT_NEAR(half.told(kStrokePeriod_s, kStrokePeriod_s).delay_s, kStrokePeriod_s, 1e-9);
+  EXPECT_NEAR(half.estimate_delay(kStrokePeriod_s, kStrokePeriod_s).delay_s, kStrokePeriod_s, 1e-9);
 }
 
 // Two Gaussians and their shares, by hand.
@@ -96,25 +96,26 @@ TEST(RateStreamDelay, OddsOfTheSheetAreThoseOfTwoGaussians) {
       const double variance = size * size + sigma_s * sigma_s;
       return std::exp(-0.5 * delay_s * delay_s / variance) / std::sqrt(variance);
     };
-    const double odds = 0.7 / 0.3 * density(sizes.delay_s) / density(sizes.delay_unknown_s);
-    EXPECT_NEAR(DeviceDoubt(sizes, 0.3).odds_of_sheet(delay_s, sigma_s), odds, 1e-9 * odds) << delay_s;
+    const double odds = 0.7 / 0.3 * density(sizes.delay_s) / density(sizes.delay_uncalibrated_s);
+    EXPECT_NEAR(DeviceUncertainty(sizes, 0.3).odds_of_sheet(delay_s, sigma_s), odds, 1e-9 * odds) << delay_s;
   }
-  EXPECT_GT(DeviceDoubt(sizes, 0.3).odds_of_sheet(4.5e-3, sigma_s), 0.05);
-  EXPECT_LT(DeviceDoubt(sizes, 0.3).odds_of_sheet(6e-3, sigma_s), 0.05);
+  EXPECT_GT(DeviceUncertainty(sizes, 0.3).odds_of_sheet(4.5e-3, sigma_s), 0.05);
+  EXPECT_LT(DeviceUncertainty(sizes, 0.3).odds_of_sheet(6e-3, sigma_s), 0.05);
 }
 
 // One number alone: of what readings say three hundredths are believed, and strokes are entered to be believed in full.
 TEST(RateStreamDelay, AFurtherDelayIsTheWeightedMean) {
   SensorErrorEvidence told;
   const double of_readings_s = 2e-4, of_strokes_s = 1.5e-3, reach_s = 0.04;
-  const double readings = DeviceDoubt::kBelieved / (of_readings_s * of_readings_s),
+  const double readings = DeviceUncertainty::kEvidenceWeight / (of_readings_s * of_readings_s),
                strokes = 1.0 / (of_strokes_s * of_strokes_s);
-  told.information(SensorErrors::kDelay, SensorErrors::kDelay) = (readings + strokes) / DeviceDoubt::kBelieved;
-  told.gradient[SensorErrors::kDelay] = (readings * 1e-3 - strokes * 2e-3) / DeviceDoubt::kBelieved;
+  told.information(SensorErrors::kDelay, SensorErrors::kDelay) =
+      (readings + strokes) / DeviceUncertainty::kEvidenceWeight;
+  told.gradient[SensorErrors::kDelay] = (readings * 1e-3 - strokes * 2e-3) / DeviceUncertainty::kEvidenceWeight;
   const double expected = (readings * 1e-3 - strokes * 2e-3) / (readings + strokes + 1.0 / (reach_s * reach_s));
-  EXPECT_NEAR(DeviceDoubt({}, 0.3).further_delay_s(told, reach_s), expected, 1e-12);
+  EXPECT_NEAR(DeviceUncertainty({}, 0.3).further_delay_s(told, reach_s), expected, 1e-12);
   told.information(SensorErrors::kDelay, SensorErrors::kDelay) = -1e12;
-  EXPECT_EQ(DeviceDoubt({}, 0.3).further_delay_s(told, reach_s), 0.0);
+  EXPECT_EQ(DeviceUncertainty({}, 0.3).further_delay_s(told, reach_s), 0.0);
 }
 
 TEST(RateStreamDelay, IsThatOfTheBatch) {
@@ -190,7 +191,7 @@ TEST(RateStreamDelay, OnceFoundTheNextRunIsAsGoodAsInTime) {
     if (!state.device.front().delay.found) continue;
     ++found;
     auto next = looking();
-    next.learnt_errors = std::make_shared<KnownSensorErrors>(method.sensor_errors(state));
+    next.calibrated_errors = std::make_shared<KnownSensorErrors>(method.sensor_errors(state));
     const auto run = [](const RateStream::Params& params, const TumbleRecording& recording) {
       const RateStream stream(params);
       RateStream::State fresh = stream.start();

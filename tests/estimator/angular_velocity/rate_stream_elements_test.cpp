@@ -74,7 +74,7 @@ TEST(RateStreamElements, WithALongLagItIsTheBatch) {
       RateReport report;
       ASSERT_TRUE(RateSmoother(batch_params).estimate(tumble.samples, batch, report).ok());
       ASSERT_EQ(live.size(), batch.size());
-      EXPECT_EQ(state.rails.known.upright, report.rails_upright);
+      EXPECT_EQ(state.rails.known.upright, report.rails_axis_aligned);
       std::vector<double> apart;
       int judged_apart = 0;
       for (std::size_t k = 0; k < batch.size(); ++k) {
@@ -186,19 +186,19 @@ Believed believed(const RateStream::Params& params) {
 TEST(RateStreamElements, NothingAtARailGoesOutAsMeasuredBeforeTheRailIsKnown) {
   auto params = with_lever_arm<RateStream::Params>();
   params.lag_s = 0.06;
-  params.learnt_errors =
+  params.calibrated_errors =
       std::make_shared<KnownSensorErrors>();  // a device that is as on its sheet: its rail alone is in doubt
-  const Believed doubted = believed(params);
+  const Believed suspect = believed(params);
   // negative control: axes that turn slower than this are believed
   params.expert.planes.distance_min_rad_s = 1000.0;
   const Believed trusted = believed(params);
-  std::printf("of %d within %d, measured %d; believed: within %d, measured %d\n", doubted.clipped, doubted.within,
-              doubted.measured, trusted.within, trusted.measured);
-  ASSERT_GT(doubted.clipped, 12);
-  EXPECT_EQ(doubted.measured, 0);
+  std::printf("of %d within %d, measured %d; believed: within %d, measured %d\n", suspect.clipped, suspect.within,
+              suspect.measured, trusted.within, trusted.measured);
+  ASSERT_GT(suspect.clipped, 12);
+  EXPECT_EQ(suspect.measured, 0);
   EXPECT_GT(trusted.measured, 0.9 * trusted.clipped);
   // not all of them: a stream that knows flight and contact alone is sure of more than it can know of a swing
-  EXPECT_GT(doubted.within, 0.4 * doubted.clipped);
+  EXPECT_GT(suspect.within, 0.4 * suspect.clipped);
   EXPECT_LT(trusted.within, 0.05 * trusted.clipped);
 }
 
@@ -244,21 +244,21 @@ TEST(RateStreamElements, ADoubtThatALargerReadingRefutesIsTakenBack) {
       samples[kTop - 4 + i].angular_velocity_rad_s.y() = steps[i] + 0.002 * std::sin(37.0 * static_cast<double>(i));
     }
     auto params = with_lever_arm<RateStream::Params>();
-    params.learnt_errors =
+    params.calibrated_errors =
         std::make_shared<KnownSensorErrors>();  // as above: 200 rad/s^2 would show a gyro that may be 1 ms late
     const RateStream method(params);
     RateStream::State state = method.start();
     std::optional<RateState> rate;
     std::vector<RateState> out;
-    int doubted = 0;
+    int suspect = 0;
     for (std::size_t k = 0; k < samples.size(); ++k) {
       ASSERT_TRUE(method.push(samples[k], state, rate).ok());
       if (rate) out.push_back(*rate);
       if (k != kTop + 3) continue;
       ASSERT_TRUE(state.rails.known.planes.element[0]);
-      for (const RateStream::Knot& knot : state.window) doubted += (knot.observation.may_hide() >> 1 & 1) != 0;
+      for (const RateStream::Knot& knot : state.window) suspect += (knot.observation.may_hide() >> 1 & 1) != 0;
     }
-    EXPECT_GE(doubted, 3) << seed;
+    EXPECT_GE(suspect, 3) << seed;
     for (std::size_t k = kTop; k < kTop + 4; ++k) {
       EXPECT_EQ(out[k].source, RateSource::measured) << seed << " " << k;
       EXPECT_LT(out[k].covariance_rad2_s2(1, 1), 0.01) << seed << " " << k;

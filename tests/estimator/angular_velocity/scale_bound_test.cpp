@@ -74,7 +74,7 @@ TEST(ScaleBound, ARunTellsNoMoreOfAScaleThanItsAcceleration) {
     const ScaleInformation tumbling = scale_information(seed, {1.0, 1.15, 1.3});
     EXPECT_LT(tumbling.of_model, tumbling.at_most) << seed;
     // no better than what is assumed of a device that nobody has calibrated, 1 %; measured: 0.85, 1.8, 0.97 %
-    EXPECT_GT(1.0 / std::sqrt(tumbling.of_model), 0.5 * SensorErrorSizes{}.gyro_unknown) << seed;
+    EXPECT_GT(1.0 / std::sqrt(tumbling.of_model), 0.5 * SensorErrorSizes{}.gyro_uncalibrated) << seed;
     // a sphere turns at a constant rate whatever it is: its flights tell nothing
     const ScaleInformation sphere = scale_information(seed, {1.0, 1.0, 1.0});
     EXPECT_LT(sphere.of_model, sphere.at_most) << seed;
@@ -94,8 +94,9 @@ TEST(ScaleBound, TheErrorIsThatOfTheBound) {
       options.accel_error = scale * Vector3d(-1.1, 0.9, 1.0).asDiagonal();
       const TumbleRecording recording = make_tumble(options);
       auto params = with_lever_arm<RateSmoother::Params>();
-      params.model.expert.error_sizes.gyro = params.model.expert.error_sizes.gyro_unknown = std::max(5e-4, scale);
-      params.model.expert.error_sizes.accel = params.model.expert.error_sizes.accel_unknown = std::max(5e-4, scale);
+      params.model.expert.error_sizes.gyro = params.model.expert.error_sizes.gyro_uncalibrated = std::max(5e-4, scale);
+      params.model.expert.error_sizes.accel = params.model.expert.error_sizes.accel_uncalibrated =
+          std::max(5e-4, scale);
       std::vector<RateState> states;
       RateReport report;
       ASSERT_TRUE(RateSmoother(params).estimate(recording.samples, states, report).ok());

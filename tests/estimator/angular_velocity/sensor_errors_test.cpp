@@ -77,10 +77,10 @@ TEST(SensorErrors, WhatNoMotionTellsIsDiscounted) {
   late.accel_delay_s = 1.0;
 
   SensorErrorEvidence same = evidence, tenth = evidence;
-  discount_untold(1.0, same);
+  discount_unobservable(1.0, same);
   EXPECT_EQ(same.information, evidence.information);
   EXPECT_EQ(same.gradient, evidence.gradient);
-  discount_untold(0.1, tenth);
+  discount_unobservable(0.1, tenth);
   const auto along = [](const SensorErrors& error, const SensorErrorEvidence& of) {
     const SensorErrors::Vector v = error.vector();
     return std::pair(v.dot(of.gradient), v.dot(of.information * v));
@@ -97,12 +97,13 @@ TEST(SensorErrors, WhatNoMotionTellsIsDiscounted) {
 
 TEST(SensorErrors, WithoutReadingsTheyAreWhatIsAssumed) {
   SensorErrorSizes sheet;
-  sheet.gyro_unknown = sheet.accel_unknown = sheet.felt_unknown_s_m = sheet.delay_unknown_s = 0.0;
+  sheet.gyro_uncalibrated = sheet.accel_uncalibrated = sheet.g_sensitivity_uncalibrated_s_m =
+      sheet.delay_uncalibrated_s = 0.0;
   const SensorErrorFit believed = fit_sensor_errors({}, sheet), open = fit_sensor_errors({}, {});
   EXPECT_EQ(believed.known.errors, SensorErrors{});
   EXPECT_DOUBLE_EQ(std::sqrt(believed.known.covariance(1, 1)), sheet.gyro);
-  EXPECT_DOUBLE_EQ(believed.calibrated, 1.0);
-  EXPECT_LT(open.calibrated, 1.0);
+  EXPECT_DOUBLE_EQ(believed.in_sheet_probability, 1.0);
+  EXPECT_LT(open.in_sheet_probability, 1.0);
   EXPECT_GT(open.known.covariance(0, 0), 20.0 * believed.known.covariance(0, 0));
 }
 
@@ -113,10 +114,10 @@ TEST(SensorErrors, ADelayThatIsPlainIsFoundAndAnotherIsNotMadeUp) {
   evidence.gradient[i] = evidence.information(i, i) * 4e-3;
   const SensorErrorFit late = fit_sensor_errors(evidence, {});
   EXPECT_NEAR(late.known.errors.accel_delay_s, 4e-3, 1e-4);
-  EXPECT_LT(late.together, 1e-6);
+  EXPECT_LT(late.synchronous_probability, 1e-6);
   evidence.gradient[i] = evidence.information(i, i) * 5e-5;
   const SensorErrorFit alike = fit_sensor_errors(evidence, {});
-  EXPECT_GT(alike.together, 0.9);
+  EXPECT_GT(alike.synchronous_probability, 0.9);
   EXPECT_LT(std::abs(alike.known.errors.accel_delay_s), 5e-5);
 }
 
@@ -162,20 +163,20 @@ TEST(SensorErrors, MoveTheGradientAsTheModelHasIt) {
 // What was learnt comes back as it was, from a device as open as the one it was learnt of and without other readings.
 TEST(SensorErrors, WhatWasLearntComesBack) {
   SensorErrorSizes open;
-  open.gyro = open.accel = open.gyro_unknown;
-  open.felt_s_m = open.felt_unknown_s_m;
-  open.delay_s = open.delay_unknown_s;
+  open.gyro = open.accel = open.gyro_uncalibrated;
+  open.g_sensitivity_s_m = open.g_sensitivity_uncalibrated_s_m;
+  open.delay_s = open.delay_uncalibrated_s;
   KnownSensorErrors learnt = fit_sensor_errors({}, open).known;
-  constexpr int i = SensorErrors::kDelay, j = SensorErrors::kFelt;
+  constexpr int i = SensorErrors::kDelay, j = SensorErrors::kGSensitivity;
   learnt.covariance(i, i) *= 0.01;
   learnt.covariance(j, j) *= 0.25;
   learnt.covariance(i, j) = learnt.covariance(j, i) =
       0.3 * std::sqrt(learnt.covariance(i, i) * learnt.covariance(j, j));
   learnt.errors.accel_delay_s = 4e-3;
-  learnt.errors.felt_s_m(0, 0) = 1e-4;
-  const SensorErrorFit back = fit_sensor_errors({}, open, learnt_evidence(learnt, open));
+  learnt.errors.g_sensitivity_s_m(0, 0) = 1e-4;
+  const SensorErrorFit back = fit_sensor_errors({}, open, calibration_evidence(learnt, open));
   EXPECT_NEAR(back.known.errors.accel_delay_s, 4e-3, 1e-9);
-  EXPECT_NEAR(back.known.errors.felt_s_m(0, 0), 1e-4, 1e-10);
+  EXPECT_NEAR(back.known.errors.g_sensitivity_s_m(0, 0), 1e-4, 1e-10);
   const SensorErrors::Vector deviation = learnt.covariance.diagonal().cwiseSqrt();
   const SensorErrors::Matrix apart = deviation.cwiseInverse().asDiagonal() *
                                      (back.known.covariance - learnt.covariance) *
@@ -183,7 +184,7 @@ TEST(SensorErrors, WhatWasLearntComesBack) {
   EXPECT_LT(apart.cwiseAbs().maxCoeff(), 1e-6);
   // what is as open as before tells nothing
   const KnownSensorErrors nothing = fit_sensor_errors({}, open).known;
-  EXPECT_LT(learnt_evidence(nothing, open).information.cwiseAbs().maxCoeff() * open.delay_s * open.delay_s, 1e-6);
+  EXPECT_LT(calibration_evidence(nothing, open).information.cwiseAbs().maxCoeff() * open.delay_s * open.delay_s, 1e-6);
 }
 
 TEST(TriadDelay, IsGuessedWhereThereIsOne) {
@@ -224,11 +225,11 @@ TEST(RateSmootherDevices, ALateAccelerometerIsFound) {
     RateReport report;
     ASSERT_TRUE(RateSmoother(with_lever_arm<RateSmoother::Params>()).estimate(late.samples, states, report).ok());
     EXPECT_NEAR(report.sensor_errors.errors.accel_delay_s, 0.01, 1e-3);
-    EXPECT_LT(report.together, 0.05);
+    EXPECT_LT(report.synchronous_probability, 0.05);
     late_sum += clipped_errors(late, rates_of(states), 10.49).median;
     count(late, states, found);
     ASSERT_TRUE(RateSmoother(with_lever_arm<RateSmoother::Params>()).estimate(clean.samples, states, report).ok());
-    EXPECT_GT(report.together, 0.05);
+    EXPECT_GT(report.synchronous_probability, 0.05);
     EXPECT_LT(std::abs(report.sensor_errors.errors.accel_delay_s), 2e-4);
     count(clean, states, in_time);
     clean_sum += clipped_errors(clean, rates_of(states), 10.49).median;
@@ -294,14 +295,15 @@ TEST(RateSmootherDevices, AStatedDelayFarFromZeroIsBelieved) {
   auto params = with_lever_arm<RateSmoother::Params>();
   params.model.errors.accel_delay_s = 0.03;
   params.model.expert.error_sizes.delay_s = 2e-4;
-  params.model.expert.error_sizes.delay_unknown_s = 4e-3;
+  params.model.expert.error_sizes.delay_uncalibrated_s = 4e-3;
   std::vector<RateState> states;
   RateReport report;
   ASSERT_TRUE(RateSmoother(params).estimate(late.samples, states, report).ok());
   EXPECT_NEAR(report.sensor_errors.errors.accel_delay_s, 0.03, 5e-4);
   constexpr int i = SensorErrors::kDelay;
-  EXPECT_LT(std::sqrt(report.sensor_errors.covariance(i, i)), 0.5 * params.model.expert.error_sizes.delay_unknown_s);
-  EXPECT_GT(report.together, 0.5);
+  EXPECT_LT(std::sqrt(report.sensor_errors.covariance(i, i)),
+            0.5 * params.model.expert.error_sizes.delay_uncalibrated_s);
+  EXPECT_GT(report.synchronous_probability, 0.5);
 }
 
 // What a run has learnt of a late accelerometer, the next begins with: it finds in its first descent what a fresh one
@@ -313,15 +315,15 @@ TEST(RateSmootherDevices, WhatARunLearnsOfTheDeviceHelpsTheNext) {
   ASSERT_TRUE(RateSmoother(with_lever_arm<RateSmoother::Params>()).estimate(first.samples, states, of_first).ok());
   ASSERT_TRUE(RateSmoother(with_lever_arm<RateSmoother::Params>()).estimate(second.samples, states, fresh).ok());
   auto params = with_lever_arm<RateSmoother::Params>();
-  params.learnt_errors = of_first.sensor_errors;
+  params.calibrated_errors = of_first.sensor_errors;
   ASSERT_TRUE(RateSmoother(params).estimate(second.samples, states, informed).ok());
   EXPECT_NEAR(informed.sensor_errors.errors.accel_delay_s, 0.01, 5e-4);
   EXPECT_LE(informed.error_rounds, fresh.error_rounds);
   constexpr int i = SensorErrors::kDelay;
   EXPECT_LT(informed.sensor_errors.covariance(i, i), fresh.sensor_errors.covariance(i, i));
   // it stays a device that is not what its sheet says
-  EXPECT_LT(informed.together, 0.05);
-  EXPECT_GT(informed.shared_delay_sigma_s, 0.0);
+  EXPECT_LT(informed.synchronous_probability, 0.05);
+  EXPECT_GT(informed.common_delay_sigma_s, 0.0);
 }
 
 // Negative control: what was learnt of a late device does not make another one late.
@@ -331,7 +333,7 @@ TEST(RateSmootherDevices, WhatWasLearntOfAnotherDeviceGivesWayToTheReadings) {
   RateReport report;
   ASSERT_TRUE(RateSmoother(with_lever_arm<RateSmoother::Params>()).estimate(first.samples, states, report).ok());
   auto params = with_lever_arm<RateSmoother::Params>();
-  params.learnt_errors = report.sensor_errors;
+  params.calibrated_errors = report.sensor_errors;
   ASSERT_TRUE(RateSmoother(params).estimate(second.samples, states, report).ok());
   EXPECT_LT(std::abs(report.sensor_errors.errors.accel_delay_s), 5e-4);
   Coverage coverage;
@@ -360,11 +362,11 @@ std::vector<double> hold(std::vector<ImuSample>& samples, double period_s, doubl
 TEST(SampleHold, FindsPeriodAndAges) {
   for (const double period_s : {0.012, 0.016, 0.0195}) {
     TumbleRecording recording = late_tumble(2, 0);
-    EXPECT_FALSE(find_held(recording.samples, Triad::gyro).has_value());
+    EXPECT_FALSE(find_repeated(recording.samples, Triad::gyro).has_value());
     const std::vector<double> ages = hold(recording.samples, period_s, 0.0037);
-    const std::optional<HeldReadings> held = find_held(recording.samples, Triad::gyro);
+    const std::optional<RepeatedReadings> held = find_repeated(recording.samples, Triad::gyro);
     ASSERT_TRUE(held.has_value());
-    EXPECT_FALSE(find_held(recording.samples, Triad::accelerometer).has_value());
+    EXPECT_FALSE(find_repeated(recording.samples, Triad::accelerometer).has_value());
     EXPECT_NEAR(held->period_s, period_s, 1e-4);
     EXPECT_GT(held->agreement, 0.97);
     double sum = 0.0;

@@ -84,7 +84,7 @@ TEST(CarriedStream, IsTheBatchOnALongLag) {
   CarriedStream::Params params;
   params.lag_s = 1.5;
   params.window_s = 1.8;
-  params.body.expert.hand.hand_follow = 0.0;  // the one thing in which the two differ by design
+  params.body.expert.hand.hand_noise_adaptation = 0.0;  // the one thing in which the two differ by design
   const std::vector<RateState> live = stream(recording, params);
   std::vector<RateState> batch;
   std::vector<AttitudeState> attitudes;

@@ -31,7 +31,7 @@ struct Joined {
 struct Middle {
   std::size_t samples = 0;
   RegimeStream::State state;
-  std::size_t given = 0;
+  std::size_t reported = 0;
 };
 
 RegimeStream::Params at_its_hand() {
@@ -50,7 +50,7 @@ Joined go_on(const std::vector<ImuSample>& samples, const RegimeStream::Params& 
   for (std::size_t k = from.samples; k < samples.size(); ++k) {
     if (middle != nullptr && k == middle->samples) {
       middle->state = out.state;
-      middle->given = out.rates.size();
+      middle->reported = out.rates.size();
     }
     EXPECT_TRUE(stream.push(samples[k], out.state, rate).ok());
     if (!rate) continue;
@@ -58,7 +58,7 @@ Joined go_on(const std::vector<ImuSample>& samples, const RegimeStream::Params& 
     out.carried.push_back(out.state.shares.carried);
   }
   stream.flush(out.state, out.rates);
-  EXPECT_EQ(from.given + out.rates.size(), samples.size());
+  EXPECT_EQ(from.reported + out.rates.size(), samples.size());
   return out;
 }
 
@@ -111,7 +111,7 @@ TEST(RegimeStream, AHandIsKnownAndBelieved) {
   Middle middle;
   middle.samples = 733;
   const Joined whole = joined(samples, at_its_hand(), &middle);
-  EXPECT_GT(whole.state.sum.carried / static_cast<double>(whole.state.given), 0.9);
+  EXPECT_GT(whole.state.sum.carried / static_cast<double>(whole.state.reported), 0.9);
   EXPECT_GT(whole.state.joined, 300u);
   const std::vector<double> errors = clipped_errors(recording, whole.rates, 2.0);
   std::printf("joined: %.3f / %.3f rad/s\n", quantile(errors, 0.5), quantile(errors, 0.9));
@@ -120,7 +120,7 @@ TEST(RegimeStream, AHandIsKnownAndBelieved) {
   const Joined rest = go_on(samples, at_its_hand(), middle);
   ASSERT_GT(rest.rates.size(), 800u);
   for (std::size_t k = 0; k < rest.rates.size(); ++k) {
-    const RateState& expected = whole.rates[middle.given + k];
+    const RateState& expected = whole.rates[middle.reported + k];
     ASSERT_EQ(expected.w_WI_I_rad_s, rest.rates[k].w_WI_I_rad_s) << k;
     ASSERT_EQ(expected.covariance_rad2_s2, rest.rates[k].covariance_rad2_s2) << k;
   }
@@ -248,8 +248,8 @@ double share_in_flight(std::uint64_t seed, double dropped) {
   std::optional<RateState> rate;
   for (const ImuSample& sample : tumble.samples) {
     EXPECT_TRUE(stream.push(sample, state, rate).ok());
-    if (state.given == static_cast<std::size_t>(begin) && rate) state.resets += dropped;
-    if (state.given == static_cast<std::size_t>(begin) + 30) break;
+    if (state.reported == static_cast<std::size_t>(begin) && rate) state.resets += dropped;
+    if (state.reported == static_cast<std::size_t>(begin) + 30) break;
   }
   return state.shares.carried;
 }

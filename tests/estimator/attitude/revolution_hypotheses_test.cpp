@@ -144,7 +144,7 @@ TEST(RevolutionHypotheses, WhereTheWholeCannotBeSolvedAgainTheAnswerBeforeStands
     EXPECT_TRUE(problem.solve(changed).ok());
     return Status{Trouble::diverged, "iteration of the carried body", 1.0, 0.0};
   };
-  carried::ask_revolutions(solved.problem, solved.report, fails);
+  carried::test_revolutions(solved.problem, solved.report, fails);
   EXPECT_EQ(solved.report.revolutions_asked, 1);
   EXPECT_EQ(solved.report.revolutions_taken, 0);
   EXPECT_EQ(solved.report.revolutions_failed, 1);

@@ -39,12 +39,12 @@ UnitSenses senses_of(double size, const TurnedReading& misread) {
 TEST(UnitSenses, WhatIsReadAsItIsIsNotTold) {
   const auto as_it_is = [](auto&, auto&, auto&) {};
   const UnitSenses out = senses_of(1.0, as_it_is);
-  EXPECT_FALSE(out.told().has_value());
+  EXPECT_FALSE(out.detected().has_value());
   for (std::size_t k = 0; k < UnitSenses::kSenses; ++k) {
     ASSERT_GT(out.size_m2_s3[k], UnitSenses::kSizeMin_m2_s3) << k;
     EXPECT_NEAR(out.gain_m2_s3[k] / out.size_m2_s3[k], -1.0, 0.5) << k;
   }
-  EXPECT_FALSE(UnitSenses{}.told().has_value());
+  EXPECT_FALSE(UnitSenses{}.detected().has_value());
 }
 
 TEST(UnitSenses, EachIsToldByItsPlace) {
@@ -58,7 +58,7 @@ TEST(UnitSenses, EachIsToldByItsPlace) {
     const auto accel_swapped = [=](auto&, auto&, auto& f) { std::swap(f[axis], f[next]); };
     const std::array<TurnedReading, 4> all = {gyro_flipped, gyro_swapped, accel_flipped, accel_swapped};
     for (std::size_t k = 0; k < all.size(); ++k) {
-      const auto told = senses_of(1.0, all[k]).told();
+      const auto told = senses_of(1.0, all[k]).detected();
       ASSERT_TRUE(told.has_value()) << axis << " " << k;
       EXPECT_EQ(told->sense, 3 * k + static_cast<std::size_t>(axis));
       EXPECT_NEAR(told->share, 1.0, 0.5);
@@ -67,7 +67,7 @@ TEST(UnitSenses, EachIsToldByItsPlace) {
 }
 
 TEST(UnitSenses, ABodyThatHardlyTurnsTellsNothing) {
-  EXPECT_FALSE(senses_of(0.05, [](auto& w, auto& a, auto&) { w.x() = -w.x(), a.x() = -a.x(); }).told().has_value());
+  EXPECT_FALSE(senses_of(0.05, [](auto& w, auto& a, auto&) { w.x() = -w.x(), a.x() = -a.x(); }).detected().has_value());
 }
 
 }  // namespace

@@ -35,8 +35,8 @@ std::vector<TimeNs> jittered(std::vector<TimeNs> times_ns, double jitter_ns) {
 }
 
 std::vector<TimeNs> times_of(std::vector<TimeNs> stamps_ns, const SampleClock::Params& params = {}) {
-  double mended_s = 0.0;
-  EXPECT_TRUE(to_sample_times(SampleClock(params), stamps_ns, mended_s).ok());
+  double corrected_jitter_s = 0.0;
+  EXPECT_TRUE(to_sample_times(SampleClock(params), stamps_ns, corrected_jitter_s).ok());
   return stamps_ns;
 }
 
@@ -104,10 +104,10 @@ TEST(SampleClock, FollowsAPeriodThatNobodyStatedThroughLostSamples) {
 TEST(SampleClock, TellsTheJitterAndMendsNoneThatItIsToldToLeave) {
   const std::vector<TimeNs> times_ns = regular(2000, 4e6);
   std::vector<TimeNs> stamps_ns = jittered(times_ns, 5e5);
-  double mended_s = 0.0;
+  double corrected_jitter_s = 0.0;
   std::vector<TimeNs> mended_ns = stamps_ns;
-  ASSERT_TRUE(to_sample_times(SampleClock({}), mended_ns, mended_s).ok());
-  EXPECT_NEAR(mended_s, 5e-4, 1e-4);
+  ASSERT_TRUE(to_sample_times(SampleClock({}), mended_ns, corrected_jitter_s).ok());
+  EXPECT_NEAR(corrected_jitter_s, 5e-4, 1e-4);
   EXPECT_NE(mended_ns, stamps_ns);
   EXPECT_EQ(times_of(stamps_ns, {.jitter_max = 0.0}), stamps_ns);
 }

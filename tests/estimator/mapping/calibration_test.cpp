@@ -9,7 +9,7 @@
 namespace tumble {
 namespace {
 
-const GivenCalibration kGiven{{}, 0.01, 0.002, 0.003};
+const StatedCalibration kGiven{{}, 0.01, 0.002, 0.003};
 
 SweepCalibration turned(double by_rad) {
   SweepCalibration out;
@@ -17,31 +17,31 @@ SweepCalibration turned(double by_rad) {
   return out;
 }
 
-TEST(GivenCalibration, CountsTheLargestOfTurnShiftAndDelayInItsDeviations) {
-  EXPECT_EQ(kGiven.moved(SweepCalibration{}), 0.0);
+TEST(StatedCalibration, CountsTheLargestOfTurnShiftAndDelayInItsDeviations) {
+  EXPECT_EQ(kGiven.deviations(SweepCalibration{}), 0.0);
   SweepCalibration learnt = turned(0.03);
-  EXPECT_NEAR(kGiven.moved(learnt), 3.0, 1e-9);
+  EXPECT_NEAR(kGiven.deviations(learnt), 3.0, 1e-9);
   learnt.T_IL.translation() = Eigen::Vector3d(0.0, -0.006, 0.008);
-  EXPECT_NEAR(kGiven.moved(learnt), 5.0, 1e-9);
+  EXPECT_NEAR(kGiven.deviations(learnt), 5.0, 1e-9);
   learnt.time_offset_s = -0.018;
-  EXPECT_NEAR(kGiven.moved(learnt), 6.0, 1e-9);
+  EXPECT_NEAR(kGiven.deviations(learnt), 6.0, 1e-9);
   learnt = {};
   learnt.gravity_W_m_s2 = Eigen::Vector3d(1.0, 0.0, -9.7);  // each run's own
-  EXPECT_EQ(kGiven.moved(learnt), 0.0);
+  EXPECT_EQ(kGiven.deviations(learnt), 0.0);
 }
 
-TEST(GivenCalibration, SaysWhereItWasGivenWrong) {
+TEST(StatedCalibration, SaysWhereItWasGivenWrong) {
   EXPECT_TRUE(kGiven.verdict(turned(0.049)).ok());
   const Status wrong = kGiven.verdict(turned(0.051));
   EXPECT_EQ(wrong.trouble, Trouble::out_of_range);
   EXPECT_NEAR(wrong.value, 5.1, 1e-9);
-  EXPECT_EQ(wrong.bound, GivenCalibration::kBelieved);
+  EXPECT_EQ(wrong.bound, StatedCalibration::kMaxDeviations);
 }
 
-TEST(GivenCalibration, WhatIsExactMayNotMove) {
-  const GivenCalibration exact;
-  EXPECT_EQ(exact.moved(SweepCalibration{}), 0.0);
-  EXPECT_TRUE(std::isinf(exact.moved(turned(1e-6))));
+TEST(StatedCalibration, WhatIsExactMayNotMove) {
+  const StatedCalibration exact;
+  EXPECT_EQ(exact.deviations(SweepCalibration{}), 0.0);
+  EXPECT_TRUE(std::isinf(exact.deviations(turned(1e-6))));
 }
 
 }  // namespace

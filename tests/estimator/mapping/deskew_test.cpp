@@ -211,7 +211,7 @@ TEST(SelectPoints, DropsWhatIsNoReturnOfTheWorld) {
   const Eigen::AlignedBox3d body(Eigen::Vector3d(-0.5, -0.4, -0.27), Eigen::Vector3d(0.5, 0.4, 0.23));
   std::vector<SweepPoint> selected;
   const PointCounts counts = select_points(points, {0.3, 100.0, body}, mounting(), 0.25, selected);
-  EXPECT_EQ(counts.given, 6u);
+  EXPECT_EQ(counts.received, 6u);
   EXPECT_EQ(counts.finite, 4u);
   ASSERT_EQ(selected.size(), 1u);
   EXPECT_FLOAT_EQ(selected[0].t_s, 0.25f);

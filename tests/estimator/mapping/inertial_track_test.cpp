@@ -100,7 +100,7 @@ TEST(InertialTrack, ASweepRestsWhileTheImuSaysNothingButGravity) {
   const auto rests = [](double later_force_m_s2, double later_rate_rad_s, std::uint8_t clipped_axes) {
     Listener listener;
     listener.hear(50, Eigen::Vector3d(0.0, 3.0, 0.0));
-    listener.track.forget_until(listener.now_ns);
+    listener.track.prune_until(listener.now_ns);
     listener.hear(5, Eigen::Vector3d::Zero(), {0.0, 0.0, 9.5});
     const TimeNs before_ns = listener.now_ns;
     listener.hear(5, {later_rate_rad_s, 0.0, 0.0}, {0.0, 0.0, later_force_m_s2}, clipped_axes);

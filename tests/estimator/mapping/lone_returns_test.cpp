@@ -142,7 +142,7 @@ TEST(LoneReturns, KeepDustOutOfTheMap) {
     test::feed_imu(odometry, sweep);
     const auto points = dusty(test::room_tumble().sweeps[static_cast<std::size_t>(sweep)], sweep, nullptr);
     ASSERT_TRUE(test::add_sweep(odometry, sweep, points, report).ok());
-    alone += report.points_alone;
+    alone += report.lone_points;
   }
   EXPECT_LT(test::error_of(report.pose).m, 0.05);
   EXPECT_GT(alone, 10'000u);

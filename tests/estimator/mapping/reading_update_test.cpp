@@ -47,7 +47,7 @@ Matrix spread(double scale, double phase) {
 
 struct Case {
   std::vector<MotionSample> samples = tumbling();
-  Border border;
+  SweepBoundary boundary;
   MotionNoise within = MotionNoise::Zero();
   Prediction prediction;
   MotionWindow window{samples, kEnd_ns, 0};
@@ -60,8 +60,8 @@ struct Case {
     state.q_WI = so3::exp({0.3, -0.8, 1.1});
     state.v_WI_m_s = {1.5, 0.7, -2.0};
     prediction.prior.mean.calibration.gravity_W_m_s2 = {0.1, -0.2, -9.8};
-    border.belief.weight = spread(scale, 0.3);
-    border.belief.error = spread(0.5 * scale, 1.9);
+    boundary.state_estimate.weight = spread(scale, 0.3);
+    boundary.state_estimate.error = spread(0.5 * scale, 1.9);
     within = spread(scale, 4.0).topLeftCorner<kMotion, kMotion>();
     prediction.by_last += 0.2 * spread(1.0, 2.2);
     prediction.noise = spread(scale, 5.1);
@@ -118,8 +118,8 @@ Joint update_jointly(const Case& c, const Read& off, const Eigen::MatrixXd& R) {
   prior.block(kUnknowns, kUnknowns, kUnknowns, kUnknowns) = before;
   prior.bottomRightCorner(kMotion, kMotion) = c.within;
   errors = prior;
-  prior.topLeftCorner(kUnknowns, kUnknowns) = c.border.belief.weight;
-  errors.topLeftCorner(kUnknowns, kUnknowns) = c.border.belief.error;
+  prior.topLeftCorner(kUnknowns, kUnknowns) = c.boundary.state_estimate.weight;
+  errors.topLeftCorner(kUnknowns, kUnknowns) = c.boundary.state_estimate.error;
   const auto read = [&](const Eigen::VectorXd& joint) {
     const Registration::Vector start =
         c.prediction.by_last * joint.head(kUnknowns) + joint.segment(kUnknowns, kUnknowns);
@@ -151,9 +151,9 @@ Joint update_jointly(const Case& c, const Read& off, const Eigen::MatrixXd& R) {
 void expect_joint(Case& c, const OdometerReading& reading, const Read& off, const Eigen::MatrixXd& R, double scale) {
   const Joint joint = update_jointly(c, off, R);
   const Registration::Estimate before = c.prediction.prior.mean;
-  const Matrix last = c.border.belief.weight;
-  weigh_reading(reading, c.border, c.window, c.within, c.prediction);
-  c.prediction.compose(c.border.belief);
+  const Matrix last = c.boundary.state_estimate.weight;
+  weigh_reading(reading, c.boundary, c.window, c.within, c.prediction);
+  c.prediction.compose(c.boundary.state_estimate);
   const double far = scale * scale;
   const Eigen::MatrixXd expected = joint.of_x * joint.covariance * joint.of_x.transpose();
   EXPECT_LT((c.prediction.prior.covariance - expected).cwiseAbs().maxCoeff(), 1e-4 * far);
@@ -214,12 +214,12 @@ TEST(OdometerReading, OfAVelocityAtTheStartIsTheMeanByTheVariances) {
   for (MotionSample& sample : c.samples) sample.w_WI_I_rad_s.setZero();
   c.prediction = Prediction();
   c.prediction.prior.mean.state.time_ns = kStart_ns;
-  c.border.belief = Belief();
-  u::variances(c.border.belief.weight, u::velocity).setConstant(0.09);
-  u::variances(c.border.belief.error, u::velocity).setConstant(0.04);
+  c.boundary.state_estimate = StateEstimate();
+  u::variances(c.boundary.state_estimate.weight, u::velocity).setConstant(0.09);
+  u::variances(c.boundary.state_estimate.error, u::velocity).setConstant(0.04);
   c.within.setZero();
-  weigh_reading(VelocityReading{kStart_ns, {1.0, 0.0, -2.0}, 0.1}, c.border, c.window, c.within, c.prediction);
-  c.prediction.compose(c.border.belief);
+  weigh_reading(VelocityReading{kStart_ns, {1.0, 0.0, -2.0}, 0.1}, c.boundary, c.window, c.within, c.prediction);
+  c.prediction.compose(c.boundary.state_estimate);
   const double gain = 0.09 / (0.09 + 0.01);
   EXPECT_LT((c.prediction.prior.mean.state.v_WI_m_s - gain * Eigen::Vector3d(1.0, 0.0, -2.0)).norm(), 1e-12);
   const Eigen::Vector3d weight(u::variances(c.prediction.prior.covariance, u::velocity));
@@ -232,18 +232,18 @@ TEST(OdometerReading, OfAVelocityAtTheStartIsTheMeanByTheVariances) {
 /// A reading that knows nothing changes nothing, to rounding; one from elsewhere nothing at all.
 TEST(OdometerReading, ThatKnowsNothingOrIsOfAnotherTimeChangesNothing) {
   Case c(0.1), same(0.1);
-  weigh_reading(VelocityReading{kEnd_ns, {5.0, 5.0, 5.0}, 1e6}, c.border, c.window, c.within, c.prediction);
+  weigh_reading(VelocityReading{kEnd_ns, {5.0, 5.0, 5.0}, 1e6}, c.boundary, c.window, c.within, c.prediction);
   EXPECT_LT(c.prediction.prior.mean.minus(same.prediction.prior.mean).norm(), 1e-9);
   EXPECT_LT((c.prediction.noise - same.prediction.noise).norm(), 1e-9);
   for (const TimeNs time_ns : {kStart_ns - 21'000'000, kEnd_ns + 21'000'000}) {
     Case other(0.1);
-    weigh_reading(VelocityReading{time_ns, {5.0, 5.0, 5.0}, 0.1}, other.border, other.window, other.within,
+    weigh_reading(VelocityReading{time_ns, {5.0, 5.0, 5.0}, 0.1}, other.boundary, other.window, other.within,
                   other.prediction);
     EXPECT_EQ(other.prediction.prior.mean.state.v_WI_m_s, same.prediction.prior.mean.state.v_WI_m_s);
     EXPECT_EQ(other.prediction.noise, same.prediction.noise);
     EXPECT_EQ(other.prediction.by_last, same.prediction.by_last);
   }
-  weigh_reading(VelocityReading{kEnd_ns + 19'000'000, {5.0, 5.0, 5.0}, 0.1}, c.border, c.window, c.within,
+  weigh_reading(VelocityReading{kEnd_ns + 19'000'000, {5.0, 5.0, 5.0}, 0.1}, c.boundary, c.window, c.within,
                 c.prediction);
   EXPECT_GT(c.prediction.prior.mean.minus(same.prediction.prior.mean).norm(), 0.01) << "negative control";
 }
@@ -252,7 +252,7 @@ TEST(OdometerReading, ThatKnowsNothingOrIsOfAnotherTimeChangesNothing) {
 TEST(OdometerReading, OfAMotionFindsWhatARailHid) {
   Case c(1e-3);
   for (MotionSample& sample : c.samples) sample.clipped_axes = 1;
-  u::variances(c.border.belief.weight, u::deficit).setConstant(25.0);
+  u::variances(c.boundary.state_estimate.weight, u::deficit).setConstant(25.0);
   c.prediction.by_last.setIdentity();
   MotionReading reading;
   reading.from_ns = kStart_ns;
@@ -261,7 +261,7 @@ TEST(OdometerReading, OfAMotionFindsWhatARailHid) {
   for (int knot = 0; knot < SweepTrajectory::kKnots; ++knot) hidden[u::deficit_at(0, knot)] = 5.0;
   reading.T_from_to = read_motion(c, kStart_ns, kEnd_ns, hidden, Eigen::VectorXd::Zero(9));
   reading.covariance.diagonal().setConstant(1e-6);
-  weigh_reading(reading, c.border, c.window, c.within, c.prediction);
+  weigh_reading(reading, c.boundary, c.window, c.within, c.prediction);
   const Registration::Vector none = Registration::Vector::Zero();
   const Eigen::Isometry3d found = read_motion(c, kStart_ns, kEnd_ns, none, Eigen::VectorXd::Zero(9));
   const Eigen::Isometry3d off = found.inverse() * reading.T_from_to;

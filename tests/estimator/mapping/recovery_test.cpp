@@ -211,7 +211,7 @@ TEST(Recovery, ASweepOfUnknownGroundExtendsTheMap) {
 
 TEST(Recovery, ASweepOfUnknownGroundExtendsTheMapWhereThePriorIsNotTrusted) {
   Odometry::Params params = true_params();
-  params.expert.tracking.trusted_m = 0.0;
+  params.expert.tracking.extend_sigma_max_m = 0.0;
   Rig rig(params);
   see_the_other_side(rig, SweepVerdict::rejected);
 }

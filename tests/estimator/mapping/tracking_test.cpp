@@ -21,7 +21,7 @@ std::string text(const TrackingState& state) {
     std::string operator()(const Lost& s) const {
       return "lost " + std::to_string(s.sweeps) + " " + std::to_string(s.failed_searches);
     }
-    std::string operator()(const FoundAgain& s) const {
+    std::string operator()(const Relocalised& s) const {
       return "found after " + std::to_string(s.after_sweeps) + " " + std::to_string(s.failed_searches) + ", agree " +
              std::to_string(s.agreeing);
     }
@@ -50,11 +50,11 @@ TEST(Tracking, GoesFromStateToStateAsTheTableSays) {
       {Lost{5, 29}, failed, degenerate, "tracking 30"},  // given up
       {Lost{2, 0}, not_tried, first, "tracking 0"},
       {Lost{3, 2}, found, registered, "tracking 0"},
-      {Lost{3, 2}, doubtful, registered, "found after 3 2, agree 0"},
-      {Lost{3, 2}, doubtful, degenerate, "found after 3 2, agree 0"},
-      {Tracking{1}, doubtful, registered, "tracking 0"},
-      {FoundAgain{3, 2, 0}, found, degenerate, "found after 3 2, agree 1"},
-      {FoundAgain{3, 2, 1}, found, registered, "tracking 0"},
+      {Lost{3, 2}, unconfirmed, registered, "found after 3 2, agree 0"},
+      {Lost{3, 2}, unconfirmed, degenerate, "found after 3 2, agree 0"},
+      {Tracking{1}, unconfirmed, registered, "tracking 0"},
+      {Relocalised{3, 2, 0}, found, degenerate, "found after 3 2, agree 1"},
+      {Relocalised{3, 2, 1}, found, registered, "tracking 0"},
   };
   for (const Row& row : rows) {
     EXPECT_EQ(text(after_sweep(row.before, row.placement, row.verdict)), row.after) << "from " << text(row.before);
@@ -62,26 +62,26 @@ TEST(Tracking, GoesFromStateToStateAsTheTableSays) {
 }
 
 TEST(Tracking, APlaceFoundAgainIsContradictedByAllButOneThatFits) {
-  for (const Placement placement : {not_tried, failed, doubtful}) {
-    EXPECT_TRUE(contradicts(FoundAgain{3, 2, 1}, placement));
+  for (const Placement placement : {not_tried, failed, unconfirmed}) {
+    EXPECT_TRUE(contradicts(Relocalised{3, 2, 1}, placement));
     EXPECT_FALSE(contradicts(Tracking{}, placement));
     EXPECT_FALSE(contradicts(Lost{}, placement));
   }
-  EXPECT_FALSE(contradicts(FoundAgain{3, 2, 1}, found));
-  EXPECT_EQ(text(given_up(FoundAgain{3, 2, 1})), "lost 5 3");
+  EXPECT_FALSE(contradicts(Relocalised{3, 2, 1}, found));
+  EXPECT_EQ(text(given_up(Relocalised{3, 2, 1})), "lost 5 3");
 }
 
 TEST(Tracking, AnswersOfItsStates) {
   EXPECT_FALSE(has_started(WaitingForStart{}));
   EXPECT_TRUE(has_started(Lost{}));
   EXPECT_TRUE(is_lost(Lost{}));
-  EXPECT_FALSE(is_lost(FoundAgain{4}));
-  EXPECT_TRUE(is_to_be_borne_out(FoundAgain{4}));
-  EXPECT_FALSE(is_to_be_borne_out(Lost{4}));
+  EXPECT_FALSE(is_lost(Relocalised{4}));
+  EXPECT_TRUE(is_unconfirmed(Relocalised{4}));
+  EXPECT_FALSE(is_unconfirmed(Lost{4}));
   EXPECT_EQ(lost_sweeps(Lost{4, 2}), 4);
-  EXPECT_EQ(lost_sweeps(FoundAgain{4}), 0);
+  EXPECT_EQ(lost_sweeps(Relocalised{4}), 0);
   EXPECT_EQ(failed_searches(Lost{4, 2}), 2);
-  EXPECT_EQ(failed_searches(FoundAgain{4}), 0);
+  EXPECT_EQ(failed_searches(Relocalised{4}), 0);
 }
 
 struct Tried {
@@ -124,9 +124,9 @@ TEST(Tracking, VerdictsAreWhatTheAttemptAndThePriorAllow) {
   EXPECT_EQ(verdict(Lost{28, 28}, 500, false, failed_with(false)), rejected);
   EXPECT_EQ(verdict(Lost{29, 29}, 500, false, failed_with(false)), degenerate);
   EXPECT_EQ(verdict(Lost{29, 29}, 99, false, failed_with(false)), rejected);
-  EXPECT_TRUE(judged(params, Tracking{}, 500, false, failed_with(true)).map_says_nothing);
-  EXPECT_FALSE(judged(params, Tracking{}, 500, false, failed_with(false)).map_says_nothing);
-  EXPECT_FALSE(judged(params, Tracking{}, 99, false, failed_with(true)).map_says_nothing);
+  EXPECT_TRUE(judged(params, Tracking{}, 500, false, failed_with(true)).map_too_sparse);
+  EXPECT_FALSE(judged(params, Tracking{}, 500, false, failed_with(false)).map_too_sparse);
+  EXPECT_FALSE(judged(params, Tracking{}, 99, false, failed_with(true)).map_too_sparse);
   EXPECT_EQ(judged(params, Tracking{}, 500, false, aligned(0.1)).placement, found);
   EXPECT_EQ(judged(params, Tracking{}, 500, true, failed_with(true)).placement, failed);
 }
@@ -146,10 +146,11 @@ TEST(Tracking, APlaceIsDoubtedWhereInertiaHasItNotOrItsSurfacesDoNotFit) {
     return judged(params, before, 500, false, aligned_of(inliers, expected)).placement;
   };
   EXPECT_EQ(placement(Lost{}, 90, true), found);
-  EXPECT_EQ(placement(Lost{}, 89, true), doubtful);
-  EXPECT_EQ(placement(Lost{}, 100, false), doubtful);
-  EXPECT_EQ(placement(FoundAgain{}, 90, false), found);  // what a velocity that is off asks for goes on for some sweeps
-  EXPECT_EQ(placement(FoundAgain{}, 89, true), doubtful);
+  EXPECT_EQ(placement(Lost{}, 89, true), unconfirmed);
+  EXPECT_EQ(placement(Lost{}, 100, false), unconfirmed);
+  EXPECT_EQ(placement(Relocalised{}, 90, false),
+            found);  // what a velocity that is off asks for goes on for some sweeps
+  EXPECT_EQ(placement(Relocalised{}, 89, true), unconfirmed);
   EXPECT_EQ(placement(Tracking{}, 50, false), found);
 }
 

@@ -116,7 +116,7 @@ TEST(Window, SettledAndOpenSweepsAreTheWholeTrajectory) {
     all.insert(all.end(), report.smoothed.begin(), report.smoothed.end());
   }
   EXPECT_EQ(all.back().time_ns, 9 * test::kSweep_ns);
-  const auto open = run.odometry.open_trajectories();
+  const auto open = run.odometry.window_trajectories();
   ASSERT_EQ(open.size(), 3u);
   for (const auto& sweep : open) all.insert(all.end(), sweep.begin(), sweep.end());
   ASSERT_EQ(all.size(), 120u);
@@ -170,7 +170,7 @@ TEST(Window, PosesCanBeAskedAtAnyTimeWithin) {
   run.sweeps(0, 12);
   EXPECT_EQ(run.odometry.pose_at(9 * test::kSweep_ns - 1, pose).trouble, Trouble::out_of_range);
   EXPECT_EQ(run.odometry.pose_at(12 * test::kSweep_ns + 1, pose).trouble, Trouble::out_of_range);
-  const auto open = run.odometry.open_trajectories();
+  const auto open = run.odometry.window_trajectories();
   for (const auto& sweep : open) {
     ASSERT_TRUE(run.odometry.pose_at(sweep[4].time_ns, pose).ok());
     EXPECT_LT((pose.p_WA_m - sweep[4].p_WA_m).norm(), 1e-9);

@@ -15,23 +15,23 @@
 
 namespace {
 // bytes that this program holds, and the most it has held
-thread_local std::size_t held = 0, held_most = 0;
+thread_local std::size_t position_constrained = 0, held_most = 0;
 }  // namespace
 
 // not inlined, so that the compiler does not take the pair for mismatched
 [[gnu::noinline]] void* operator new(std::size_t size) {
   void* memory = std::malloc(size);
   if (memory == nullptr) throw std::bad_alloc();
-  held += malloc_usable_size(memory);
-  held_most = std::max(held_most, held);
+  position_constrained += malloc_usable_size(memory);
+  held_most = std::max(held_most, position_constrained);
   return memory;
 }
 [[gnu::noinline]] void operator delete(void* memory) noexcept {
-  held -= malloc_usable_size(memory);
+  position_constrained -= malloc_usable_size(memory);
   std::free(memory);
 }
 [[gnu::noinline]] void operator delete(void* memory, std::size_t) noexcept {
-  held -= malloc_usable_size(memory);
+  position_constrained -= malloc_usable_size(memory);
   std::free(memory);
 }
 
@@ -58,14 +58,14 @@ Held held_by(double duration_s) {
   params.filter.lever_arm_m = kLeverArm;
   const RollingSmoother smoother(params);
   std::vector<RollingEstimate> none;
-  const std::size_t before = held;
+  const std::size_t before = position_constrained;
   const auto state = std::make_unique<RollingSmoother::State>();
   for (const ImuSample& sample : truth.samples) EXPECT_TRUE(smoother.step(sample, *state, none).ok());
   Held out;
   out.nodes = static_cast<double>(state->steps.size());
-  out.state = static_cast<double>(held - before);
-  held_most = held;
-  const std::size_t with_state = held;
+  out.state = static_cast<double>(position_constrained - before);
+  held_most = position_constrained;
+  const std::size_t with_state = position_constrained;
   std::size_t estimates = 0;
   smoother.finish(*state, [&](const RollingEstimate&) { ++estimates; });
   EXPECT_EQ(estimates, truth.samples.size());
@@ -95,12 +95,12 @@ TEST(RollingMemory, ALagBeyondAllRunsTakesNoMoreThanARun) {
   const RollingSmoother smoother(params);
   const testing::RollingTruth truth = path(2.0);
   std::vector<RollingEstimate> out;
-  const std::size_t before = held;
+  const std::size_t before = position_constrained;
   const auto state = std::make_unique<RollingSmoother::State>();
   for (const ImuSample& sample : truth.samples) ASSERT_TRUE(smoother.step(sample, *state, out).ok());
   EXPECT_TRUE(out.empty());
-  EXPECT_LT(held - before, 300u << 20);  // a million samples and nodes
-  EXPECT_GT(held - before, 100u << 20) << "the bound says nothing any more";
+  EXPECT_LT(position_constrained - before, 300u << 20);  // a million samples and nodes
+  EXPECT_GT(position_constrained - before, 100u << 20) << "the bound says nothing any more";
 }
 
 /// All that the last pass tells of a way, in one row.

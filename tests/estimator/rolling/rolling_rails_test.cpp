@@ -7,7 +7,7 @@
 namespace tumble::rolling {
 namespace {
 
-constexpr double kHeld_s = 4e-3, kRail_m_s2 = 80.0;
+constexpr double kRepeated_s = 4e-3, kRail_m_s2 = 80.0;
 
 struct Gained {
   Eigen::Vector3d velocity_m_s, hidden_m_s;
@@ -24,9 +24,9 @@ Gained gained(const Eigen::Vector3d& rate_rad_s, const Eigen::Vector3d& force_m_
   nominal.last_rate_I_rad_s = rate_rad_s;
   RollingSums sums;
   ImuAverage reading;
-  reading.add({0, rate_rad_s, force_m_s2, flags}, kHeld_s);
+  reading.add({0, rate_rad_s, force_m_s2, flags}, kRepeated_s);
   integrate(params, reading, nominal, sums, known);
-  EXPECT_DOUBLE_EQ(sums.force_clipped_s, flags != 0 || known == Force::unknown ? kHeld_s : 0.0);
+  EXPECT_DOUBLE_EQ(sums.force_clipped_s, flags != 0 || known == Force::unknown ? kRepeated_s : 0.0);
   return {nominal.v_WI_m_s, sums.subsample_saturation_W_m_s};
 }
 
@@ -35,11 +35,11 @@ Gained gained(const Eigen::Vector3d& rate_rad_s, const Eigen::Vector3d& force_m_
 TEST(RollingRails, AnImpactIsAtLeastWhatWasRead) {
   const Eigen::Vector3d read(-3.0, 17.0, 57.0);
   const double gravity = RollingParams{}.gravity_m_s2;
-  const Eigen::Vector3d expected = kHeld_s * (read - gravity * Eigen::Vector3d::UnitZ());
+  const Eigen::Vector3d expected = kRepeated_s * (read - gravity * Eigen::Vector3d::UnitZ());
   const Gained railed = gained(Eigen::Vector3d::Zero(), read, kClipAccel);
   EXPECT_LT((railed.velocity_m_s - expected).norm(), 1e-12);
   const double share = RollingParams{}.expert.rails.subsample_saturation_share;
-  EXPECT_NEAR(railed.hidden_m_s.z(), share * kHeld_s * 57.0, 1e-12) << "and how much more is not known";
+  EXPECT_NEAR(railed.hidden_m_s.z(), share * kRepeated_s * 57.0, 1e-12) << "and how much more is not known";
   EXPECT_LT((gained(Eigen::Vector3d::Zero(), read, 0).velocity_m_s - expected).norm(), 1e-12);
   // negative control: of a force that nobody read nothing is taken
   EXPECT_LT(gained(Eigen::Vector3d::Zero(), read, kClipAccel, Force::unknown).velocity_m_s.norm(), 1e-12);
@@ -52,7 +52,7 @@ TEST(RollingRails, AFastTurnIsWhatItTakesToKeepTheCentre) {
   const double gravity = RollingParams{}.gravity_m_s2;
   const Eigen::Vector3d read(-kRail_m_s2, 0.0, gravity);
   const Gained turning = gained({0.0, 0.0, kRate_rad_s}, read, kClipAccelX);
-  EXPECT_NEAR(turning.velocity_m_s.norm(), kHeld_s * kRate_rad_s * kRate_rad_s * 0.1, 0.01);
+  EXPECT_NEAR(turning.velocity_m_s.norm(), kRepeated_s * kRate_rad_s * kRate_rad_s * 0.1, 0.01);
   EXPECT_NEAR(turning.velocity_m_s.z(), 0.0, 1e-12);
   EXPECT_LT(turning.hidden_m_s.norm(), 1e-12);
   // negative control: of another sense it is an impact

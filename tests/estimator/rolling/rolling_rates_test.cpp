@@ -88,16 +88,16 @@ TEST(RollingRates, JitterOfTheStampsAndReadingsThatRepeatAreBorne) {
   const testing::RollingTruth truth = slipping_sampled(1'000'000);
   const Eigen::Vector3d& end_m = truth.p_WG_m.back();
   const double exact = end_error_m(truth.samples, end_m, RollingSmoother::kWholeRun);
-  std::vector<ImuSample> held = truth.samples, jittered = slipping_sampled(4'000'000).samples;
+  std::vector<ImuSample> position_constrained = truth.samples, jittered = slipping_sampled(4'000'000).samples;
   // a device of 200 Hz read at 1 kHz
-  for (std::size_t k = 0; k < held.size(); ++k) {
-    held[k].angular_velocity_rad_s = truth.samples[k - k % 5].angular_velocity_rad_s;
-    held[k].specific_force_m_s2 = truth.samples[k - k % 5].specific_force_m_s2;
+  for (std::size_t k = 0; k < position_constrained.size(); ++k) {
+    position_constrained[k].angular_velocity_rad_s = truth.samples[k - k % 5].angular_velocity_rad_s;
+    position_constrained[k].specific_force_m_s2 = truth.samples[k - k % 5].specific_force_m_s2;
   }
   std::mt19937_64 random(3);
   std::uniform_real_distribution<double> off(-1.5e6, 1.5e6);
   for (ImuSample& sample : jittered) sample.time_ns += static_cast<TimeNs>(off(random));
-  const double of_held = end_error_m(held, end_m, RollingSmoother::kWholeRun),
+  const double of_held = end_error_m(position_constrained, end_m, RollingSmoother::kWholeRun),
                of_jittered = end_error_m(jittered, end_m, RollingSmoother::kWholeRun);
   EXPECT_LT(exact, 0.02);
   EXPECT_LT(of_held, 0.02);

@@ -204,8 +204,8 @@ TEST(RollingSmoother, AKnownDistanceTellsTheRadius) {
   const double wrong_m = end_error(0.0, 0.0, *sure);
   end_error(0.007, 0.0, *without);
   const double told_m = end_error(0.007, end.head<2>().norm(), *with);
-  EXPECT_EQ(sure->learnt.radius_error_m, 0.0);
-  const double radius_m = kBelieved_m + with->learnt.radius_error_m;
+  EXPECT_EQ(sure->constants.radius_error_m, 0.0);
+  const double radius_m = kBelieved_m + with->constants.radius_error_m;
   EXPECT_NEAR(radius_m, kTrue_m, 3.0 * with->radius_sigma_m);
   EXPECT_NEAR(radius_m, kTrue_m, 4e-4);  // 0.28 %; measured 0.1 %: the gyro's error of scale is one with it
   // accelerations alone tell it to 0.7 mm, the distance makes it 0.35

@@ -202,7 +202,7 @@ TEST(Rows, ATiltOfTwoTenThousandthsFailsTheTiltedRail) {
   TiltedRailSetup setup;
   setup.devices = 1;
   EXPECT_THAT(failures(certify_tilted_rail(input(), setup)), IsEmpty());
-  setup.believed_tilt = 2e-4;  // a tenth of what real devices keep their tilt to
+  setup.assumed_tilt = 2e-4;  // a tenth of what real devices keep their tilt to
   EXPECT_THAT(failures(certify_tilted_rail(input(), setup)),
               testing::ElementsAre("tilted_rail_slope (mti30 gyro)", "tilted_rail_slope (mti30 accel)"));
 }

@@ -11,8 +11,8 @@ namespace tumble::scenarios::testing {
 /// right, whatever is said of it then. Exact to rounding beside what was added.
 inline std::vector<RateState> rates_before_doubt(const Estimate& estimate) {
   std::vector<RateState> rates = estimate.rates;
-  for (std::size_t k = 0; k < estimate.doubted_rad2_s2.size(); ++k)
-    rates[k].covariance_rad2_s2 -= estimate.doubted_rad2_s2[k];
+  for (std::size_t k = 0; k < estimate.suspect_rad2_s2.size(); ++k)
+    rates[k].covariance_rad2_s2 -= estimate.suspect_rad2_s2[k];
   return rates;
 }
 

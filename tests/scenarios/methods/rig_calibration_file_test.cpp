@@ -31,7 +31,7 @@ class RigCalibrationFile : public testing::TemporaryFolder {
     rig.accelerometer_elements << 0.016, -0.0026, 0.0, 0.0, 0.0, 0.0;
     rig.device_errors = KnownSensorErrors{};
     rig.device_errors->errors.accel_delay_s = 0.0041;
-    rig.device_errors->errors.felt_s_m(2, 0) = -1.3e-4;
+    rig.device_errors->errors.g_sensitivity_s_m(2, 0) = -1.3e-4;
     rig.device_errors->covariance = 1e-6 * SensorErrors::Matrix::Identity();
     rig.device_errors->covariance(0, 27) = rig.device_errors->covariance(27, 0) = 3e-7;
     return rig;
@@ -164,9 +164,9 @@ TEST_F(RigCalibrationFile, TheNextRunStartsFromIt) {
   EXPECT_DOUBLE_EQ(params.model.calibration->covariance(3, 3), 2.8e-4);
   EXPECT_EQ(params.rails.stated_gyro_rad_s.value_or(0.0), 10.4);
   EXPECT_FALSE(params.rails.stated_accel_m_s2.has_value());
-  ASSERT_TRUE(params.learnt_errors.has_value());
-  EXPECT_EQ(params.learnt_errors->errors.accel_delay_s, 0.0041);
-  EXPECT_DOUBLE_EQ(params.learnt_errors->covariance(3, 3), 4e-6);
+  ASSERT_TRUE(params.calibrated_errors.has_value());
+  EXPECT_EQ(params.calibrated_errors->errors.accel_delay_s, 0.0041);
+  EXPECT_DOUBLE_EQ(params.calibrated_errors->covariance(3, 3), 4e-6);
   EXPECT_NO_THROW(RateSmoother{params});
   EXPECT_THROW(start_from(example(), 0.5, params), std::invalid_argument);
 }

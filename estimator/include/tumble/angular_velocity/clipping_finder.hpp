@@ -46,7 +46,7 @@ std::uint8_t clip_flags(const Clipping& clipping);
 /// Saturation levels that are certain enough for tests across units, used for units that may freeze. Equal readings
 /// alone are not sufficient. Excluded are flat maxima of slow motion far below the stated range, and repeated readings
 /// without a stated range. Saturation planes are included because neither of these effects creates a plane.
-struct HeardRails {
+struct CertainRails {
   RailPlanes gyro, accel;                                 ///< in use
   double gyro_range_rad_s = 0.0, accel_range_m_s2 = 0.0;  ///< stated range; 0: not stated
   /// Returns the flags of a classified sample, in addition to its own flags.

@@ -30,7 +30,7 @@ struct RateSmootherParams {
   /// with the constants fixed at the prior.
   double calibration_mahalanobis_max = 1.5;
   /// Sensor errors from an earlier run (RateReport::sensor_errors). Only used if sensor errors are estimated.
-  std::optional<KnownSensorErrors> learnt_errors = std::nullopt;
+  std::optional<KnownSensorErrors> calibrated_errors = std::nullopt;
   double gap_max_s = 1.0;  ///< a longer time between samples is an error
 
   using Expert = RateSmootherExpertParams;
@@ -66,17 +66,17 @@ struct RateReport {
   double calibration_mahalanobis = 0.0;
   bool calibration_at_prior = false;          ///< the distance was too large; the constants remain at their prior
   std::array<std::optional<double>, 6> rail;  ///< levels in use: gyro [rad/s], accelerometer [m/s^2]; empty: none
-  std::array<bool, 6> rail_seen{};            ///< observed on this axis, not inferred
+  std::array<bool, 6> rail_observed{};        ///< observed on this axis, not inferred
   RailPlanes planes;                          ///< of the gyro's elements, where observed
   RailPlanes accel_planes;                    ///< of the accelerometer's elements, m/s^2
   /// Estimated sensor errors.
   KnownSensorErrors sensor_errors;
-  double calibrated = 1.0, together = 1.0;  ///< see SensorErrorFit
+  double in_sheet_probability = 1.0, synchronous_probability = 1.0;  ///< see SensorErrorFit
   /// Standard deviation of a delay common to both triads; above 0 if the device deviates from its data sheet.
-  double shared_delay_sigma_s = 0.0;
+  double common_delay_sigma_s = 0.0;
   double gyro_update_s = 0.0, accel_update_s = 0.0;  ///< update interval of repeated readings; 0: none
   int error_rounds = 0;                              ///< number of descents with corrected readings
-  bool rails_upright = false;                        ///< the device clips its output, so other axes are unaffected
+  bool rails_axis_aligned = false;                   ///< the device clips its output, so other axes are unaffected
   std::array<bool, 6> rail_disagrees{};              ///< readings contradict the stated range
   bool rate_unit_suspect = false;   ///< a reading exceeds RateModelParams::rate_max_rad_s: possibly degrees
   bool force_unit_suspect = false;  ///< the median specific force is near 1: possibly in g
@@ -84,7 +84,7 @@ struct RateReport {
   std::size_t missing_readings = 0;  ///< samples with an overflow (flipped sign)
   double flight_share = 0.0;         ///< fraction of samples classified as free flight
   /// Bit j, one byte per sample: the reading of axis j may be saturated although no saturation was detected.
-  std::vector<std::uint8_t> doubted_axes;
+  std::vector<std::uint8_t> suspect_axes;
 };
 
 /// Estimates the angular velocity of a tumbling body through gyro saturation: a tightly coupled smoother over a

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "tumble/angular_velocity/detail/arrow_solver.hpp"
-#include "tumble/angular_velocity/detail/device_doubt.hpp"
+#include "tumble/angular_velocity/detail/device_uncertainty.hpp"
 #include "tumble/angular_velocity/detail/flight_sense.hpp"
 #include "tumble/angular_velocity/detail/frozen_axes.hpp"
 #include "tumble/angular_velocity/detail/rail_watch.hpp"
@@ -69,7 +69,7 @@ class RateStream {
   /// Reports whether the IMU is plausible now. Returns `out_of_range` with the name of a frozen axis (FrozenAxes), or
   /// for an accelerometer with inverted sign (FlightSense). The standard deviation on a frozen gyro axis is the largest
   /// rate read so far.
-  Status doubt(const State& state) const;
+  Status health(const State& state) const;
 
   /// Returns the estimated calibration.
   RigCalibration calibration(const State& state) const { return {state.rig, inflated(state)}; }
@@ -85,11 +85,11 @@ class RateStream {
   Status check_state(const State& state) const;
 
  private:
-  void forget_oldest(State& state) const;
+  void marginalise_leaving(State& state) const;
   void marginalise(std::size_t first, State& state) const;
-  void remember_errors(const arrow::Block& block, arrow::ErrorMatrix& errors, State& state) const;
-  void forget_left(State& state) const;
-  void forget_rig(State& state) const;
+  void store_errors(const arrow::Block& block, arrow::ErrorMatrix& errors, State& state) const;
+  void reset_prior(State& state) const;
+  void reset_rig(State& state) const;
   double delay_reach_s() const { return StrokeSums::kMostSamples * params_.period_s; }
   std::ptrdiff_t force_shift(const State& state) const;
   void pair_force(std::size_t k, State& state) const;
@@ -107,14 +107,14 @@ class RateStream {
   void classify_again(State& state) const;
   void judge(bool all, State& state) const { judge_from(all ? 0 : state.window.size() - 1, state); }
   void judge_from(std::size_t changed, State& state) const;
-  void doubt_unseen(std::size_t k, State& state) const;
-  void forget_doubts(State& state) const;
-  void doubt_possible_rails(State& state) const;
+  void mark_undetected_clipping(std::size_t k, State& state) const;
+  void clear_suspects(State& state) const;
+  void mark_possible_rails(State& state) const;
   bool may_clip(const ImuSample& sample, int axis, int sign, const State& state) const;
   static double run_slope(int axis, std::size_t first, std::size_t last, const State& state);
-  void doubt_run(int axis, std::size_t first, std::size_t last, State& state) const;
+  void mark_suspect_run(int axis, std::size_t first, std::size_t last, State& state) const;
   static Eigen::Vector3d approach(const std::vector<Knot>& window);
-  static void remember_entry(const Knot& leaving, const Knot& next, State& state);
+  static void store_entry(const Knot& leaving, const Knot& next, State& state);
   void add_rails(const State& state, arrow::Corner& corner) const;
   void guess(Knot& knot, const Knot& previous, const State& state) const;
   void weigh(State& state) const;
@@ -123,22 +123,22 @@ class RateStream {
   bool near_rails(std::size_t at, const State& state) const;
   bool in_long_flight(std::size_t at, const State& state) const;
   double hidden_by_slopes(std::size_t at, int axis, const State& state) const;
-  Eigen::Matrix3d doubted(std::size_t at, const State& state) const;
+  Eigen::Matrix3d suspect_covariance(std::size_t at, const State& state) const;
   void move_later(std::size_t at, double late_s, const State& state, RateState& out) const;
   RateState to_state(std::size_t at, const State& state) const;
 
   Params params_;
   RailWatch rails_;
   RestDetector rests_;
-  HoldWatch holds_;
+  RepeatDetector repeat_detector_;
   FrozenAxes frozen_;
   FlightSense sense_;
   RateModel model_;
-  DeviceDoubt device_;
+  DeviceUncertainty device_;
   std::size_t capacity_;
-  std::size_t every_;     ///< number of samples between steps
-  double given_delay_s_;  ///< prior delay of the accelerometer
-  bool delay_open_;       ///< whether another delay is possible
+  std::size_t samples_per_step_;  ///< number of samples between steps
+  double prior_delay_s_;          ///< prior delay of the accelerometer
+  bool delay_open_;               ///< whether another delay is possible
 };
 
 }  // namespace tumble

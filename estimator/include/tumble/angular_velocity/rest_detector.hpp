@@ -59,10 +59,10 @@ class RestDetector {
     TimeNs quiet_ns = 0;      ///< duration of the run with a mean within the bias bound
     bool rests = false;       ///< whether the run, up to the last reading, is rest
     // Sums of the samples since the last reading.
-    Eigen::Vector3d rate_open_rad_s = Eigen::Vector3d::Zero();
-    Eigen::Vector3d force_open_m_s2 = Eigen::Vector3d::Zero();
-    std::size_t open = 0;
-    TimeNs open_first_ns = 0, last_reading_ns = 0, last_ns = 0;
+    Eigen::Vector3d pending_rate_rad_s = Eigen::Vector3d::Zero();
+    Eigen::Vector3d pending_force_m_s2 = Eigen::Vector3d::Zero();
+    std::size_t pending_samples = 0;
+    TimeNs pending_first_ns = 0, last_reading_ns = 0, last_ns = 0;
     bool started = false;
     bool operator==(const State&) const = default;
 

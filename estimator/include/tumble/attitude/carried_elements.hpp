@@ -24,7 +24,7 @@ struct CarriedElements {
 
   /// Treats free readings of these axes (bit j of each sample) as lower bounds because they may be at an unknown
   /// saturation level.
-  void doubt(std::span<const ImuSample> samples, std::span<const std::uint8_t> axes);
+  void mark_suspect(std::span<const ImuSample> samples, std::span<const std::uint8_t> axes);
 
   /// Marks rates as bounded instead of measured if the reading may have been saturated for a part of its window.
   /// `rates`: one per sample.

@@ -8,13 +8,13 @@ namespace tumble {
 
 /// Time constants of hand-held motion.
 struct CarriedHandParams {
-  double hand_tau_s = 0.1;        ///< correlation time of the held point's acceleration
-  double velocity_tau_s = 0.3;    ///< correlation time of its velocity
-  double position_tau_s = 1.0;    ///< correlation time of its position
-  double position_leak_s = 10.0;  ///< time constant with which a position decays
-  double hand_follow = 0.8;       ///< adaptation of the acceleration's density to its measured power, 0 to 1
-  double hand_window_s = 2.0;     ///< averaging time of this power
-  double hand_floor = 1.0;        ///< minimum density as a fraction of the assumed one
+  double hand_tau_s = 0.1;             ///< correlation time of the held point's acceleration
+  double velocity_tau_s = 0.3;         ///< correlation time of its velocity
+  double position_tau_s = 1.0;         ///< correlation time of its position
+  double position_leak_s = 10.0;       ///< time constant with which a position decays
+  double hand_noise_adaptation = 0.8;  ///< adaptation of the acceleration's density to its measured power, 0 to 1
+  double hand_window_s = 2.0;          ///< averaging time of this power
+  double hand_floor = 1.0;             ///< minimum density as a fraction of the assumed one
 
   template <class Self, class Visitor>
   static void fields(Self& p, Visitor& visit) {
@@ -24,8 +24,8 @@ struct CarriedHandParams {
     visit(p.position_tau_s, {"position_tau_s", "s", 1e-3, 1e3, "correlation time of the hand-held point's position"});
     visit(p.position_leak_s,
           {"position_leak_s", "s", 0.1, 1e4, "time constant with which the position decays to zero"});
-    visit(p.hand_follow,
-          {"hand_follow", "1", 0.0, 1.0,
+    visit(p.hand_noise_adaptation,
+          {"hand_noise_adaptation", "1", 0.0, 1.0,
            "share by which the assumed acceleration follows the measured power of the motion; 0: not at all",
            Rank::first});
     visit(p.hand_window_s,

@@ -6,7 +6,7 @@
 #include <span>
 #include <vector>
 
-#include "tumble/angular_velocity/detail/hold_watch.hpp"
+#include "tumble/angular_velocity/detail/repeat_detector.hpp"
 #include "tumble/attitude/carried_smoother.hpp"
 #include "tumble/common/parameters.hpp"
 
@@ -56,7 +56,7 @@ class CarriedStream {
     double centre_s = 0.0, end_s = 0.0;  ///< start and end of the sample's window, from the first sample's centre
     std::int64_t node = 0;               ///< node closest to the centre
     bool rest = false;
-    HeldReading gyro, accel;            ///< state of repeated readings
+    RepeatedReading gyro, accel;        ///< state of repeated readings
     std::optional<RateState> smoothed;  ///< rate of a sample whose node has left the window, not yet reported
   };
   struct Knot {
@@ -77,8 +77,8 @@ class CarriedStream {
     carried::Constants prior_constants;
     double hand_power = 1.0;  ///< power of the nodes that left, relative to the assumed one
     RestDetector::State rests;
-    std::int64_t given_node = -1;  ///< node of the last reported estimate, and its covariance
-    Eigen::Matrix3d given_covariance_rad2_s2 = Eigen::Matrix3d::Zero();
+    std::int64_t reported_node = -1;  ///< node of the last reported estimate, and its covariance
+    Eigen::Matrix3d reported_covariance_rad2_s2 = Eigen::Matrix3d::Zero();
     std::int64_t start_ns = 0;
     std::size_t samples = 0;
     std::size_t failures = 0;  ///< number of skipped steps, whose system was not positive definite
@@ -103,10 +103,11 @@ class CarriedStream {
   ///   whose signs changed are processed again.
   /// - `out`: rate of the sample that is `lag_s` old. Empty while the window fills, and if not `wanted`, which saves
   ///   most of the computation.
-  /// - `held`: repeated readings of the log. A repeated reading counts once, at the time when the sensor took it (R95
+  /// - `repeated`: repeated readings of the log. A repeated reading counts once, at the time when the sensor took it
+  /// (R95
   ///   of rate_stream.md).
   Status push(const ImuSample& sample, const ClippedElements& known, State& state, std::optional<RateState>& out,
-              bool wanted = true, const HoldWatch::State& held = {}) const;
+              bool wanted = true, const RepeatDetector::State& repeated = {}) const;
 
   /// Appends the rates of the samples that are not yet reported to `out`, oldest first.
   void flush(const State& state, std::vector<RateState>& out) const;
@@ -116,7 +117,7 @@ class CarriedStream {
 
  private:
   Status check_reading(const Reading& reading, const Reading* before, TimeNs start_ns) const;
-  void append(const ImuSample& sample, const HoldWatch::State& held, State& state) const;
+  void append(const ImuSample& sample, const RepeatDetector::State& repeated, State& state) const;
   void add(const Reading& reading, State& state) const;
   bool read_again(const ClippedElements& known, State& state) const;
   void rebuild(State& state) const;
@@ -124,9 +125,9 @@ class CarriedStream {
   void predict(const carried::Node& before, const Eigen::Matrix3d& rows, Knot& knot) const;
   void predict_newest(State& state) const;
   carried::ReadingNoise noise_of(const State& state) const;
-  std::size_t first_not_given(const State& state) const;
+  std::size_t first_unreported(const State& state) const;
   void keep_rates_of_oldest(State& state) const;
-  void forget_readings(State& state) const;
+  void prune_output_samples(State& state) const;
   void marginalise_oldest(State& state) const;
   double hand(const State& state) const;
   void add_prior(const State& state, carried::System::Block& block, carried::System::Corner& corner) const;
@@ -141,7 +142,7 @@ class CarriedStream {
 
   Params params_;
   RestDetector rests_;
-  carried::Motion motion_, doubted_;
+  carried::Motion motion_, inflated_;
   carried::ReadingNoise noise_;
   Eigen::Vector3d g_W_m_s2_;
   std::size_t nodes_max_, readings_max_, delay_;

@@ -84,12 +84,12 @@ struct ImuMergeParams {
 class ImuMerge {
  public:
   static constexpr int kImus = ImuMergeState::kImus;
-  static constexpr int kLearnFrom = ImuMergeState::kLearnFrom;
+  static constexpr int kAccelerationWindows = ImuMergeState::kAccelerationWindows;
   static constexpr int kErrors = ImuMergeUnit::kErrors;
 
   using Params = ImuMergeParams;
 
-  using Hold = ImuHold;
+  using Hold = ImuRepeat;
   using Unit = ImuMergeUnit;
   using State = ImuMergeState;
 
@@ -127,14 +127,14 @@ class ImuMerge {
   std::uint8_t flags_of(const Readings& readings, const Flags& which) const;
   void close_windows(const Flags& present, const Vectors& rates, const Vectors& forces, bool all_used,
                      const ImuSample& merged, State& state) const;
-  void learn(const Vectors& rates, State& state) const;
-  void watch_holds(const Flags& present, const Vectors& rates, const Vectors& forces, double dt_s, TimeNs time_ns,
-                   State& state) const;
+  void calibrate(const Vectors& rates, State& state) const;
+  void watch_repeats(const Flags& present, const Vectors& rates, const Vectors& forces, double dt_s, TimeNs time_ns,
+                     State& state) const;
   void watch_misfits(const Flags& present, const Vectors& rates, const Vectors& forces, TimeNs time_ns,
                      State& state) const;
   static Eigen::Vector3d median(const Vectors& values, const Flags& which);
-  void leave_out_subsample_saturated(const Readings& samples, const Flags& present, const Vectors& forces,
-                                     const Eigen::Vector3d& rate, double h, State& state, Flags& used) const;
+  void exclude_subsample_saturated(const Readings& samples, const Flags& present, const Vectors& forces,
+                                   const Eigen::Vector3d& rate, double h, State& state, Flags& used) const;
   void recover(const Readings& readings, const Flags& present, double h, State& state, ImuSample& merged) const;
   static ForceErrors::Params force_params(const Params& params);
   static RateRecovery::Params recovery_params(const Params& params);

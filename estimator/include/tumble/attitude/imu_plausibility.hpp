@@ -74,7 +74,7 @@ class ImuPlausibility {
   /// Duration of a triad's repeated reading.
   struct Hold {
     Eigen::Vector3d reading = Eigen::Vector3d::Zero();
-    double held_s = 0.0, longest_s = 0.0, moved_s = 0.0;
+    double repeated_s = 0.0, longest_s = 0.0, moved_s = 0.0;
     double frozen_s = 0.0;  ///< 0: never
     bool operator==(const Hold&) const = default;
   };

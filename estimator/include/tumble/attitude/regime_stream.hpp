@@ -46,7 +46,7 @@ class RegimeStream {
     }
   };
   /// Data of a reported sample.
-  struct Given {
+  struct ReportedShare {
     TimeNs time_ns = 0;
     double carried = 0.0;
   };
@@ -56,7 +56,7 @@ class RegimeStream {
     std::vector<ClipSigns> signs;  ///< of RateStream's window; buffer
     RegimeShares shares{1.0 / 3.0, 1.0 / 3.0, 1.0 / 3.0};
     RegimeShares sum{};          ///< sum over all reported samples
-    std::size_t given = 0;       ///< number of reported samples
+    std::size_t reported = 0;    ///< number of reported samples
     std::size_t joined = 0;      ///< of these, combined with CarriedStream
     std::size_t starts = 0;      ///< number of starts of CarriedStream
     std::size_t rig_resets = 0;  ///< last value of RateStream's counter
@@ -64,8 +64,8 @@ class RegimeStream {
     bool carrying = false;       ///< CarriedStream is running
     /// Samples of the last clipped segment within `near_s`, without those followed by a smaller probability. The first
     /// has the smallest.
-    std::vector<Given> near;
-    TimeNs given_ns = 0;               ///< of the last reported sample
+    std::vector<ReportedShare> near;
+    TimeNs reported_ns = 0;            ///< of the last reported sample
     std::optional<TimeNs> clipped_ns;  ///< last reported clipped sample
   };
 
@@ -94,9 +94,9 @@ class RegimeStream {
  private:
   ClippedElements known_of(State& state) const;
   std::size_t index_of(const RateState& rate, const State& state) const;
-  bool doubts(const State& state) const;
+  bool calibration_is_unstable(const State& state) const;
   RegimeShares next(const RegimeShares& before, double dt_s, std::span<const RateStream::Knot> window, std::size_t k,
-                    const RigCalibration& rig, bool doubted) const;
+                    const RigCalibration& rig, bool unstable) const;
   void judge(const RateState& rate, State& state) const;
   double share_of(const RateState& rate, State& state) const;
 

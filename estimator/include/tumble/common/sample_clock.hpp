@@ -59,13 +59,14 @@ class SampleClock {
     std::array<TimeNs, kStart> start{};           ///< stamps collected for the first fit
     std::optional<TimeNs> stamp_ns;               ///< last stamp
     TimeNs time_ns = 0;                           ///< last estimated sample time
-    bool line = false;                            ///< whether a line is fitted; the members below describe it
+    bool line_fitted = false;                     ///< whether a line is fitted; the members below describe it
     double period_ns = 0.0;                       ///< slope of the line
-    double ahead_ns = 0.0;                        ///< value of the line at the last sample minus its stamp
+    double fit_minus_stamp_ns = 0.0;              ///< value of the line at the last sample minus its stamp
     double sum = 0.0, sum_n = 0.0, sum_nn = 0.0;  ///< sums of weights; sample numbers count from the last sample
-    double square_ns2 = 0.0, product_ns2 = 0.0;   ///< mean square prediction error; mean product of successive errors
-    double error_ns = 0.0;                        ///< last prediction error
-    std::size_t strays = 0;                       ///< consecutive errors close to half a period
+    double mean_square_error_ns2 = 0.0,
+           mean_error_product_ns2 = 0.0;  ///< mean square prediction error; mean product of successive errors
+    double error_ns = 0.0;                ///< last prediction error
+    std::size_t outliers = 0;             ///< consecutive errors close to half a period
   };
 
   /// Throws InvalidParams if a parameter is out of bounds.
@@ -79,7 +80,7 @@ class SampleClock {
   /// Returns the standard deviation of the stamps about the line [s], or nothing while no line is fitted.
   static std::optional<double> jitter_s(const State& state);
   /// Returns whether push() currently corrects stamps.
-  bool mends(const State& state) const;
+  bool corrects_stamps(const State& state) const;
 
   /// Checks the invariants of a state that was loaded from outside. Returns the first violation.
   static Status check_state(const State& state);
@@ -91,9 +92,9 @@ class SampleClock {
   Params params_;
 };
 
-/// Replaces stamps by the sample times that SampleClock estimates. `mended_s` returns the largest jitter that was
-/// corrected [s]; 0 means that all stamps are unchanged. Returns `time_order` as push() does; `stamps_ns` is then
+/// Replaces stamps by the sample times that SampleClock estimates. `corrected_jitter_s` returns the largest jitter that
+/// was corrected [s]; 0 means that all stamps are unchanged. Returns `time_order` as push() does; `stamps_ns` is then
 /// unchanged. O(N).
-Status to_sample_times(const SampleClock& clock, std::span<TimeNs> stamps_ns, double& mended_s);
+Status to_sample_times(const SampleClock& clock, std::span<TimeNs> stamps_ns, double& corrected_jitter_s);
 
 }  // namespace tumble

@@ -26,19 +26,19 @@ struct SweepCalibration {
 };
 
 /// A stated calibration with the standard deviation of each part per axis; 0 for an exact part.
-struct GivenCalibration {
-  static constexpr double kBelieved = 5.0;  ///< plausible change during one run, in standard deviations
+struct StatedCalibration {
+  static constexpr double kMaxDeviations = 5.0;  ///< plausible change during one run, in standard deviations
 
   SweepCalibration calibration;
   double mount_sigma_rad = 0.0, mount_sigma_m = 0.0, time_offset_sigma_s = 0.0;
 
-  /// Returns the distance of `learnt` from the stated calibration in standard deviations: the largest of rotation,
+  /// Returns the distance of `estimated` from the stated calibration in standard deviations: the largest of rotation,
   /// translation and time offset. The distance is infinite if an exact part differs. mapping.md (R69). Gravity is
   /// excluded because each run estimates it.
-  double moved(const SweepCalibration& learnt) const;
-  /// Returns `out_of_range` if `learnt` is more than `kBelieved` standard deviations away. The stated calibration is
-  /// then wrong.
-  Status verdict(const SweepCalibration& learnt) const;
+  double deviations(const SweepCalibration& estimated) const;
+  /// Returns `out_of_range` if `estimated` is more than `kMaxDeviations` standard deviations away. The stated
+  /// calibration is then wrong.
+  Status verdict(const SweepCalibration& estimated) const;
 };
 
 }  // namespace tumble

@@ -33,7 +33,7 @@ struct PointBounds {
 
 /// Counts of the returns of a sweep.
 struct PointCounts {
-  std::size_t given = 0;
+  std::size_t received = 0;
   std::size_t finite = 0;  ///< returns with finite coordinates; misses may be stored as NaN
   std::size_t used = 0;
   bool rings_differ = false;  ///< false if the device does not report ring numbers

@@ -74,7 +74,7 @@ class LidarInertialOdometry {
   Status add_reading(const OdometerReading& reading);
   /// Marks the accelerometer as unusable within the next sweep. The velocity is predicted as over a gap; the gyro is
   /// used. This call replaces earlier odometer readings of the sweep.
-  void leave_out_force();
+  void exclude_force();
 
   /// Registers a sweep of points fired in [start_ns, end_ns]. Sweeps do not overlap. NaN returns are misses.
   ///
@@ -106,7 +106,7 @@ class LidarInertialOdometry {
 
   /// Returns the current poses of the sweeps in the window, oldest first. The final poses of these sweeps are still
   /// pending. Together with SweepReport::smoothed they form the whole trajectory.
-  std::vector<std::vector<PoseState>> open_trajectories() const;
+  std::vector<std::vector<PoseState>> window_trajectories() const;
 
   /// Returns the memory of the map [bytes].
   std::size_t map_bytes() const;

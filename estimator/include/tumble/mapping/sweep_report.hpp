@@ -46,7 +46,7 @@ struct SweepReport {
   Eigen::Vector3d saturation_deficit_rad_s =
       Eigen::Vector3d::Zero();        ///< added to the clipped axes, along the sign of the rate; mean of the knots
   std::size_t points_used = 0;        ///< finite returns in range that do not hit the robot itself
-  std::size_t points_alone = 0;       ///< of these, lone returns that no neighbouring beam confirms; not used
+  std::size_t lone_points = 0;        ///< of these, lone returns that no neighbouring beam confirms; not used
   std::size_t points_registered = 0;  ///< one per voxel of the remaining points
   std::size_t map_points_added = 0;
 };

@@ -34,7 +34,7 @@ struct ImuSheet {
 /// Returns the largest reading that is certainly unsaturated, for the range that the device states. Returns infinity if
 /// no range is stated (0). The margin of 2 % covers the scale correction that a device's calibration applies to its
 /// saturation level.
-double sure_range(double stated_range);
+double unsaturated_range(double stated_range);
 
 /// Data sheets of devices that the harness models. Each number's source: models/sensors/NAME.yaml.
 namespace sheets {

@@ -109,15 +109,15 @@ class RollingOdometry {
   /// Reports whether the readings are plausible now. Returns `ok`, or `out_of_range` with a finding: the unit and axis
   /// that is frozen (FrozenAxes) and the duration, or a force at rest that differs from gravity (RestGravity). The
   /// readings of a frozen unit are ignored. If no other unit has readings, add_imus() rejects the sample.
-  Status doubt() const;
+  Status health() const;
 
   /// Returns the state of the IMU fusion: frozen, disagreeing and delayed units.
   const ImuMerge::State& units() const { return *merge_state_; }
 
   /// Returns the number of readings that OutlierFilter rejected, over all units.
   std::size_t rejected_readings() const;
-  /// Returns the jitter of the stamps [s]; see TumblingOdometry::mended_jitter_s.
-  std::optional<double> mended_jitter_s() const;
+  /// Returns the jitter of the stamps [s]; see TumblingOdometry::estimated_jitter_s.
+  std::optional<double> estimated_jitter_s() const;
 
   /// Save, load, saved parameters: see TumblingOdometry. The size is up to a megabyte, less at rest, plus the lag's
   /// data.
@@ -138,7 +138,7 @@ class RollingOdometry {
   Status add_held(std::span<const ImuSample> next);
   Status add_inliers(std::span<const ImuSample> samples);
   Status take_in(const ImuSample& merged);
-  Status leave_out_frozen(const Frozen& frozen, std::span<ImuSample> samples) const;
+  Status exclude_frozen(const Frozen& frozen, std::span<ImuSample> samples) const;
   Status frozen_axis(const Frozen& frozen) const;
 
   Params params_;

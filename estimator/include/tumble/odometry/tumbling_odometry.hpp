@@ -73,7 +73,7 @@ class TumblingOdometry {
   /// Returns the next registered sweep, in order, or nothing.
   std::optional<Sweep> take();
   /// Registers all sweeps that the IMU covers, at the end of a run or during a halt. take() then returns them, and
-  /// mapper().open_trajectories() the final poses of sweeps in the window. Later rates restart with the current
+  /// mapper().window_trajectories() the final poses of sweeps in the window. Later rates restart with the current
   /// calibration.
   void finish();
 
@@ -84,8 +84,8 @@ class TumblingOdometry {
   /// `out_of_range` with a finding: a frozen IMU axis and its duration, an inverted accelerometer (FlightSense), a
   /// wrong unit of the accelerometer after a second of rest (RestGravity), a wrong scale of the lidar's ranges
   /// (SweepScale), tracking failure (Localisation, permanent), or too large a change of the lidar's calibration
-  /// (GivenCalibration).
-  Status doubt() const;
+  /// (StatedCalibration).
+  Status health() const;
   /// Returns the estimated range scale of the lidar relative to the IMU, as far as the motion determines it.
   const SweepScale& sweep_scale() const { return pass_.sweep_scale(); }
   /// Returns the time of the newest accepted sample.
@@ -102,15 +102,15 @@ class TumblingOdometry {
   /// Returns the number of samples that OutlierFilter rejected because of wild readings or stamps.
   std::size_t rejected_readings() const { return outliers_.rejected; }
   /// Returns whether map and pose are those of the second pass (SecondPass).
-  bool passed_again() const { return again_.taken(); }
+  bool second_pass_applied() const { return second_pass_.taken(); }
   /// Return the numbers of samples that the mapper rejected, of sweeps not fetched in time, of sweeps that ended before
   /// the IMU's first sample, and of odometer readings that span two sweeps. All are 0 in normal operation.
-  std::size_t refused_samples() const { return pass_.refused_samples(); }
+  std::size_t rejected_samples() const { return pass_.rejected_samples(); }
   std::size_t dropped_sweeps() const { return dropped_sweeps_; }
   std::size_t early_sweeps() const { return early_sweeps_; }
-  std::size_t unused_readings() const { return readings_.straddling(); }
+  std::size_t unused_odometer_readings() const { return readings_.straddling(); }
   /// Returns the standard deviation of the IMU's stamps about a regular clock [s], while stamps are corrected.
-  std::optional<double> mended_jitter_s() const;
+  std::optional<double> estimated_jitter_s() const;
   /// Returns the mapper: the map and further results.
   const LidarInertialOdometry& mapper() const { return pass_.mapper(); }
 
@@ -137,7 +137,7 @@ class TumblingOdometry {
   bool is_due(TimeNs end_ns) const;
   void register_covered();
   void flush_all();
-  void begin_anew();
+  void restart();
   void begin_rates();
 
   Params params_;
@@ -146,7 +146,7 @@ class TumblingOdometry {
   SampleClock clock_;
   SampleClock::State stamps_;  ///< of accepted samples
   OdometryPass pass_;
-  SecondPass again_;
+  SecondPass second_pass_;
   std::optional<TimeNs> newest_ns_;      ///< of accepted samples
   std::optional<ImuSample> after_gap_;   ///< first sample after a gap, not yet confirmed
   std::optional<TimeNs> registered_ns_;  ///< end of the last registered sweep; before that, the first sample

@@ -32,7 +32,7 @@ struct TumblingExpertParams {
   /// Correction of stamps that a host assigned to the IMU's samples.
   SampleClock::Params stamps;
   /// Second pass over the first seconds of motion, with the calibration estimated from them.
-  SecondPass::Params again;
+  SecondPass::Params second_pass;
   static OdometryParams mapping_defaults();
   static RegimeStream::Params rate_defaults();
 
@@ -43,7 +43,7 @@ struct TumblingExpertParams {
     visit.group("rate_", p.rate);
     visit.group("mapping_", p.mapping);
     visit.group("stamps_", p.stamps);
-    visit.group("again_", p.again);
+    visit.group("second_pass_", p.second_pass);
   }
 };
 
@@ -69,8 +69,8 @@ struct TumblingParams {
   Expert expert;  ///< parameters that few users change
 
   /// Returns T_IL and the time offset with their stated standard deviations.
-  GivenCalibration given_calibration() const {
-    GivenCalibration out{{}, mount_sigma_rad, mount_sigma_m, time_offset_sigma_s};
+  StatedCalibration stated_calibration() const {
+    StatedCalibration out{{}, mount_sigma_rad, mount_sigma_m, time_offset_sigma_s};
     out.calibration.T_IL = T_IL;
     return out;
   }

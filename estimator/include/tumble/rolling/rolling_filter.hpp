@@ -77,8 +77,8 @@ class RollingFilter {
     Eigen::Matrix3d pruned_spread_m2 = Eigen::Matrix3d::Zero();  ///< spread of the hypotheses pruned at the last node
     RestDetector::State rest;
     Eigen::Vector3d slow_rate_rad_s = Eigen::Vector3d::Zero();
-    bool held = false;             ///< the sphere is at rest and the reported position is constant
-    double before_event_m2 = 0.0;  ///< horizontal variance of the position at the last node without an event
+    bool position_constrained = false;      ///< the sphere is at rest and the reported position is constant
+    double variance_before_event_m2 = 0.0;  ///< horizontal variance of the position at the last node without an event
     Eigen::Vector3d last_rate_rad_s = Eigen::Vector3d::Zero();
     std::array<Hypothesis, kHypotheses> hypotheses{};
     int count = 0;
@@ -129,7 +129,7 @@ class RollingFilter {
   void rebase(bool lost_heading, State& state) const;
   void report(State& state) const;
   void call_uncertain(State& state) const;
-  void hold(State& state) const;
+  void constrain_position(State& state) const;
   static Eigen::Matrix3d position_spread(const State& state);
   static void weigh_events(State& state);
   static void keep_first(std::size_t count, State& state);

@@ -76,9 +76,9 @@ class RollingSmoother {
     RollingNominal nominal;
     RollingFilter::Covariance P = RollingFilter::Covariance::Zero();
     RollingMode mode = RollingMode::grip;
-    double event_variance_m2 = 0.0;                         ///< of the position, when the event began
-    Eigen::Vector3d held_p_WG_m = Eigen::Vector3d::Zero();  ///< while `held`
-    bool held = false;                                      ///< at rest, with constant reported position
+    double event_variance_m2 = 0.0;                                ///< of the position, when the event began
+    Eigen::Vector3d constrained_p_WG_m = Eigen::Vector3d::Zero();  ///< while `position_constrained`
+    bool position_constrained = false;                             ///< at rest, with constant reported position
     TimeNs last_time_ns = 0;
     Eigen::Vector3d last_rate_rad_s = Eigen::Vector3d::Zero();
     // Rate of the gap that contains the node, if any.
@@ -93,7 +93,7 @@ class RollingSmoother {
     Committed committed;
     std::vector<ImuSample> samples;  ///< after the committed node
     std::vector<Step> steps;
-    RollingNominal learnt;        ///< constants at the newest smoothed node
+    RollingNominal constants;     ///< constants at the newest smoothed node
     double radius_sigma_m = 0.0;  ///< standard deviation of the radius at that node
     bool operator==(const State& other) const;
   };
@@ -127,7 +127,7 @@ class RollingSmoother {
   struct Path;
 
   /// Returns the number of samples for which the lag has preallocated memory.
-  std::size_t samples_set_aside() const;
+  std::size_t preallocated_samples() const;
   Path best_path(const State& state) const;
   void run_window(const Path& path, std::size_t emitted, State& state, const Take& take) const;
 

@@ -29,23 +29,23 @@ class FlightSense {
  public:
   /// True sensor; accelerometer, then gyro: all axes flipped, x, y or z flipped, x and y, y and z or z and x swapped; a
   /// gyro with half scale.
-  static constexpr std::size_t kSenses = 17, kHalved = 16;
+  static constexpr std::size_t kSenses = 17, kHalfScaleGyro = 16;
 
-  enum class Body { perhaps_held, thrown };
+  enum class Body { may_be_hand_held, thrown };
 
   struct Params {
-    Body body = Body::perhaps_held;
+    Body body = Body::may_be_hand_held;
     Eigen::Vector3d lever_arm_m = Eigen::Vector3d::Zero();  ///< from the centre of mass to the IMU, IMU axes
     double gyro_range_rad_s = 0.0;                          ///< stated by the device; 0: not stated
     double reading_s = 0.01;                                ///< averaging time of readings
     double force_min_m_s2 = 2.5;                            ///< minimum force due to rotation
     double share = 0.25;                                    ///< tolerance as a fraction of this force
     double run_s = 0.02;                                    ///< minimum duration of agreement
-    double against_s = 0.1;                                 ///< minimum total flight time of an alternative sensor,
-    double halved_s = 0.3;      ///< same for a half-scale gyro (hand-held motion may give 0.15 s)
-    double against_with = 4.0;  ///< as a multiple of the true sensor's flight time,
-    double thrown_with = 2.0;   ///< same for a body that is certainly not hand-held
-    double gap_max_s = 0.1;     ///< a longer gap resets the current run
+    double alternative_flight_s = 0.1;                      ///< minimum total flight time of an alternative sensor,
+    double half_scale_flight_s = 0.3;         ///< same for a half-scale gyro (hand-held motion may give 0.15 s)
+    double alternative_evidence_ratio = 4.0;  ///< as a multiple of the true sensor's flight time,
+    double thrown_evidence_ratio = 2.0;       ///< same for a body that is certainly not hand-held
+    double gap_max_s = 0.1;                   ///< a longer gap resets the current run
 
     /// Visits every parameter: its value, name, unit, bounds and meaning (common/parameters.hpp).
     template <class Self, class Visitor>
@@ -60,15 +60,16 @@ class FlightSense {
       visit(p.share, {"share", "1", 1e-3, 0.9,
                       "largest difference between reading and predicted flight force, as a share of that force"});
       visit(p.run_s, {"run_s", "s", 0.0, 10.0, "shortest flight that counts"});
-      visit(p.against_s, {"against_s", "s", 0.0, 1e3,
-                          "flight time explained by another sensor orientation, from which a fault is reported"});
-      visit(p.halved_s,
-            {"halved_s", "s", 0.0, 1e3, "flight time explained by twice the rate, from which a fault is reported"});
-      visit(p.against_with,
-            {"against_with", "1", 0.0, 1e6,
+      visit(p.alternative_flight_s,
+            {"alternative_flight_s", "s", 0.0, 1e3,
+             "flight time explained by another sensor orientation, from which a fault is reported"});
+      visit(p.half_scale_flight_s, {"half_scale_flight_s", "s", 0.0, 1e3,
+                                    "flight time explained by twice the rate, from which a fault is reported"});
+      visit(p.alternative_evidence_ratio,
+            {"alternative_evidence_ratio", "1", 0.0, 1e6,
              "least ratio of flight time explained by the other orientation to that of the stated one"});
-      visit(p.thrown_with,
-            {"thrown_with", "1", 0.0, 1e6, "least ratio of these flight times if the body is not hand-held"});
+      visit(p.thrown_evidence_ratio,
+            {"thrown_evidence_ratio", "1", 0.0, 1e6, "least ratio of these flight times if the body is not hand-held"});
       visit(p.gap_max_s, {"gap_max_s", "s", 1e-3, 1e3, "longest gap between samples within a flight"});
     }
   };

@@ -20,17 +20,17 @@ namespace tumble {
 ///
 /// A saturated reading may repeat. A reading counts as saturated from 0.9 of the stated range on, or if the device
 /// flags it. The extreme reading of an axis counts from 0.5 of the range on. A saturated axis is frozen if all other
-/// axes of both triads indicate rest for `rail_still_s`. Reason: a body with such a rate or force is not at rest. On a
-/// body that is never at rest, the axis is frozen after `rail_held_s` if another axis of its triad changes. Either it
-/// is frozen or the range is too small for the spin; in both cases its rate is unknown. Not distinguished: a body that
-/// spins so evenly about this axis that no other axis changes.
+/// axes of both triads indicate rest for `rail_stationary_s`. Reason: a body with such a rate or force is not at rest.
+/// On a body that is never at rest, the axis is frozen after `rail_repeated_s` if another axis of its triad changes.
+/// Either it is frozen or the range is too small for the spin; in both cases its rate is unknown. Not distinguished: a
+/// body that spins so evenly about this axis that no other axis changes.
 class FrozenAxes {
  public:
   struct Params {
     double gyro_range_rad_s = 0.0, accel_range_m_s2 = 0.0;  ///< stated by the device; 0: not stated
     double frozen_s = 0.5;                                  ///< longest repetition of a sound axis while the body moves
-    double rail_still_s = 1.5;                              ///< rest on all other axes while one is saturated
-    double rail_held_s = 5.0;  ///< saturated repetition while the body moves: flights last a third of this
+    double rail_stationary_s = 1.5;                         ///< rest on all other axes while one is saturated
+    double rail_repeated_s = 5.0;  ///< saturated repetition while the body moves: flights last a third of this
 
     /// Visits every parameter: its value, name, unit, bounds and meaning (common/parameters.hpp).
     template <class Self, class Visitor>
@@ -41,10 +41,10 @@ class FrozenAxes {
             {"accel_range_m_s2", "m/s^2", 0.0, kUnbounded, "range stated by the device; 0: not stated"});
       visit(p.frozen_s, {"frozen_s", "s", 1e-3, 1e4,
                          "longest time for which a healthy axis may repeat its reading while the body moves"});
-      visit(p.rail_still_s,
-            {"rail_still_s", "s", 1e-3, 1e4, "an axis at its rail is frozen if all other axes rest for this long"});
-      visit(p.rail_held_s,
-            {"rail_held_s", "s", 1e-3, 1e4,
+      visit(p.rail_stationary_s, {"rail_stationary_s", "s", 1e-3, 1e4,
+                                  "an axis at its rail is frozen if all other axes rest for this long"});
+      visit(p.rail_repeated_s,
+            {"rail_repeated_s", "s", 1e-3, 1e4,
              "an axis that repeats one reading at its rail for this long, while others move, is frozen"});
     }
   };
@@ -52,19 +52,19 @@ class FrozenAxes {
   struct Axis {
     double reading = 0.0;
     TimeNs since_ns = 0;       ///< first sample with the current reading
-    double held_s = 0.0;       ///< duration of the current reading
+    double repeated_s = 0.0;   ///< duration of the current reading
     bool flagged = false;      ///< flagged by the device during the current reading
     bool frozen = false;       ///< frozen at the current reading
     bool ever_frozen = false;  ///< was frozen at this or another reading
     double longest_s = 0.0;    ///< longest earlier repetition of a sound reading
     double moved_s = 0.0;      ///< total time with changing readings
     double quantum = 0.0;      ///< smallest observed change; 0: none yet
-    double lowest = 0.0, highest = 0.0;
+    double min_reading = 0.0, max_reading = 0.0;
     /// Of the two other axes of the triad, in turn, during the repetition.
     std::array<double, 2> other_low{}, other_high{}, other_changes{};
-    double samples = 0.0;  ///< number of repeated samples
-    double still_s = 0.0;  ///< time during the repetition in which the other axes indicate rest
-    std::array<double, 6> still_at{};
+    double samples = 0.0;       ///< number of repeated samples
+    double stationary_s = 0.0;  ///< time during the repetition in which the other axes indicate rest
+    std::array<double, 6> stationary_reference{};
     bool operator==(const Axis&) const = default;
   };
   struct State {

@@ -37,8 +37,9 @@ class RailWatch {
   struct Memory {
     std::vector<Eigen::Vector3d> readings;           ///< distinct, in time order
     Eigen::Vector3d peak = Eigen::Vector3d::Zero();  ///< largest magnitude of each axis
-    std::size_t near = 0, unsearched = 0, past = 0;  ///< readings near the extremes; new ones; since the last search
-    bool forgot = false;                             ///< readings were dropped
+    std::size_t near = 0, unsearched = 0;            ///< readings near the extremes; new ones
+    std::size_t samples_since_search = 0;            ///< readings near the extremes since the last search
+    bool pruned = false;                             ///< readings were dropped
     bool operator==(const Memory&) const = default;
   };
   struct State {
@@ -71,7 +72,7 @@ class RailWatch {
   bool has_room_for(const State& state) const;
 
  private:
-  void remember(const Eigen::Vector3d& reading, Triad triad, Memory& memory) const;
+  void store(const Eigen::Vector3d& reading, Triad triad, Memory& memory) const;
   bool is_near(const Eigen::Vector3d& reading, Triad triad, const Memory& memory, double share) const;
   bool observe(const Eigen::Vector3d& reading, Triad triad, State& state) const;
   RailPlanes search(Triad triad, State& state) const;

@@ -18,7 +18,7 @@ struct RateKnot {
 struct RateFactor {
   Eigen::Vector3d residual;
   Eigen::Matrix<double, 3, 6> by_knot;
-  Eigen::Matrix<double, 3, RigConstants::kSize> by_rig;
+  Eigen::Matrix<double, 3, RigConstants::kSize> jacobian_calibration;
 };
 
 /// Residual of the gyro while no element clips: rate + bias - reading [rad/s].

@@ -46,18 +46,18 @@ class RateModel {
   void update_bounds(const RateObservation& observation, const RigConstants& rig, const arrow::Conditional& conditional,
                      const RigConstants::Matrix& rig_covariance, double damping, RateEstimate& estimate) const;
 
-  /// Adds gyro, bound, flight and Euler factors of one sample. `doubted` is null or the covariance of the calibration.
-  /// If set, the sample does not update the calibration and has a correspondingly reduced weight. Used for flights that
-  /// are too short to be distinguished from contact with another calibration.
+  /// Adds gyro, bound, flight and Euler factors of one sample. `rig_spread` is null or the covariance of the
+  /// calibration. If set, the sample does not update the calibration and has a correspondingly reduced weight. Used for
+  /// flights that are too short to be distinguished from contact with another calibration.
   void add_sample(const RateObservation& observation, const RateEstimate& estimate, const RigConstants& rig,
-                  arrow::Block& block, arrow::Corner& corner, const RigConstants::Matrix* doubted = nullptr) const;
+                  arrow::Block& block, arrow::Corner& corner, const RigConstants::Matrix* rig_spread = nullptr) const;
 
   /// Adds the effect of SensorErrors on the gradient of a sample, and the sample's evidence about them. A clipped
-  /// element provides only its bound, and contact provides nothing; neither contributes evidence. `doubted`: as in
+  /// element provides only its bound, and contact provides nothing; neither contributes evidence. `rig_spread`: as in
   /// add_sample(); the force of such a sample is left out.
   void add_errors(const RateObservation& observation, const RateEstimate& estimate, const RigConstants& rig,
                   arrow::ErrorMatrix& block, arrow::BorderErrors& border, SensorErrorEvidence& evidence,
-                  bool doubted = false) const;
+                  bool rig_spread = false) const;
 
   /// Adds the motion prior between two samples, dt_s apart.
   void add_step(const RateEstimate& from, const RateEstimate& to, double dt_s, arrow::Block& block,
@@ -83,7 +83,7 @@ class RateModel {
                            const RateEstimate& estimate) const;
   double gyro_sigma_rad_s() const { return gyro_sigma_rad_s_; }
   /// Returns the weight of one sample in errors that last `model_error_s`; 1 for samples of that length or longer.
-  double said_once_share() const { return share_; }
+  double distinct_reading_share() const { return share_; }
 
  private:
   struct ForceFactor {
@@ -108,8 +108,8 @@ class RateModel {
   void add_gyro(const RateObservation& observation, const RateEstimate& estimate, const RigConstants& rig,
                 arrow::Block& block, arrow::Corner& corner) const;
   void add_elements(const RateObservation& observation, const RateEstimate& estimate, const RigConstants& rig,
-                    arrow::Block& block, arrow::Corner& corner, const RigConstants::Matrix* doubted) const;
-  static bool says_nothing_of_rig(const RateEstimate& estimate);
+                    arrow::Block& block, arrow::Corner& corner, const RigConstants::Matrix* rig_spread) const;
+  static bool is_uninformative(const RateEstimate& estimate);
   static void keep_from_rig(const RateObservation& observation, RateFactor& flight);
   void add_auxiliary_imus(const RateObservation& observation, const RateEstimate& estimate, const RigConstants& rig,
                           arrow::Block& block) const;

@@ -24,7 +24,7 @@ struct RateObservation {
   // three.
   std::uint8_t subsample_saturated = 0;  ///< saturated for a part of the window, see SubsampleSaturation
   std::uint8_t lone = 0;     ///< few readings as high as other elements' levels, on a side without a known level
-  std::uint8_t doubted = 0;  ///< run of readings that may be at an unknown saturation level: lower bounds
+  std::uint8_t suspect = 0;  ///< run of readings that may be at an unknown saturation level: lower bounds
   Eigen::Vector3d lost_rad_s = Eigen::Vector3d::Zero();        ///< expected deficit, with the reading's sign
   Eigen::Vector3d lost_sigma_rad_s = Eigen::Vector3d::Zero();  ///< of all three kinds
   /// Age of the triads' readings at the sample's stamp, and whether the gyro repeats the previous reading.
@@ -38,9 +38,9 @@ struct RateObservation {
   bool by_elements() const { return (clipping.gyro | clipping.missing_gyro) != 0; }
 
   /// Returns the axes whose readings have a larger standard deviation than the gyro's noise.
-  std::uint8_t read_in_part() const { return static_cast<std::uint8_t>(subsample_saturated | lone | doubted); }
+  std::uint8_t read_in_part() const { return static_cast<std::uint8_t>(subsample_saturated | lone | suspect); }
   /// Returns the axes whose reading may be below the rate although no saturation level was found.
-  std::uint8_t may_hide() const { return static_cast<std::uint8_t>(lone | doubted); }
+  std::uint8_t may_hide() const { return static_cast<std::uint8_t>(lone | suspect); }
 
   /// Returns the axes whose rate is not measured, only bounded at most.
   std::uint8_t unseen() const {

@@ -29,7 +29,7 @@ struct RateStreamParams {
   /// Sensor errors from an earlier run, used unchanged instead of model.errors. If empty, readings are corrected by
   /// model.errors, and the remaining uncertainty is estimated from the readings. Shared because Params are copied often
   /// and few contain it.
-  std::shared_ptr<const KnownSensorErrors> learnt_errors;
+  std::shared_ptr<const KnownSensorErrors> calibrated_errors;
 
   using Expert = RateStreamExpertParams;
   Expert expert = {};  ///< parameters that few users change

@@ -8,13 +8,13 @@
 #include <vector>
 
 #include "tumble/angular_velocity/detail/arrow_solver.hpp"
-#include "tumble/angular_velocity/detail/device_doubt.hpp"
+#include "tumble/angular_velocity/detail/device_uncertainty.hpp"
 #include "tumble/angular_velocity/detail/flight_sense.hpp"
 #include "tumble/angular_velocity/detail/frozen_axes.hpp"
-#include "tumble/angular_velocity/detail/hold_watch.hpp"
 #include "tumble/angular_velocity/detail/least_rails.hpp"
 #include "tumble/angular_velocity/detail/rail_watch.hpp"
 #include "tumble/angular_velocity/detail/rate_observation.hpp"
+#include "tumble/angular_velocity/detail/repeat_detector.hpp"
 #include "tumble/angular_velocity/detail/stroke_sums.hpp"
 #include "tumble/angular_velocity/rail_detector.hpp"
 #include "tumble/angular_velocity/rate_state.hpp"
@@ -44,19 +44,19 @@ struct RateStreamKnot {
   /// Growth of each axis's magnitude in the two steps up to this sample; the smaller of the two, at least 0.
   Eigen::Vector3d approach_rad_s = Eigen::Vector3d::Zero();
   int age = 0;
-  bool repeats = false;   ///< the gyro repeats the previous reading: HoldWatch
-  HeldReading held;       ///< of the gyro; at rest as if nothing repeats
-  std::uint8_t near = 0;  ///< axes that may have been saturated for a part of the reading's window: rails.md (R76)
+  bool repeats = false;      ///< the gyro repeats the previous reading: RepeatDetector
+  RepeatedReading repeated;  ///< of the gyro; at rest as if nothing repeats
+  std::uint8_t near = 0;     ///< axes that may have been saturated for a part of the reading's window: rails.md (R76)
 };
 
 /// Delay of the accelerometer relative to the gyro: rate_stream.md (R104) to (R107).
 struct RateStreamDelay {
   StrokeSums strokes;
-  double in_use_s = 0.0;           ///< delay that is applied; the prior until a delay is found
-  double told_s = 0.0;             ///< latest estimate from impacts and from sensor-error evidence
-  bool found = false;              ///< differs from the prior
-  TriadDelay guess;                ///< latest estimate from impacts alone
-  std::optional<TimeNs> asked_ns;  ///< time of the last estimate from impacts
+  double in_use_s = 0.0;             ///< delay that is applied; the prior until a delay is found
+  double estimated_s = 0.0;          ///< latest estimate from impacts and from sensor-error evidence
+  bool found = false;                ///< differs from the prior
+  TriadDelay guess;                  ///< latest estimate from impacts alone
+  std::optional<TimeNs> updated_ns;  ///< time of the last estimate from impacts
   bool operator==(const RateStreamDelay&) const = default;
 };
 
@@ -64,14 +64,14 @@ struct RateStreamDelay {
 struct RateStreamDevice {
   struct Work {
     arrow::BorderErrors border, of_rig;
-    SensorErrorEvidence told;
-    DeviceDoubt::Work doubt;
+    SensorErrorEvidence window_evidence;
+    DeviceUncertainty::Work posterior_work;
   };
   arrow::ErrorMatrix prior = arrow::ErrorMatrix::Zero();     ///< derivative of the oldest sample's gradient
   arrow::BorderErrors corner = arrow::BorderErrors::Zero();  ///< derivative of the calibration's gradient
   SensorErrorEvidence evidence;
-  DeviceDoubt::Open open;          ///< latest uncertainty from the evidence
-  std::optional<TimeNs> asked_ns;  ///< time of the latest update
+  DeviceUncertainty::Posterior posterior;  ///< latest uncertainty from the evidence
+  std::optional<TimeNs> updated_ns;        ///< time of the latest update
   RateStreamDelay delay;
   std::vector<arrow::ErrorMatrix> moved;  ///< buffer: d(sample) / d(errors)
   Work work;                              ///< buffer
@@ -81,7 +81,7 @@ struct RateStreamDevice {
 struct RateStreamState {
   RailWatch::State rails;
   RestDetector::State rests;
-  HoldWatch::State holds;
+  RepeatDetector::State repeat_state;
   FrozenAxes::State frozen;
   FlightSense::State sense;
   std::vector<RateStreamKnot> window;  ///< oldest first
@@ -103,12 +103,12 @@ struct RateStreamState {
   RateKnot prior_knot;
   RigConstants prior_rig;
   std::size_t samples = 0;
-  std::size_t waiting = 0;         ///< samples since the last step
-  std::size_t learnt_from = 0;     ///< flight samples that left the window and updated the calibration
-  std::size_t flight_run = 0;      ///< consecutive flight samples among those that left last
-  std::size_t rig_resets = 0;      ///< number of resets of the calibration
-  std::size_t failures = 0;        ///< number of skipped steps, whose system was not positive definite
-  std::vector<arrow::Block> work;  ///< buffer, not part of the state
+  std::size_t waiting = 0;              ///< samples since the last step
+  std::size_t calibration_samples = 0;  ///< flight samples that left the window and updated the calibration
+  std::size_t flight_run = 0;           ///< consecutive flight samples among those that left last
+  std::size_t rig_resets = 0;           ///< number of resets of the calibration
+  std::size_t failures = 0;             ///< number of skipped steps, whose system was not positive definite
+  std::vector<arrow::Block> work;       ///< buffer, not part of the state
 };
 
 }  // namespace tumble

@@ -31,10 +31,10 @@ struct StrokeSums {
   /// O(kTried).
   void add(double turn_rad_s2, const Tried& force_m_s2);
   /// Multiplies the weight of all earlier intervals by `share`.
-  void forget(double share);
+  void decay(double share);
   /// Returns the delay with the best correlation, for samples `period_s` apart and a slower triad that updates every
   /// `slower_s`. sigma_s is 0 if the delay is not accepted. O(kTried).
-  TriadDelay told(double period_s, double slower_s) const;
+  TriadDelay estimate_delay(double period_s, double slower_s) const;
   /// Returns the correlation at the tried delay nearest to `delay_s`, whatever the number of impacts. O(1).
   double correlation_at(double delay_s, double period_s) const;
 

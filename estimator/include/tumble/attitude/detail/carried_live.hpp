@@ -5,8 +5,8 @@
 #include <optional>
 #include <vector>
 
-#include "tumble/angular_velocity/detail/hold_watch.hpp"
 #include "tumble/angular_velocity/detail/rail_watch.hpp"
+#include "tumble/angular_velocity/detail/repeat_detector.hpp"
 #include "tumble/attitude/carried_stream.hpp"
 #include "tumble/common/parameters.hpp"
 
@@ -31,7 +31,7 @@ class CarriedLive {
   struct State {
     CarriedStream::State stream;
     RailWatch::State rails;
-    HoldWatch::State holds;
+    RepeatDetector::State repeat_state;
     bool news = false;             ///< whether the last sample changed the known levels
     std::vector<ClipSigns> signs;  ///< buffer, not part of the state
   };

@@ -56,7 +56,7 @@ struct NodeReadings {
   Eigen::Vector3d force_bound = Eigen::Vector3d::Zero();  ///< sign of the level where an axis clips, otherwise 0
   double force_n = 0.0;                                   ///< number of force readings
   double force_t_s = 0.0;                                 ///< mean time of the force readings
-  double force_open_m_s2 = 0.0;                           ///< force error due to the time uncertainty of their windows
+  double force_timing_m_s2 = 0.0;                         ///< force error due to the time uncertainty of their windows
   bool rest = false;
 };
 

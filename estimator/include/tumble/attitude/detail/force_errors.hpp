@@ -34,7 +34,7 @@ class ForceErrors {
     double position_sigma_m = 1.5e-3;             ///< prior; bound [0, 10]
     double noise_m_s2 = 0.06;                     ///< of one difference, over a span; bound (0, 1e3]
     double acceleration_share = 0.02;  ///< additional, per lever-arm force of the angular acceleration; bound [0, 1]
-    double doubt = 5.0;                ///< differences beyond this many sigmas have another cause; bound (0, 1e3]
+    double gate_deviations = 5.0;      ///< differences beyond this many sigmas have another cause; bound (0, 1e3]
   };
   struct State {
     Vector x = Vector::Zero();
@@ -55,8 +55,8 @@ class ForceErrors {
 
   /// Processes `forces_m_s2` of all units in common axes C, measured over `dt_s`, with rate and angular acceleration at
   /// their time. Updates the filter once per kSpan_s; O((kPerUnit count)^2), no allocation.
-  void learn(std::span<const Eigen::Vector3d> forces_m_s2, const Eigen::Vector3d& rate_rad_s,
-             const Eigen::Vector3d& acceleration_rad_s2, double dt_s, State& state) const;
+  void calibrate(std::span<const Eigen::Vector3d> forces_m_s2, const Eigen::Vector3d& rate_rad_s,
+                 const Eigen::Vector3d& acceleration_rad_s2, double dt_s, State& state) const;
 
   /// Returns the force of unit `k` corrected for its bias, scale and misalignment.
   static Eigen::Vector3d corrected(int k, const Eigen::Vector3d& force_m_s2, const State& state);

@@ -15,12 +15,12 @@
 namespace tumble {
 
 /// Repetition of a triad's reading: its duration, the others' readings at its start, and the rotation since.
-struct ImuHold {
+struct ImuRepeat {
   Eigen::Vector3d reading = Eigen::Vector3d::Zero(), others = Eigen::Vector3d::Zero();
   Eigen::Vector3d turned_rad = Eigen::Vector3d::Zero();
   TimeNs since_ns = 0;
-  double held_s = 0.0;
-  bool operator==(const ImuHold&) const = default;
+  double repeated_s = 0.0;
+  bool operator==(const ImuRepeat&) const = default;
 };
 
 /// Errors of one unit's rate relative to the mean of all.
@@ -34,7 +34,7 @@ struct ImuMergeUnit {
   Eigen::Vector3d last_rate_rad_s = Eigen::Vector3d::Zero(), last_force_m_s2 = Eigen::Vector3d::Zero();
   double suspect_s = 0.0;     ///< remaining time for which it is excluded from the force
   std::int64_t left_out = 0;  ///< number of windows
-  ImuHold rate_hold, force_hold;
+  ImuRepeat rate_repeat, force_repeat;
   double thawing_s = 0.0;
   double misfit_rate_rad_s = 0.0, misfit_force_m_s2 = 0.0, misfits_s = 0.0;
   TimeNs misfits_since_ns = 0;
@@ -49,7 +49,7 @@ struct ImuMergeUnit {
 /// Complete state.
 struct ImuMergeState {
   static constexpr int kImus = 4;
-  static constexpr int kLearnFrom = 3;  ///< windows needed for an angular acceleration
+  static constexpr int kAccelerationWindows = 3;  ///< windows needed for an angular acceleration
 
   std::array<ImuMergeUnit, kImus> units{};
   ForceErrors::State forces;
@@ -59,10 +59,11 @@ struct ImuMergeState {
   double rotation_rate_rad_s = 0.0;                             ///< mean of the rate over half a second
   double window_s = 0.0;                                        ///< length of the current window
   double length_s = 0.0, length_before_s = 0.0;                 ///< of the last two windows
-  double arm_product = 0.0, arm_square_m2_s3 = 0.0;             ///< sums for arm_share()
+  double lever_arm_correlation = 0.0, arm_square_m2_s3 = 0.0;   ///< sums for arm_share()
   UnitSenses senses;
   std::int64_t samples = 0, windows = 0;
-  int free_windows = kLearnFrom;  ///< windows since a gyro was clipped or a unit absent, at most kLearnFrom
+  int free_windows =
+      kAccelerationWindows;  ///< windows since a gyro was clipped or a unit absent, at most kAccelerationWindows
   TimeNs last_time_ns = 0;
   bool all_frozen = false;  ///< all units that were present in the last window
   bool operator==(const ImuMergeState&) const = default;

@@ -23,12 +23,12 @@ struct UnitSenses {
   void add(const Eigen::Vector3d& force_m_s2, const Eigen::Vector3d& position_m, const Eigen::Vector3d& rate_rad_s,
            const Eigen::Vector3d& acceleration_rad_s2, double length_s);
 
-  struct Told {
+  struct Detected {
     std::size_t sense = 0;
     double share = 0.0;
   };
   /// Returns the alternative that explains most, if it explains more than kShareMin.
-  std::optional<Told> told() const;
+  std::optional<Detected> detected() const;
 
   bool operator==(const UnitSenses&) const = default;
 };

@@ -83,27 +83,27 @@ struct TrackingParams {
   /// A sweep with too few matches still extends the map, as `degenerate`, while the inertial prior has smaller standard
   /// deviations than these. Reason: a lidar at rest scans only rings, which give no planes until it rotates.
   /// LocalMapParams::sigma_max_m excludes points that are too uncertain at their range due to the attitude.
-  double trusted_m = 0.1;
-  double trusted_rad = 0.1;
+  double extend_sigma_max_m = 0.1;
+  double extend_sigma_max_rad = 0.1;
   /// Maximum number of consecutive sweeps with points but without registration. Then the mapper continues `degenerate`
   /// by inertial prediction.
   int lost_sweeps_max = 30;
   /// Minimum fraction of a sweep's matches within three standard deviations (0.997 for normal errors) that confirms a
   /// relocalisation. A smaller fraction contradicts it.
-  double borne_out_share = 0.9;
+  double confirm_inlier_ratio = 0.9;
 
   template <class Self, class Visitor>
   static void fields(Self& p, Visitor& visit) {
-    visit(p.trusted_m,
-          {"trusted_prior_m", "m", 0.0, 1e3,
+    visit(p.extend_sigma_max_m,
+          {"extend_sigma_max_m", "m", 0.0, 1e3,
            "standard deviation of the prior position below which a sweep with too few matches extends the map"});
-    visit(p.trusted_rad,
-          {"trusted_prior_rad", "rad", 0.0, 1e3,
+    visit(p.extend_sigma_max_rad,
+          {"extend_sigma_max_rad", "rad", 0.0, 1e3,
            "standard deviation of the prior attitude below which a sweep with too few matches extends the map"});
     visit(p.lost_sweeps_max, {"lost_sweeps_max", "1", 1, 1e6,
                               "unregistered sweeps in a row after which mapping continues by inertial prediction"});
-    visit(p.borne_out_share, {"borne_out_share", "1", 0.0, 1.0,
-                              "share of matches within three standard deviations that confirms a relocalisation"});
+    visit(p.confirm_inlier_ratio, {"confirm_inlier_ratio", "1", 0.0, 1.0,
+                                   "share of matches within three standard deviations that confirms a relocalisation"});
   }
 };
 

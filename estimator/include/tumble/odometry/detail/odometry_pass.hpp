@@ -65,7 +65,7 @@ class OdometryPass {
   const SweepScale& sweep_scale() const { return scale_.scale(); }
   const Localisation& localisation() const { return localisation_; }
   const std::optional<RateState>& smoothed_rate() const { return smoothed_; }
-  std::size_t refused_samples() const { return refused_samples_; }
+  std::size_t rejected_samples() const { return rejected_samples_; }
 
   /// Visits every member of the state. Defined in the library's sources: state_visitor.hpp.
   template <class Self, class Visitor>
@@ -84,8 +84,8 @@ class OdometryPass {
   double rate_sigma_max_rad_s_, time_offset_s_;
   Queue pending_;  ///< samples whose rates are still pending
   std::optional<RateState> smoothed_;
-  std::optional<TimeNs> told_ns_;  ///< time of the last sample passed to the mapper
-  std::size_t refused_samples_ = 0;
+  std::optional<TimeNs> last_mapped_ns_;  ///< time of the last sample passed to the mapper
+  std::size_t rejected_samples_ = 0;
   RestGravity gravity_;
   RestGravity::Size gravity_state_;
 };

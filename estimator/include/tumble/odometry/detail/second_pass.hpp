@@ -26,16 +26,17 @@ namespace tumble {
 /// If the first pass has failed for `lost_s`, the whole buffer is processed immediately, once. The regular second pass
 /// still follows after `after_s`. Earlier poses are not changed: the pose jumps by the error of the first pass.
 ///
-/// Memory: samples and sweeps of `rest_s` and of at most `remembered_s` of motion, and a second map for the same time.
-/// Not modelled: a third pass with the calibration of the second; a jolt that ends the rest long before the tumble.
+/// Memory: samples and sweeps of `rest_s` and of at most `abandon_after_s` of motion, and a second map for the same
+/// time. Not modelled: a third pass with the calibration of the second; a jolt that ends the rest long before the
+/// tumble.
 class SecondPass {
  public:
   struct Params {
-    double after_s = 3.0;        ///< motion before the second pass starts; 0: no second pass
-    double lost_s = 0.4;         ///< duration of tracking failure that starts it immediately; 0: never
-    double lag_s = 0.5;          ///< lag of its rates
-    std::size_t sweeps = 3;      ///< buffered sweeps per new sweep; at least two, otherwise it never catches up
-    double remembered_s = 10.0;  ///< motion after which the second pass is abandoned if it has not caught up
+    double after_s = 3.0;           ///< motion before the second pass starts; 0: no second pass
+    double lost_s = 0.4;            ///< duration of tracking failure that starts it immediately; 0: never
+    double lag_s = 0.5;             ///< lag of its rates
+    std::size_t sweeps = 3;         ///< buffered sweeps per new sweep; at least two, otherwise it never catches up
+    double abandon_after_s = 10.0;  ///< motion after which the second pass is abandoned if it has not caught up
     /// Inflation factor of the calibration's variance, because the same readings are used twice.
     double inflation = 4.0;
     double rest_s = 1.0;  ///< duration of the initial rest that is buffered
@@ -49,8 +50,8 @@ class SecondPass {
                        "time without a registered sweep after which the second pass starts early, once; 0: never"});
       visit(p.lag_s, {"lag_s", "s", 0.0, 10.0, "age of a sample in the second pass when its rate is reported"});
       visit(p.sweeps, {"sweeps", "1", 2, 1000, "sweeps that the second pass processes per new sweep"});
-      visit(p.remembered_s, {"remembered_s", "s", 0.0, 1000.0,
-                             "longest motion that is stored; the second pass must catch up within it"});
+      visit(p.abandon_after_s, {"abandon_after_s", "s", 0.0, 1000.0,
+                                "longest motion that is stored; the second pass must catch up within it"});
       visit(p.inflation,
             {"inflation", "1", 1.0, 1e6, "factor on the variance of the calibration that the second pass starts with"});
       visit(p.rest_s, {"rest_s", "s", 0.1, 100.0, "longest part of the initial rest that is stored"});
@@ -61,10 +62,10 @@ class SecondPass {
   SecondPass(const Params& params, const RegimeStream::Params& rate, const LidarInertialOdometry::Params& mapping);
 
   /// Buffers a sample that the first pass has processed. No allocation.
-  void remember(const ImuSample& sample);
+  void store(const ImuSample& sample);
   /// Buffers a sweep that the first pass has registered, with its odometer reading, if any.
-  void remember(TimeNs start_ns, TimeNs end_ns, std::vector<LidarPoint> points,
-                const std::optional<OdometerReading>& reading, SweepVerdict verdict);
+  void store(TimeNs start_ns, TimeNs end_ns, std::vector<LidarPoint> points,
+             const std::optional<OdometerReading>& reading, SweepVerdict verdict);
 
   /// Continues after each sweep of the first pass. When the second pass has caught up, `first` receives its map.
   void advance(OdometryPass& first);
@@ -101,8 +102,8 @@ class SecondPass {
   void run(OdometryPass& first, std::size_t sweeps);
   void take_over(OdometryPass& first);
   RegimeStream::Params lagging_rate() const;
-  RegimeStream::Params learnt_rate(const OdometryPass& first) const;
-  LidarInertialOdometry::Params learnt_mapping(const OdometryPass& first) const;
+  RegimeStream::Params calibrated_rate(const OdometryPass& first) const;
+  LidarInertialOdometry::Params calibrated_mapping(const OdometryPass& first) const;
 
   Params params_;
   RegimeStream::Params rate_;

@@ -16,7 +16,7 @@ namespace tumble {
 
 /// Detects the saturation levels of several IMUs on one body from their readings, causally. Readings that a device
 /// clips without reporting it are flagged before ImuMerge processes them. Each unit has a RailWatch with the rule of
-/// HeardRails. ClippingFinder applies the same rule to whole recordings.
+/// CertainRails. ClippingFinder applies the same rule to whole recordings.
 ///
 /// A sample is judged by the samples before it. Not modelled: the first two to ten samples at a saturation level, which
 /// are accepted as they are. ImuMerge also receives no saturation levels along the axes of a unit's sensing elements.

@@ -101,7 +101,7 @@ Course course_of(const ThrownBody& body, const std::vector<ThrownBody::Sweep>& s
 
 TumblingOdometry::Params single_pass(const ThrownBody& body) {
   TumblingOdometry::Params params = params_of(body);
-  params.expert.again.after_s = 0.0;
+  params.expert.second_pass.after_s = 0.0;
   return params;
 }
 
@@ -127,8 +127,8 @@ TEST(OdometerAtTheDoor, TrueReadingsDoNoHarm) {
     EXPECT_LE(told.end_m, without.end_m);
     // a velocity tells an attitude little, and that of the catch is off by three degrees
     EXPECT_LE(told.worst_rad, (odometry == &with_motion ? 0.5 : 1.25) * without.worst_rad);
-    EXPECT_TRUE(odometry->doubt().ok()) << odometry->doubt().message();
-    EXPECT_EQ(odometry->unused_readings(), 0u);
+    EXPECT_TRUE(odometry->health().ok()) << odometry->health().message();
+    EXPECT_EQ(odometry->unused_odometer_readings(), 0u);
   }
 }
 
@@ -155,8 +155,8 @@ TEST(OdometerAtTheDoor, AWrongOneThatIsSureDoesHarmAndIsTold) {  // negative con
   const Course without = course_of(body, body.sweeps(), nothing, plain);
   const Course wrong = course_of(body, body.sweeps(), wrong_velocity, misled);
   EXPECT_GT(wrong.worst_m, without.worst_m);
-  EXPECT_TRUE(plain.doubt().ok());
-  EXPECT_FALSE(misled.doubt().ok());
+  EXPECT_TRUE(plain.health().ok());
+  EXPECT_FALSE(misled.health().ok());
 }
 
 /// With the lag a sweep waits: what comes after it is as good as what comes before, and it is the second pass's as
@@ -165,7 +165,7 @@ TEST(OdometerAtTheDoor, IsOfItsSweepHoweverLongThatWaits) {
   ThrownBody body;
   body.end_s = 4.2;
   TumblingOdometry::Params params = params_of(body);
-  params.expert.again.after_s = 0.9;
+  params.expert.second_pass.after_s = 0.9;
   const std::vector<ThrownBody::Sweep> sweeps = body.sweeps();
   TumblingOdometry before(params), after(params), without(params);
   const Course first = course_of(body, sweeps, true_motion, before);
@@ -176,7 +176,7 @@ TEST(OdometerAtTheDoor, IsOfItsSweepHoweverLongThatWaits) {
     if (sweep.end_ns == sweeps.back().end_ns) true_motion(of, sweep, odometry);
   };
   expect_same(first, course_of(body, sweeps, late, after));
-  EXPECT_TRUE(before.passed_again());
+  EXPECT_TRUE(before.second_pass_applied());
   const Course none = course_of(body, sweeps, nothing, without);
   EXPECT_NE(first.sweeps.back().report.pose.p_WA_m, none.sweeps.back().report.pose.p_WA_m);
   EXPECT_EQ(before.save(), after.save());
@@ -194,14 +194,14 @@ Eigen::Vector3d after_second_pass(bool told) {
   std::size_t next = 0;
   for (const ImuSample& sample : body.imu()) {
     EXPECT_TRUE(first.add_imu(sample).ok());
-    again.remember(sample);
+    again.store(sample);
     for (; next < sweeps.size() && first.covers(sweeps[next].end_ns); ++next) {
       const ThrownBody::Sweep& sweep = sweeps[next];
       LidarInertialOdometry::SweepReport report;
       (void)first.add_sweep(sweep.start_ns, sweep.end_ns, sweep.points, {}, report);
       std::optional<OdometerReading> reading;
       if (told) reading = motion_of(body, sweep.start_ns, sweep.end_ns, 0.002, 0.002);
-      again.remember(sweep.start_ns, sweep.end_ns, sweep.points, reading, report.verdict);
+      again.store(sweep.start_ns, sweep.end_ns, sweep.points, reading, report.verdict);
     }
   }
   again.complete(first);
@@ -219,7 +219,7 @@ TEST(OdometerAtTheDoor, TheSecondPassHearsItAgain) {
 TEST(OdometerAtTheDoor, ARunIsSplitAndSavedWhileOneWaits) {
   const ThrownBody body;
   TumblingOdometry::Params params = params_of(body);
-  params.expert.again.after_s = 0.9;
+  params.expert.second_pass.after_s = 0.9;
   const std::vector<ThrownBody::Sweep> sweeps = body.sweeps();
   TumblingOdometry whole(params);
   const Course run = course_of(body, sweeps, true_motion, whole);
@@ -288,7 +288,7 @@ TEST(OdometerAtTheDoor, TroubleIsAValueAndChangesNothing) {
   EXPECT_EQ(waiting, 1025u);
   EXPECT_NE(odometry.save(), before);
   hand_over(body, body.sweeps(), 80, 130, nothing, odometry, run);
-  EXPECT_EQ(odometry.unused_readings(), 1u);
+  EXPECT_EQ(odometry.unused_odometer_readings(), 1u);
   EXPECT_TRUE(odometry.add_velocity({1'300'000'000, Eigen::Vector3d::Zero(), 1.0}).ok()) << "there is room again";
 }
 
@@ -300,7 +300,7 @@ TEST(OdometerAtTheDoor, OneThatNoSweepTakesChangesNoBit) {
     (void)odometry.add_motion(motion_of(of, sweep.end_ns - 50'000'000, sweep.end_ns + 50'000'001, 0.01, 0.01));
   };
   expect_same(course_of(body, body.sweeps(), nothing, plain), course_of(body, body.sweeps(), straddling, asked));
-  EXPECT_GT(asked.unused_readings(), 20u);
+  EXPECT_GT(asked.unused_odometer_readings(), 20u);
 }
 
 }  // namespace

@@ -11,37 +11,37 @@ namespace tumble {
 
 /// State of one triad's sample at arrival. If the sensor is slower than the log (sample and hold), the sample repeats
 /// an earlier reading, or contains one that arrived since the last sample.
-struct HeldReading {
+struct RepeatedReading {
   bool repeats = false;                              ///< repeats the reading of the previous sample
   double age_samples = 0.0;                          ///< mean age of the reading
   double period_samples = 1.0;                       ///< samples per reading; 1: each sample has its own reading
   Eigen::Vector3d change = Eigen::Vector3d::Zero();  ///< change from the previous reading [unit of the triad]
 
-  bool held() const { return period_samples > 1.0; }
+  bool is_slower_than_log() const { return period_samples > 1.0; }
   /// Returns how far the middle of the reading's window lies before the middle of the sample's window. The reading's
   /// window has the length of the period and ends when the reading is taken.
-  double behind_samples() const { return held() ? age_samples + 0.5 * (period_samples - 1.0) : 0.0; }
+  double behind_samples() const { return is_slower_than_log() ? age_samples + 0.5 * (period_samples - 1.0) : 0.0; }
   /// Returns the change of the triad during that time, extrapolated with the slope of the last change.
   Eigen::Vector3d stale() const;
-  bool operator==(const HeldReading&) const = default;
+  bool operator==(const RepeatedReading&) const = default;
 };
 
-/// Detects a log that is faster than its sensor, causally. HoldWatch is the causal form of find_held. HoldWatch does
-/// not estimate the phase of the sensor's clock, so a new reading has an age of 0.5 +- 0.29 samples.
-/// docs/maths/rate_stream.md (R95).
-class HoldWatch {
+/// Detects a log that is faster than its sensor, causally. RepeatDetector is the causal form of find_repeated.
+/// RepeatDetector does not estimate the phase of the sensor's clock, so a new reading has an age of 0.5 +- 0.29
+/// samples. docs/maths/rate_stream.md (R95).
+class RepeatDetector {
  public:
   /// State of one triad.
   struct Memory {
     Eigen::Vector3d reading = Eigen::Vector3d::Zero();
-    double said = 0.0;                    ///< consecutive samples with this reading
+    double run_samples = 0.0;             ///< consecutive samples with this reading
     double moving = 0.0, repeated = 0.0;  ///< samples in motion; those of them that repeat; both decay slowly
-    HeldReading now;
+    RepeatedReading now;
     bool operator==(const Memory&) const = default;
   };
   struct State {
     std::array<Memory, 2> memory;  ///< by Triad
-    const HeldReading& of(Triad triad) const { return memory[static_cast<std::size_t>(triad)].now; }
+    const RepeatedReading& of(Triad triad) const { return memory[static_cast<std::size_t>(triad)].now; }
     bool operator==(const State&) const = default;
   };
 

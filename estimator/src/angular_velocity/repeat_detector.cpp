@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "tumble/angular_velocity/detail/hold_watch.hpp"
+#include "tumble/angular_velocity/detail/repeat_detector.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -15,36 +15,36 @@ using sample_hold::kMoving_rad_s, sample_hold::kRepeatsMin, sample_hold::kSlowes
 constexpr double kMovingLeast = static_cast<double>(sample_hold::kMovingMin);
 constexpr double kMemory = static_cast<double>(sample_hold::kMovingMax);
 
-HeldReading held_reading(const HoldWatch::Memory& memory, const Eigen::Vector3d& reading) {
-  HeldReading out;
+RepeatedReading repeated_reading(const RepeatDetector::Memory& memory, const Eigen::Vector3d& reading) {
+  RepeatedReading out;
   if (memory.moving < kMovingLeast || memory.repeated < kRepeatsMin * memory.moving) return out;
   out.period_samples = memory.moving / std::max(1.0, memory.moving - memory.repeated);
   if (out.period_samples > kSlowest) return {};
-  out.repeats = memory.said > 1.0 && memory.said <= kSlowest;
-  out.age_samples = std::min(memory.said, kSlowest) - 0.5;
+  out.repeats = memory.run_samples > 1.0 && memory.run_samples <= kSlowest;
+  out.age_samples = std::min(memory.run_samples, kSlowest) - 0.5;
   out.change = out.repeats ? memory.now.change : reading - memory.reading;
   return out;
 }
 
 }  // namespace
 
-Eigen::Vector3d HeldReading::stale() const {
+Eigen::Vector3d RepeatedReading::stale() const {
   return behind_samples() / period_samples * change;
 }
 
-void HoldWatch::observe(const ImuSample& sample, bool clipped, State& state) const {
+void RepeatDetector::observe(const ImuSample& sample, bool clipped, State& state) const {
   const bool moves = !clipped && sample.angular_velocity_rad_s.norm() >= kMoving_rad_s;
   for (const Triad triad : {Triad::gyro, Triad::accelerometer}) {
     Memory& memory = state.memory[static_cast<std::size_t>(triad)];
     const Eigen::Vector3d& reading = reading_of(sample, triad);
-    const bool again = memory.said > 0.0 && reading == memory.reading;
+    const bool again = memory.run_samples > 0.0 && reading == memory.reading;
     if (moves) {
       const double kept = 1.0 - 1.0 / kMemory;
       memory.moving = kept * memory.moving + 1.0;
       memory.repeated = kept * memory.repeated + (again ? 1.0 : 0.0);
     }
-    memory.said = again ? memory.said + 1.0 : 1.0;
-    memory.now = held_reading(memory, reading);
+    memory.run_samples = again ? memory.run_samples + 1.0 : 1.0;
+    memory.now = repeated_reading(memory, reading);
     memory.reading = reading;
   }
 }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // A gyro that is slower than its log: its readings are means over its own period, and old when they are said.
-#include "tumble/angular_velocity/detail/held_rates.hpp"
+#include "tumble/angular_velocity/detail/interpolated_rates.hpp"
 
 #include <gtest/gtest.h>
 
@@ -37,9 +37,9 @@ struct Bent {
       sample.time_ns = static_cast<TimeNs>(k) * 10'000'000;
       const double taken_s = kPeriod_s * (static_cast<double>(k - said) - 0.5);
       sample.angular_velocity_rad_s.x() = mean(taken_s, kPeriod_s * static_cast<double>(period));
-      out[k].repeats = out[k].held.repeats = said > 0;
-      out[k].held.age_samples = static_cast<double>(said) + 0.5;
-      out[k].held.period_samples = static_cast<double>(period);
+      out[k].repeats = out[k].repeated.repeats = said > 0;
+      out[k].repeated.age_samples = static_cast<double>(said) + 0.5;
+      out[k].repeated.period_samples = static_cast<double>(period);
     }
     return out;
   }
@@ -72,7 +72,7 @@ TEST(HeldRates, NothingIsSaidWithoutBothReadings) {
   EXPECT_TRUE(rate_between_readings(window, 10, kPeriod_s).has_value());
   for (std::size_t k = 12; k < 15; ++k) window[k].observation.clipping.gyro = 2;
   EXPECT_FALSE(rate_between_readings(window, 10, kPeriod_s).has_value());  // 12 is the first at or after it
-  for (RateStreamKnot& knot : window) knot.repeats = false, knot.held = {};
+  for (RateStreamKnot& knot : window) knot.repeats = false, knot.repeated = {};
   EXPECT_FALSE(rate_between_readings(window, 6, kPeriod_s).has_value());  // each sample has its own
 }
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "belief.hpp"
+#include "state_estimate.hpp"
 
 #include "../common/symmetric.hpp"
 #include "tumble/common/so3.hpp"
@@ -11,14 +11,14 @@ using Matrix = Registration::Matrix;
 
 /// The map is defined by the lidar's first pose, which is exact by definition. A mounting error is therefore an error
 /// of the IMU's pose and of gravity in the map: mapping.md (R54), (R55).
-Belief belief_at_start(const LidarInertialOdometry::Params& params, const MotionState& levelled) {
+StateEstimate estimate_at_start(const LidarInertialOdometry::Params& params, const MotionState& levelled) {
   namespace u = unknowns;
-  Belief belief;
-  SweepCalibration& calibration = belief.mean.calibration;
+  StateEstimate state_estimate;
+  SweepCalibration& calibration = state_estimate.mean.calibration;
   calibration.T_IL = params.T_IL;
   calibration.time_offset_s = 0.0;  // the stated offset is already applied to the stamps
   calibration.gravity_W_m_s2 = Eigen::Vector3d(0.0, 0.0, -params.expert.gravity_m_s2);
-  Matrix& P = belief.weight;
+  Matrix& P = state_estimate.weight;
   u::variances(P, u::mounting_rotation).setConstant(params.mount_sigma_rad * params.mount_sigma_rad);
   u::variances(P, u::mounting_translation).setConstant(params.mount_sigma_m * params.mount_sigma_m);
   u::variances(P, u::clock).setConstant(params.time_offset_sigma_s * params.time_offset_sigma_s);
@@ -40,10 +40,10 @@ Belief belief_at_start(const LidarInertialOdometry::Params& params, const Motion
     u::block(P, u::motion, u::gravity) = by_mounting * mounting * gravity_by_mounting.transpose();
   }
   u::block(P, u::calibration, u::motion) = u::block(P, u::motion, u::calibration).transpose();
-  belief.mean.state = levelled;
-  belief.mean.state.covariance = u::block(P, u::motion);
-  belief.error = P;
-  return belief;
+  state_estimate.mean.state = levelled;
+  state_estimate.mean.state.covariance = u::block(P, u::motion);
+  state_estimate.error = P;
+  return state_estimate;
 }
 
 /// mapping.md (R11), of all unknowns.
@@ -72,8 +72,8 @@ Matrix pose_and_mounting(const Matrix& F, const Matrix& errors) {
 }
 
 /// mapping.md (R53).
-void at_end(const Belief& at_start, const SweepTrajectory& trajectory, const Matrix& end_by_start, TimeNs end_ns,
-            Belief& end) {
+void at_end(const StateEstimate& at_start, const SweepTrajectory& trajectory, const Matrix& end_by_start, TimeNs end_ns,
+            StateEstimate& end) {
   end.mean = at_start.mean;
   sandwich(end_by_start, at_start.weight, end.weight);
   sandwich(end_by_start, at_start.error, end.error);

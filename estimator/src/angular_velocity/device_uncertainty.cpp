@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "tumble/angular_velocity/detail/device_doubt.hpp"
+#include "tumble/angular_velocity/detail/device_uncertainty.hpp"
 
 #include <Eigen/Cholesky>
 #include <algorithm>
@@ -15,36 +15,36 @@ using Vector = SensorErrors::Vector;
 
 // Weight of the evidence for the existence of errors, ten times that for their values. With full weight and an
 // uncertain calibration, half of the devices that match their data sheet would be classified as uncalibrated.
-constexpr double kDoubtBelievedOfOdds = 0.3;
+constexpr double kOddsEvidenceWeight = 0.3;
 
 // I + share U L U, L symmetrised
 void set_system(const SensorErrorEvidence& evidence, const Vector& deviation, double share, Matrix& system) {
   for (int j = 0; j < SensorErrors::kSize; ++j) {
     for (int i = 0; i < SensorErrors::kSize; ++i) {
-      const double told = 0.5 * (evidence.information(i, j) + evidence.information(j, i));
-      system(i, j) = (i == j ? 1.0 : 0.0) + share * deviation[i] * deviation[j] * told;
+      const double system_evidence = 0.5 * (evidence.information(i, j) + evidence.information(j, i));
+      system(i, j) = (i == j ? 1.0 : 0.0) + share * deviation[i] * deviation[j] * system_evidence;
     }
   }
 }
 
 // rate_stream.md (R102); NaN if the evidence is indefinite
 double log_odds(const SensorErrorEvidence& evidence, const Vector& deviation, Matrix& system) {
-  set_system(evidence, deviation, kDoubtBelievedOfOdds, system);
+  set_system(evidence, deviation, kOddsEvidenceWeight, system);
   const Eigen::LLT<Eigen::Ref<Matrix>> factor(system);
   if (factor.info() != Eigen::Success) return std::numeric_limits<double>::quiet_NaN();
-  const Vector z = kDoubtBelievedOfOdds * deviation.cwiseProduct(evidence.gradient);
+  const Vector z = kOddsEvidenceWeight * deviation.cwiseProduct(evidence.gradient);
   return 0.5 * z.dot(factor.solve(z)) - system.diagonal().array().log().sum();
 }
 
 // rate_stream.md (R102): cov_i + m_i m_i' of one device; false if the evidence is indefinite
-bool about_corrected(const SensorErrorEvidence& evidence, const Vector& deviation, DeviceDoubt::Work& work) {
-  constexpr int kRest = SensorErrors::kSize - SensorErrors::kFelt;
-  constexpr double kBelieved = DeviceDoubt::kBelieved;
-  set_system(evidence, deviation, kBelieved, work.system);
+bool about_corrected(const SensorErrorEvidence& evidence, const Vector& deviation, DeviceUncertainty::Work& work) {
+  constexpr int kRest = SensorErrors::kSize - SensorErrors::kGSensitivity;
+  constexpr double kEvidenceWeight = DeviceUncertainty::kEvidenceWeight;
+  set_system(evidence, deviation, kEvidenceWeight, work.system);
   // scale and misalignment are not corrected, because errors of the flight model look like them
   Vector mean = Vector::Zero();
   const Eigen::Matrix<double, kRest, kRest> rest = work.system.bottomRightCorner<kRest, kRest>();
-  mean.tail<kRest>() = rest.llt().solve(kBelieved * deviation.cwiseProduct(evidence.gradient).tail<kRest>());
+  mean.tail<kRest>() = rest.llt().solve(kEvidenceWeight * deviation.cwiseProduct(evidence.gradient).tail<kRest>());
   mean = deviation.cwiseProduct(mean).eval();
   const Eigen::LLT<Eigen::Ref<Matrix>> factor(work.system);
   if (factor.info() != Eigen::Success) return false;
@@ -58,33 +58,35 @@ bool about_corrected(const SensorErrorEvidence& evidence, const Vector& deviatio
 
 }  // namespace
 
-DeviceDoubt::DeviceDoubt(const SensorErrorSizes& sizes, double uncalibrated)
+DeviceUncertainty::DeviceUncertainty(const SensorErrorSizes& sizes, double uncalibrated)
     : sheet_(error_deviations(sizes, 0.0)), unknown_(error_deviations(sizes, 1.0)), uncalibrated_(uncalibrated) {}
 
-void DeviceDoubt::forget(Open& open) const {
-  open.unlike = uncalibrated_;
-  open.covariance = ((1.0 - uncalibrated_) * sheet_.cwiseAbs2() + uncalibrated_ * unknown_.cwiseAbs2()).asDiagonal();
+void DeviceUncertainty::reset(Posterior& posterior) const {
+  posterior.unlike = uncalibrated_;
+  posterior.covariance =
+      ((1.0 - uncalibrated_) * sheet_.cwiseAbs2() + uncalibrated_ * unknown_.cwiseAbs2()).asDiagonal();
 }
 
-void DeviceDoubt::ask(const SensorErrorEvidence& evidence, Work& work, Open& open, bool unlike_sheet) const {
+void DeviceUncertainty::update(const SensorErrorEvidence& evidence, Work& work, Posterior& posterior,
+                               bool unlike_sheet) const {
   if (unlike_sheet) {
     if (!about_corrected(evidence, unknown_, work)) work.about_corrected = unknown_.cwiseAbs2().asDiagonal();
-    open.covariance = work.about_corrected;
-    open.unlike = 1.0;
+    posterior.covariance = work.about_corrected;
+    posterior.unlike = 1.0;
     return;
   }
   const double odds = std::log(uncalibrated_ / (1.0 - uncalibrated_)) + log_odds(evidence, unknown_, work.system) -
                       log_odds(evidence, sheet_, work.system);
   const double unlike = 1.0 / (1.0 + std::exp(-odds));
   bool known = std::isfinite(unlike) && about_corrected(evidence, sheet_, work);
-  if (known) open.covariance = (1.0 - unlike) * work.about_corrected;
+  if (known) posterior.covariance = (1.0 - unlike) * work.about_corrected;
   known = known && about_corrected(evidence, unknown_, work);
-  if (!known) return forget(open);
-  open.covariance += unlike * work.about_corrected;
-  open.unlike = unlike;
+  if (!known) return reset(posterior);
+  posterior.covariance += unlike * work.about_corrected;
+  posterior.unlike = unlike;
 }
 
-double DeviceDoubt::odds_of_sheet(double delay_s, double sigma_s) const {
+double DeviceUncertainty::odds_of_sheet(double delay_s, double sigma_s) const {
   const auto variance = [&](const Vector& deviation) {
     return sigma_s * sigma_s + deviation[SensorErrors::kDelay] * deviation[SensorErrors::kDelay];
   };
@@ -93,23 +95,25 @@ double DeviceDoubt::odds_of_sheet(double delay_s, double sigma_s) const {
   return (1.0 - uncalibrated_) / uncalibrated_ * std::exp(log_odds);
 }
 
-double DeviceDoubt::further_delay_s(const SensorErrorEvidence& evidence, double reach_s) const {
-  constexpr int kFirst = SensorErrors::kFelt, kRest = SensorErrors::kSize - kFirst, kAt = SensorErrors::kDelay - kFirst;
+double DeviceUncertainty::further_delay_s(const SensorErrorEvidence& evidence, double reach_s) const {
+  constexpr int kFirst = SensorErrors::kGSensitivity, kRest = SensorErrors::kSize - kFirst,
+                kAt = SensorErrors::kDelay - kFirst;
   using Rest = Eigen::Matrix<double, kRest, kRest>;
   Eigen::Matrix<double, kRest, 1> deviation = unknown_.tail<kRest>();
   deviation[kAt] = reach_s;
-  const Rest told = evidence.information.bottomRightCorner<kRest, kRest>(), both = 0.5 * (told + told.transpose());
-  const Rest system = Rest::Identity() + deviation.asDiagonal() * (kBelieved * both) * deviation.asDiagonal();
+  const Rest system_evidence = evidence.information.bottomRightCorner<kRest, kRest>(),
+             both = 0.5 * (system_evidence + system_evidence.transpose());
+  const Rest system = Rest::Identity() + deviation.asDiagonal() * (kEvidenceWeight * both) * deviation.asDiagonal();
   const Eigen::LLT<Rest> factor(system);
   if (factor.info() != Eigen::Success) return 0.0;
-  const Eigen::Matrix<double, kRest, 1> z = kBelieved * deviation.cwiseProduct(evidence.gradient.tail<kRest>());
+  const Eigen::Matrix<double, kRest, 1> z = kEvidenceWeight * deviation.cwiseProduct(evidence.gradient.tail<kRest>());
   const double out = reach_s * factor.solve(z)[kAt];
   return std::isfinite(out) ? std::clamp(out, -reach_s, reach_s) : 0.0;
 }
 
-double DeviceDoubt::shared_delay_s2(const Open& open) const {
+double DeviceUncertainty::common_delay_s2(const Posterior& posterior) const {
   const double delay_s = unknown_[SensorErrors::kDelay];
-  return delay_s > sheet_[SensorErrors::kDelay] ? 0.5 * open.unlike * delay_s * delay_s : 0.0;
+  return delay_s > sheet_[SensorErrors::kDelay] ? 0.5 * posterior.unlike * delay_s * delay_s : 0.0;
 }
 
 }  // namespace tumble

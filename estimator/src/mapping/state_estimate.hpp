@@ -8,7 +8,7 @@
 namespace tumble::mapping {
 
 /// Estimate of the unknowns at one time. The two covariances are C and E of mapping.md (section 6).
-struct Belief {
+struct StateEstimate {
   Registration::Estimate mean;  ///< the covariance of its state is the motion block of `weight`
   /// Covariance for weighting the mean against the next sweep. Points count less than their information, for robustness
   /// to outliers.
@@ -18,7 +18,7 @@ struct Belief {
 };
 
 /// Returns the estimate of an IMU levelled at rest, in a map defined by the lidar's pose: mapping.md (R54), (R55).
-Belief belief_at_start(const LidarInertialOdometry::Params& params, const MotionState& levelled);
+StateEstimate estimate_at_start(const LidarInertialOdometry::Params& params, const MotionState& levelled);
 
 /// Returns the derivative of the unknowns, with the motion at `t_s` after the start, by the unknowns at the start.
 Registration::Matrix unknowns_at(const SweepTrajectory& trajectory, double t_s);
@@ -32,8 +32,8 @@ void sandwich(const Registration::Matrix& F, const Registration::Matrix& P, Regi
 Registration::Matrix pose_and_mounting(const Registration::Matrix& F, const Registration::Matrix& errors);
 
 /// Propagates to the end of the segment, at `end_ns`; the trajectory is that of the mean.
-void at_end(const Belief& at_start, const SweepTrajectory& trajectory, const Registration::Matrix& end_by_start,
-            TimeNs end_ns, Belief& end);
+void at_end(const StateEstimate& at_start, const SweepTrajectory& trajectory, const Registration::Matrix& end_by_start,
+            TimeNs end_ns, StateEstimate& end);
 
 /// Returns the derivative of the IMU's pose error by mounting errors for an exact lidar pose, at this attitude of the
 /// IMU: K of mapping.md (R54).

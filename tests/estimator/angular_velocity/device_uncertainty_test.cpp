@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // What a stream holds open of a device's errors: the mixture against closed forms, and a RateStream of a device whose
 // errors it does not correct for and may not be silent about.
-#include "tumble/angular_velocity/detail/device_doubt.hpp"
+#include "tumble/angular_velocity/detail/device_uncertainty.hpp"
 
 #include <gtest/gtest.h>
 
@@ -26,70 +26,72 @@ SensorErrorEvidence delay_of(double delay_s, double sigma_s) {
   return out;
 }
 
-DeviceDoubt::Open open_by(const DeviceDoubt& doubt, const SensorErrorEvidence& evidence) {
-  DeviceDoubt::Work work;
-  DeviceDoubt::Open out;
-  doubt.ask(evidence, work, out);
+DeviceUncertainty::Posterior posterior_by(const DeviceUncertainty& device, const SensorErrorEvidence& evidence) {
+  DeviceUncertainty::Work work;
+  DeviceUncertainty::Posterior out;
+  device.update(evidence, work, out);
   return out;
 }
 
-TEST(DeviceDoubt, WithoutEvidenceIsTheMixtureAssumed) {
+TEST(DeviceUncertainty, WithoutEvidenceIsTheMixtureAssumed) {
   const SensorErrorSizes sizes;
-  const DeviceDoubt::Open open = open_by(DeviceDoubt(sizes, 0.3), {});
-  EXPECT_NEAR(open.unlike, 0.3, 1e-12);
+  const DeviceUncertainty::Posterior posterior = posterior_by(DeviceUncertainty(sizes, 0.3), {});
+  EXPECT_NEAR(posterior.unlike, 0.3, 1e-12);
   const SensorErrors::Vector sheet = error_deviations(sizes, 0.0), unknown = error_deviations(sizes, 1.0);
   const SensorErrors::Vector expected = 0.7 * sheet.cwiseAbs2() + 0.3 * unknown.cwiseAbs2();
-  EXPECT_LT((open.covariance.diagonal() - expected).cwiseQuotient(expected).cwiseAbs().maxCoeff(), 1e-12);
-  EXPECT_EQ((open.covariance - SensorErrors::Matrix(open.covariance.diagonal().asDiagonal())).norm(), 0.0);
+  EXPECT_LT((posterior.covariance.diagonal() - expected).cwiseQuotient(expected).cwiseAbs().maxCoeff(), 1e-12);
+  EXPECT_EQ((posterior.covariance - SensorErrors::Matrix(posterior.covariance.diagonal().asDiagonal())).norm(), 0.0);
 }
 
 // One number alone: odds, mean and variance by hand. Of what samples say of the odds three tenths are believed, of
 // where the errors lie three hundredths.
-TEST(DeviceDoubt, IsBayesOverTwoDevices) {
+TEST(DeviceUncertainty, IsBayesOverTwoDevices) {
   const SensorErrorSizes sizes;
   const double delay_s = 1.5e-4, sigma_s = 1e-4;
-  const DeviceDoubt::Open open = open_by(DeviceDoubt(sizes, 0.3), delay_of(delay_s, sigma_s));
+  const DeviceUncertainty::Posterior posterior =
+      posterior_by(DeviceUncertainty(sizes, 0.3), delay_of(delay_s, sigma_s));
   const double of_odds_s = sigma_s / std::sqrt(0.3), believed_s = sigma_s / std::sqrt(0.03);
   const auto density = [&](double size) {
     const double variance = size * size + of_odds_s * of_odds_s;
     return std::exp(-0.5 * delay_s * delay_s / variance) / std::sqrt(variance);
   };
-  const double of_sheet = 0.7 * density(sizes.delay_s), of_unknown = 0.3 * density(sizes.delay_unknown_s);
+  const double of_sheet = 0.7 * density(sizes.delay_s), of_unknown = 0.3 * density(sizes.delay_uncalibrated_s);
   const double unlike = of_unknown / (of_sheet + of_unknown);
-  EXPECT_NEAR(open.unlike, unlike, 1e-9);
+  EXPECT_NEAR(posterior.unlike, unlike, 1e-9);
   const auto about_nil = [&](double size) {
     const double told = 1.0 / (believed_s * believed_s), mean = delay_s * told / (told + 1.0 / (size * size));
     return 1.0 / (told + 1.0 / (size * size)) + mean * mean;
   };
-  const double expected = (1.0 - unlike) * about_nil(sizes.delay_s) + unlike * about_nil(sizes.delay_unknown_s);
-  EXPECT_NEAR(open.covariance(kDelay, kDelay), expected, 1e-9 * expected);
+  const double expected = (1.0 - unlike) * about_nil(sizes.delay_s) + unlike * about_nil(sizes.delay_uncalibrated_s);
+  EXPECT_NEAR(posterior.covariance(kDelay, kDelay), expected, 1e-9 * expected);
 }
 
-TEST(DeviceDoubt, APlainDelayLeavesAllOpenAndNoneTakesTheSheetsWord) {
-  const DeviceDoubt doubt({}, 0.3);
-  const DeviceDoubt::Open late = open_by(doubt, delay_of(8e-3, 1e-4)), in_time = open_by(doubt, delay_of(0.0, 1e-5));
+TEST(DeviceUncertainty, APlainDelayLeavesAllOpenAndNoneTakesTheSheetsWord) {
+  const DeviceUncertainty device({}, 0.3);
+  const DeviceUncertainty::Posterior late = posterior_by(device, delay_of(8e-3, 1e-4)),
+                                     in_time = posterior_by(device, delay_of(0.0, 1e-5));
   EXPECT_GT(late.unlike, 0.999);
   EXPECT_GT(late.covariance(kDelay, kDelay), 8e-3 * 8e-3 * 0.9);
   EXPECT_GT(late.covariance(0, 0), 0.9 * 0.01 * 0.01) << "who states one wrongly states all wrongly";
   EXPECT_LT(in_time.unlike, 0.02);
-  EXPECT_GT(doubt.shared_delay_s2(late), 10.0 * doubt.shared_delay_s2(in_time));
+  EXPECT_GT(device.common_delay_s2(late), 10.0 * device.common_delay_s2(in_time));
 }
 
-TEST(DeviceDoubt, OfNoneThatIsUncalibratedTheSheetIsBelieved) {
+TEST(DeviceUncertainty, OfNoneThatIsUncalibratedTheSheetIsBelieved) {
   const SensorErrorSizes sizes;
-  const DeviceDoubt::Open open = open_by(DeviceDoubt(sizes, 0.0), delay_of(8e-3, 1e-4));
-  EXPECT_EQ(open.unlike, 0.0);
-  EXPECT_LE(open.covariance(0, 0), 1.001 * error_deviations(sizes, 0.0)[0] * error_deviations(sizes, 0.0)[0]);
+  const DeviceUncertainty::Posterior posterior = posterior_by(DeviceUncertainty(sizes, 0.0), delay_of(8e-3, 1e-4));
+  EXPECT_EQ(posterior.unlike, 0.0);
+  EXPECT_LE(posterior.covariance(0, 0), 1.001 * error_deviations(sizes, 0.0)[0] * error_deviations(sizes, 0.0)[0]);
 }
 
-TEST(DeviceDoubt, EvidenceThatIsNoNumberLeavesWhatWasOpen) {
-  const DeviceDoubt doubt({}, 0.3);
+TEST(DeviceUncertainty, EvidenceThatIsNoNumberLeavesWhatWasOpen) {
+  const DeviceUncertainty device({}, 0.3);
   SensorErrorEvidence bad = delay_of(8e-3, 5e-4);
   bad.gradient[0] = std::numeric_limits<double>::quiet_NaN();
-  DeviceDoubt::Open before;
-  doubt.forget(before);
-  EXPECT_EQ(open_by(doubt, bad).covariance, before.covariance);
-  EXPECT_EQ(open_by(doubt, bad).unlike, before.unlike);
+  DeviceUncertainty::Posterior before;
+  device.reset(before);
+  EXPECT_EQ(posterior_by(device, bad).covariance, before.covariance);
+  EXPECT_EQ(posterior_by(device, bad).unlike, before.unlike);
 }
 
 struct Held {
@@ -134,7 +136,7 @@ TEST(RateStreamDevices, OneThatNobodyCalibratedIsNotSilent) {
       recording.samples[k].specific_force_m_s2 = recording.samples[k - 1].specific_force_m_s2;
     add(recording, params, consumer);
     auto sure = params;
-    sure.learnt_errors = std::make_shared<KnownSensorErrors>();
+    sure.calibrated_errors = std::make_shared<KnownSensorErrors>();
     add(recording, sure, believed);
   }
   ASSERT_GT(consumer.all, 5000u);
@@ -146,7 +148,7 @@ TEST(RateStreamDevices, OneThatNobodyCalibratedIsNotSilent) {
 TEST(RateStreamDevices, WhatIsNoCovarianceIsRefused) {
   auto params = with_lever_arm<RateStream::Params>();
   const auto learnt = std::make_shared<KnownSensorErrors>();
-  params.learnt_errors = learnt;
+  params.calibrated_errors = learnt;
   EXPECT_NO_THROW(RateStream{params});
   learnt->covariance(0, 0) = -0.01;
   EXPECT_THROW(RateStream{params}, InvalidParams);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "tumble/angular_velocity/detail/held_rates.hpp"
+#include "tumble/angular_velocity/detail/interpolated_rates.hpp"
 
 #include <algorithm>
 
@@ -28,14 +28,14 @@ Vector3d slope(const OwnReading& a, const OwnReading& b) {
 }
 
 // Interpolates between a and b, using z before and c after them if usable.
-std::optional<HeldRate> between(const OwnReading& z, const OwnReading& a, const OwnReading& b, const OwnReading& c,
-                                double time_s, double moment_s) {
+std::optional<InterpolatedRate> between(const OwnReading& z, const OwnReading& a, const OwnReading& b,
+                                        const OwnReading& c, double time_s, double moment_s) {
   const double span_s = b.time_s - a.time_s, u = (time_s - a.time_s) / span_s, v = 1.0 - u;
   if (!a.read || !b.read || !(span_s > 0.0) || u < 0.0 || v < 0.0) return std::nullopt;
   const Vector3d chord = slope(a, b);
   const Vector3d slope_a = z.read && z.time_s < a.time_s ? slope(z, b) : chord;
   const Vector3d slope_b = c.read && c.time_s > b.time_s ? slope(a, c) : chord;
-  HeldRate out;
+  InterpolatedRate out;
   out.rate_rad_s = v * v * (1.0 + 2.0 * u) * a.rate_rad_s + u * u * (3.0 - 2.0 * u) * b.rate_rad_s +
                    span_s * u * v * (v * slope_a - u * slope_b);
   // uncertain: the time of either reading, and the curvature that the mean over a window removes
@@ -50,21 +50,22 @@ std::size_t new_reading(std::span<const RateStreamKnot> window, std::size_t i) {
   return i;
 }
 
-bool in_time(const std::optional<HeldReadings>& held, double sample_s) {
-  return held && held->steady() && held->period_s <= sample_hold::kSlowest * sample_s;
+bool in_time(const std::optional<RepeatedReadings>& repeated, double sample_s) {
+  return repeated && repeated->steady() && repeated->period_s <= sample_hold::kSlowest * sample_s;
 }
 
 }  // namespace
 
-std::optional<HeldRate> rate_between_readings(std::span<const RateStreamKnot> window, std::size_t k, double period_s) {
-  if (!window[k].held.held()) return std::nullopt;
+std::optional<InterpolatedRate> rate_between_readings(std::span<const RateStreamKnot> window, std::size_t k,
+                                                      double period_s) {
+  if (!window[k].repeated.is_slower_than_log()) return std::nullopt;
   const auto at = [&](std::size_t i) {
     if (i >= window.size()) return OwnReading{};
     const RateStreamKnot& knot = window[i];
     const RateObservation& o = knot.observation;
     const double stamp_s = seconds(o.sample.time_ns - window[k].observation.sample.time_ns);
-    return OwnReading{stamp_s - knot.held.behind_samples() * period_s, o.sample.angular_velocity_rad_s,
-                      knot.held.held() && !o.by_elements() && o.read_in_part() == 0};
+    return OwnReading{stamp_s - knot.repeated.behind_samples() * period_s, o.sample.angular_velocity_rad_s,
+                      knot.repeated.is_slower_than_log() && !o.by_elements() && o.read_in_part() == 0};
   };
   std::size_t b = new_reading(window, k + 1);
   while (b < window.size() && at(b).time_s < 0.0) b = new_reading(window, b + 1);
@@ -75,23 +76,23 @@ std::optional<HeldRate> rate_between_readings(std::span<const RateStreamKnot> wi
                  kTaken * period_s);
 }
 
-std::vector<std::optional<HeldRate>> rates_between_readings(std::span<const ImuSample> samples,
-                                                            std::span<const std::uint8_t> hidden) {
-  return rates_between_readings(samples, hidden, find_held(samples, Triad::gyro));
+std::vector<std::optional<InterpolatedRate>> rates_between_readings(std::span<const ImuSample> samples,
+                                                                    std::span<const std::uint8_t> hidden) {
+  return rates_between_readings(samples, hidden, find_repeated(samples, Triad::gyro));
 }
 
-std::vector<std::optional<HeldRate>> rates_between_readings(std::span<const ImuSample> samples,
-                                                            std::span<const std::uint8_t> hidden,
-                                                            const std::optional<HeldReadings>& held) {
+std::vector<std::optional<InterpolatedRate>> rates_between_readings(std::span<const ImuSample> samples,
+                                                                    std::span<const std::uint8_t> hidden,
+                                                                    const std::optional<RepeatedReadings>& repeated) {
   const double sample_s = median_period_s(samples);
-  if (!in_time(held, sample_s)) return {};
+  if (!in_time(repeated, sample_s)) return {};
   std::vector<OwnReading> own;
   for (std::size_t k = 0; k < samples.size(); ++k) {
-    if (held->repeats[k]) continue;
+    if (repeated->repeats[k]) continue;
     const double stamp_s = seconds(samples[k].time_ns - samples[0].time_ns);
-    own.push_back({stamp_s - held->behind_s(k), samples[k].angular_velocity_rad_s, hidden[k] == 0});
+    own.push_back({stamp_s - repeated->behind_s(k), samples[k].angular_velocity_rad_s, hidden[k] == 0});
   }
-  std::vector<std::optional<HeldRate>> out(samples.size());
+  std::vector<std::optional<InterpolatedRate>> out(samples.size());
   const double moment_s = kTakenByClock * sample_s;
   std::size_t b = 1;
   for (std::size_t k = 0; k < samples.size(); ++k) {
@@ -105,22 +106,22 @@ std::vector<std::optional<HeldRate>> rates_between_readings(std::span<const ImuS
 }
 
 std::vector<Vector3d> forces_between_readings(std::span<const ImuSample> samples) {
-  const std::optional<HeldReadings> held = find_held(samples, Triad::accelerometer);
-  if (!in_time(held, median_period_s(samples))) return {};
+  const std::optional<RepeatedReadings> repeated = find_repeated(samples, Triad::accelerometer);
+  if (!in_time(repeated, median_period_s(samples))) return {};
   const auto stamp_s = [&](std::size_t k) { return seconds(samples[k].time_ns - samples[0].time_ns); };
   std::vector<std::size_t> own;
   for (std::size_t k = 0; k < samples.size(); ++k) {
-    if (!held->repeats[k]) own.push_back(k);
+    if (!repeated->repeats[k]) own.push_back(k);
   }
   std::vector<Vector3d> out(samples.size());
   std::size_t b = 0;
   for (std::size_t k = 0; k < samples.size(); ++k) {
-    const auto told_s = [&](std::size_t i) { return stamp_s(own[i]) - held->behind_s(own[i]); };
-    while (b < own.size() && told_s(b) < stamp_s(k)) ++b;
+    const auto taken_s = [&](std::size_t i) { return stamp_s(own[i]) - repeated->behind_s(own[i]); };
+    while (b < own.size() && taken_s(b) < stamp_s(k)) ++b;
     out[k] = samples[k].specific_force_m_s2;
     if (b == 0 || b == own.size()) continue;
-    const double span_s = told_s(b) - told_s(b - 1);
-    const double u = span_s > 0.0 ? (stamp_s(k) - told_s(b - 1)) / span_s : 0.0;
+    const double span_s = taken_s(b) - taken_s(b - 1);
+    const double u = span_s > 0.0 ? (stamp_s(k) - taken_s(b - 1)) / span_s : 0.0;
     out[k] = (1.0 - u) * samples[own[b - 1]].specific_force_m_s2 + u * samples[own[b]].specific_force_m_s2;
   }
   return out;

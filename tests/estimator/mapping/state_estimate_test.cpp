@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Beliefs and predictions against closed forms, and against the nonlinear relations that they are first order of.
-#include "estimator/src/mapping/belief.hpp"
+#include "estimator/src/mapping/state_estimate.hpp"
 
 #include <gtest/gtest.h>
 
@@ -32,28 +32,28 @@ std::vector<MotionSample> pushed() {
   return samples;
 }
 
-SweepTrajectory along(const Belief& belief, const std::vector<MotionSample>& samples, TimeNs end_ns) {
+SweepTrajectory along(const StateEstimate& state_estimate, const std::vector<MotionSample>& samples, TimeNs end_ns) {
   SweepTrajectory trajectory;
-  const Registration::Estimate& mean = belief.mean;
+  const Registration::Estimate& mean = state_estimate.mean;
   EXPECT_TRUE(trajectory.build(mean.state, samples, end_ns, mean.calibration.gravity_W_m_s2, mean.deficit_rad_s).ok());
   return trajectory;
 }
 
-Belief uncertain() {
-  Belief belief;
-  belief.mean.state.v_WI_m_s = {1.0, 2.0, 3.0};
-  u::variances(belief.weight, u::position).setConstant(0.01);
-  u::variances(belief.weight, u::attitude).setConstant(0.04);
-  u::variances(belief.weight, u::velocity).setConstant(0.09);
-  u::variances(belief.weight, u::gravity).setConstant(0.16);
-  belief.error = 4.0 * belief.weight;
-  return belief;
+StateEstimate uncertain() {
+  StateEstimate state_estimate;
+  state_estimate.mean.state.v_WI_m_s = {1.0, 2.0, 3.0};
+  u::variances(state_estimate.weight, u::position).setConstant(0.01);
+  u::variances(state_estimate.weight, u::attitude).setConstant(0.04);
+  u::variances(state_estimate.weight, u::velocity).setConstant(0.09);
+  u::variances(state_estimate.weight, u::gravity).setConstant(0.16);
+  state_estimate.error = 4.0 * state_estimate.weight;
+  return state_estimate;
 }
 
-Belief carried(const Belief& belief, const std::vector<MotionSample>& samples, TimeNs end_ns) {
-  const SweepTrajectory trajectory = along(belief, samples, end_ns);
-  Belief end;
-  at_end(belief, trajectory, unknowns_at(trajectory, trajectory.duration_s()), end_ns, end);
+StateEstimate carried(const StateEstimate& state_estimate, const std::vector<MotionSample>& samples, TimeNs end_ns) {
+  const SweepTrajectory trajectory = along(state_estimate, samples, end_ns);
+  StateEstimate end;
+  at_end(state_estimate, trajectory, unknowns_at(trajectory, trajectory.duration_s()), end_ns, end);
   return end;
 }
 
@@ -91,9 +91,9 @@ TEST(Unknowns, BlocksCoverEachUnknownOnce) {
   EXPECT_EQ(estimate.deficit_rad_s(1, 2), 0.5);
 }
 
-TEST(Belief, AtTheEndOfAPushIsTheClosedForm) {
-  const Belief start = uncertain();
-  const Belief end = carried(start, pushed(), 500'000'000);
+TEST(StateEstimate, AtTheEndOfAPushIsTheClosedForm) {
+  const StateEstimate start = uncertain();
+  const StateEstimate end = carried(start, pushed(), 500'000'000);
   const double t = kSegment_s, g = -9.80665;
   const Eigen::Vector3d force(kForce_m_s2, 0.0, g);
   EXPECT_LT((end.mean.state.p_WI_m - (start.mean.state.v_WI_m_s * t + 0.5 * t * t * force)).norm(), 1e-12);
@@ -112,13 +112,13 @@ TEST(Belief, AtTheEndOfAPushIsTheClosedForm) {
   EXPECT_GT((end.weight - start.weight).norm(), 0.01);
 }
 
-TEST(Belief, OverTwoHalvesIsThatOverTheWhole) {
+TEST(StateEstimate, OverTwoHalvesIsThatOverTheWhole) {
   const std::vector<MotionSample> samples = pushed();
-  const Belief start = uncertain();
-  const Belief whole = carried(start, samples, 500'000'000);
-  const Belief half = carried(start, samples, 200'000'000);
+  const StateEstimate start = uncertain();
+  const StateEstimate whole = carried(start, samples, 500'000'000);
+  const StateEstimate half = carried(start, samples, 200'000'000);
   const std::vector<MotionSample> rest(samples.begin() + 20, samples.end());
-  const Belief both = carried(half, rest, 500'000'000);
+  const StateEstimate both = carried(half, rest, 500'000'000);
   EXPECT_LT((both.weight - whole.weight).norm(), 1e-12);
   EXPECT_LT(both.mean.minus(whole.mean).norm(), 1e-12);
   EXPECT_GT((half.weight - whole.weight).norm(), 1e-3);
@@ -139,7 +139,7 @@ Eigen::Matrix<double, 9, 1> displaced(const Eigen::Isometry3d& T_WI, const Eigen
   return out;
 }
 
-TEST(Belief, AtTheStartHangsOnTheLidar) {
+TEST(StateEstimate, AtTheStartHangsOnTheLidar) {
   LidarInertialOdometry::Params params;
   params.T_IL.translation() = Eigen::Vector3d(0.3, -0.2, 0.5);
   params.T_IL.linear() = so3::exp({0.3, 0.8, -0.4}).toRotationMatrix();
@@ -150,7 +150,7 @@ TEST(Belief, AtTheStartHangsOnTheLidar) {
   MotionState levelled;
   levelled.q_WI = so3::exp({0.2, -0.5, 0.0});
   levelled.covariance.diagonal().setConstant(0.001);
-  const Belief belief = belief_at_start(params, levelled);
+  const StateEstimate state_estimate = estimate_at_start(params, levelled);
 
   Eigen::Isometry3d T_WI = Eigen::Isometry3d::Identity();
   T_WI.linear() = levelled.q_WI.toRotationMatrix();
@@ -171,11 +171,11 @@ TEST(Belief, AtTheStartHangsOnTheLidar) {
   u::variances(expected, u::motion).array() += 0.001;
   u::variances(expected, u::clock).array() += 9e-6;
   u::variances(expected, u::gravity) += Eigen::Vector3d(0.0025, 0.0025, 0.000025);
-  EXPECT_LT((belief.weight - expected).cwiseAbs().maxCoeff(), 1e-9);
-  EXPECT_EQ(belief.weight, belief.error);
+  EXPECT_LT((state_estimate.weight - expected).cwiseAbs().maxCoeff(), 1e-9);
+  EXPECT_EQ(state_estimate.weight, state_estimate.error);
 
   params.T_IL.translation().x() += 0.1;  // another lever is another covariance
-  EXPECT_GT((belief_at_start(params, levelled).weight - expected).cwiseAbs().maxCoeff(), 1e-5);
+  EXPECT_GT((estimate_at_start(params, levelled).weight - expected).cwiseAbs().maxCoeff(), 1e-5);
 }
 
 TEST(Prediction, AKnownVelocityTurnsWithTheAttitude) {

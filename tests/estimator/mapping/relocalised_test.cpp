@@ -50,7 +50,7 @@ void find_again(RoomRig& rig, double shift_m) {
 
 constexpr double kElsewhere_m = 0.8;
 
-TEST(FoundAgain, APlaceThatIsNoneIsTakenBackWithWhatItDrew) {
+TEST(Relocalised, APlaceThatIsNoneIsTakenBackWithWhatItDrew) {
   RoomRig rig(true_params());
   find_again(rig, kElsewhere_m);
   ASSERT_NE(rig.report.verdict, SweepVerdict::rejected);
@@ -74,7 +74,7 @@ TEST(FoundAgain, APlaceThatIsNoneIsTakenBackWithWhatItDrew) {
   EXPECT_LT(rig.error_m(), 0.06);
 }
 
-TEST(FoundAgain, OnePlaceThatTwoSweepsBearOutStands) {
+TEST(Relocalised, OnePlaceThatTwoSweepsBearOutStands) {
   RoomRig rig(true_params());
   find_again(rig, kElsewhere_m);
   ASSERT_TRUE(rig.report.unconfirmed);
@@ -92,7 +92,7 @@ TEST(FoundAgain, OnePlaceThatTwoSweepsBearOutStands) {
   EXPECT_GT(rig.error_m(), 0.5);
 }
 
-TEST(FoundAgain, WhereInertiaHasItItIsBelievedAtOnce) {
+TEST(Relocalised, WhereInertiaHasItItIsBelievedAtOnce) {
   RoomRig rig(true_params());
   rig.run(0, kCovered);
   rig.feed_imu(kCovered);
@@ -110,7 +110,7 @@ std::vector<std::byte> bytes(const LidarInertialOdometry& odometry) {
   return out;
 }
 
-TEST(FoundAgain, GoesOnFromASavedStateWithTheSameBits) {
+TEST(Relocalised, GoesOnFromASavedStateWithTheSameBits) {
   RoomRig rig(true_params());
   find_again(rig, kElsewhere_m);
   ASSERT_TRUE(rig.report.unconfirmed);
@@ -160,7 +160,7 @@ void load(const std::vector<std::byte>& saved, LidarInertialOdometry& into) {
 }
 
 // as after a motion of the second opinion that could not be built
-TEST(FoundAgain, ADoubtedPlaceWithoutASecondOpinionIsBorneOutOrLost) {
+TEST(Relocalised, ADoubtedPlaceWithoutASecondOpinionIsBorneOutOrLost) {
   RoomRig rig(true_params());
   find_again(rig, kElsewhere_m);
   ASSERT_TRUE(rig.report.unconfirmed);
@@ -205,17 +205,17 @@ void expect_loads_again(const LidarInertialOdometry& odometry) {
   EXPECT_TRUE(bytes(again) == saved);
 }
 
-TEST(FoundAgain, IsLoadedAgainAfterTheMapWasPruned) {
+TEST(Relocalised, IsLoadedAgainAfterTheMapWasPruned) {
   RoomRig rig(true_params());
   find_again(rig, kElsewhere_m);
   ASSERT_TRUE(rig.report.unconfirmed);
-  const std::vector<std::byte> doubted = bytes(rig.odometry);
+  const std::vector<std::byte> suspect = bytes(rig.odometry);
   const std::size_t with_it = rig.odometry.map().size();
-  const std::uint32_t drawn_from = OpenState(rig.odometry).members->other->drawn_from;
+  const std::uint32_t inserted_from = OpenState(rig.odometry).members->other->inserted_from;
 
   // while the place is doubted nothing is pruned, since what it drew may be taken back
   RoomRig agrees(keeps_little());
-  load(doubted, agrees.odometry);
+  load(suspect, agrees.odometry);
   agrees.feed_imu(kSeesAgain + 1);
   ASSERT_TRUE(agrees.sweep(kSeesAgain + 1, seen_from_elsewhere(agrees, kSeesAgain + 1, kElsewhere_m)).ok());
   ASSERT_TRUE(agrees.report.unconfirmed);
@@ -224,7 +224,7 @@ TEST(FoundAgain, IsLoadedAgainAfterTheMapWasPruned) {
 
   // contradicted: the map is pruned to fewer sweeps than there were before the place
   RoomRig contradicts(keeps_little());
-  load(doubted, contradicts.odometry);
+  load(suspect, contradicts.odometry);
   contradicts.feed_imu(kSeesAgain + 1);
   ASSERT_TRUE(contradicts.sweep(kSeesAgain + 1, of_no_room(contradicts, kSeesAgain + 1)).ok());
   ASSERT_EQ(contradicts.report.verdict, SweepVerdict::rejected);
@@ -235,7 +235,7 @@ TEST(FoundAgain, IsLoadedAgainAfterTheMapWasPruned) {
   }
   const OpenState last(contradicts.odometry);
   EXPECT_TRUE(last.members->other.has_value());
-  EXPECT_LT(last.members->map.sweeps(), drawn_from);
+  EXPECT_LT(last.members->map.sweeps(), inserted_from);
   expect_loads_again(contradicts.odometry);
 }
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "scenarios/methods/rails_told.hpp"
+#include "scenarios/methods/report_rails.hpp"
 
 #include <array>
 #include <cmath>
@@ -12,11 +12,11 @@ namespace {
 
 constexpr std::array<const char*, 3> kAxes = {"x", "y", "z"};
 
-void tell_level(std::size_t j, double level_rad_s, std::map<std::string, double>& health) {
+void report_level(std::size_t j, double level_rad_s, std::map<std::string, double>& health) {
   health[std::string("learnt_gyro_rail_") + kAxes[j] + "_rad_s"] = level_rad_s;
 }
 
-void tell_plane(std::size_t j, const RailPlane& plane, std::map<std::string, double>& health) {
+void report_plane(std::size_t j, const RailPlane& plane, std::map<std::string, double>& health) {
   const std::string axis = kAxes[j], begin = "gyro_rail_";
   const auto sigma = [&plane](Eigen::Index i) { return std::sqrt(plane.covariance(i, i)); };
   health[begin + "samples_" + axis] = plane.samples[0] + plane.samples[1];
@@ -38,23 +38,23 @@ void tell_plane(std::size_t j, const RailPlane& plane, std::map<std::string, dou
 
 }  // namespace
 
-void tell_rails(const KnownRails& rails, std::map<std::string, double>& health) {
+void report_rails(const KnownRails& rails, std::map<std::string, double>& health) {
   const RailPlanes in_use = rails.planes_in_use();
   for (std::size_t j = 0; j < 3; ++j) {
     const double level_rad_s = rails.upright_rails.channels[j].rail;
     if (in_use.element[j]) {
-      tell_level(j, in_use.element[j]->distance_rad_s, health);
+      report_level(j, in_use.element[j]->distance_rad_s, health);
     } else if (level_rad_s > 0.0) {
-      tell_level(j, level_rad_s, health);
+      report_level(j, level_rad_s, health);
     }
-    if (rails.planes.element[j]) tell_plane(j, *rails.planes.element[j], health);
+    if (rails.planes.element[j]) report_plane(j, *rails.planes.element[j], health);
   }
 }
 
-void tell_rails(const RateReport& report, std::map<std::string, double>& health) {
+void report_rails(const RateReport& report, std::map<std::string, double>& health) {
   for (std::size_t j = 0; j < 3; ++j) {
-    if (report.rail_seen[j]) tell_level(j, *report.rail[j], health);
-    if (report.planes.element[j]) tell_plane(j, *report.planes.element[j], health);
+    if (report.rail_observed[j]) report_level(j, *report.rail[j], health);
+    if (report.planes.element[j]) report_plane(j, *report.planes.element[j], health);
   }
 }
 

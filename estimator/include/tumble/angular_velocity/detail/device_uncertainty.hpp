@@ -10,13 +10,13 @@ namespace tumble {
 /// Computes the uncertainty of a device's sensor errors from growing evidence. The prior is a mixture of two devices:
 /// one that matches its data sheet, and one that is uncalibrated (SensorErrorSizes, all sizes together). A stream uses
 /// this class instead of fit_sensor_errors(), which costs more. rate_stream.md (R102), (R103).
-class DeviceDoubt {
+class DeviceUncertainty {
  public:
   /// Weight of the samples' evidence about the errors. Sample errors are correlated, because errors of the flight model
   /// last longer than a sample. Same as in fit_sensor_errors().
-  static constexpr double kBelieved = 0.03;
+  static constexpr double kEvidenceWeight = 0.03;
 
-  struct Open {
+  struct Posterior {
     /// Covariance about the errors for which readings are corrected.
     SensorErrors::Matrix covariance = SensorErrors::Matrix::Zero();
     double unlike = 0.0;  ///< probability that the device does not match its data sheet
@@ -28,11 +28,11 @@ class DeviceDoubt {
   };
 
   /// `uncalibrated`: prior probability of an uncalibrated device.
-  DeviceDoubt(const SensorErrorSizes& sizes, double uncalibrated);
+  DeviceUncertainty(const SensorErrorSizes& sizes, double uncalibrated);
 
-  /// Computes `open` from the evidence. O(1): two systems of 29 unknowns; no allocation. For non-finite evidence,
+  /// Computes `posterior` from the evidence. O(1): two systems of 29 unknowns; no allocation. For non-finite evidence,
   /// returns the prior. `unlike`: the device is known not to match its data sheet.
-  void ask(const SensorErrorEvidence& evidence, Work& work, Open& open, bool unlike = false) const;
+  void update(const SensorErrorEvidence& evidence, Work& work, Posterior& posterior, bool unlike = false) const;
 
   /// Returns the likelihood ratio of synchronous triads, as the data sheet states, against asynchronous ones. `delay_s`
   /// is a measured delay minus the known one, with its standard deviation. rate_stream.md (R106).
@@ -43,11 +43,11 @@ class DeviceDoubt {
   double further_delay_s(const SensorErrorEvidence& evidence, double reach_s) const;
 
   /// Resets to the prior.
-  void forget(Open& open) const;
+  void reset(Posterior& posterior) const;
 
   /// Returns the variance of a delay common to both triads [s^2]. No evidence determines it for a device that does not
   /// match its data sheet.
-  double shared_delay_s2(const Open& open) const;
+  double common_delay_s2(const Posterior& posterior) const;
 
  private:
   SensorErrors::Vector sheet_, unknown_;  ///< standard deviations

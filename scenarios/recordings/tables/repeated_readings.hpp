@@ -20,7 +20,7 @@ struct LoggedReadings {
 /// Result for a note; shares are fractions of the rows.
 struct HoldReport {
   double gyro_repeated = 0.0, accel_repeated = 0.0;
-  bool gyro_held = false, accel_held = false;
+  bool gyro_repeats = false, accel_repeats = false;
   std::size_t rows = 0, readings = 0, accel_readings = 0;
   std::string text() const;
 };

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // A log that is faster than its sensor, told as the samples come.
-#include "tumble/angular_velocity/detail/hold_watch.hpp"
+#include "tumble/angular_velocity/detail/repeat_detector.hpp"
 
 #include <gtest/gtest.h>
 
@@ -11,16 +11,16 @@ namespace tumble {
 namespace {
 
 struct Watched {
-  HoldWatch::State state;
+  RepeatDetector::State state;
   int wrong = 0;  ///< samples after the first 200 whose being new or repeated is not told
   double least_age = 100.0, largest_age = 0.0;
 };
 
 /// Samples of a body that turns: the gyro reads every `period` of them, a quarter of one after the first. Its rate
 /// rises by 1e-4 rad/s a sample.
-Watched watch_holds(double period, double rate_rad_s, bool clipped = false) {
+Watched watch_repeats(double period, double rate_rad_s, bool clipped = false) {
   Watched out;
-  const HoldWatch holds;
+  const RepeatDetector holds;
   double before = -1.0;
   for (int k = 0; k < 1200; ++k) {
     const double read = 0.25 + period * std::floor((k - 0.25) / period);
@@ -29,7 +29,7 @@ Watched watch_holds(double period, double rate_rad_s, bool clipped = false) {
     sample.angular_velocity_rad_s = {rate_rad_s, 1e-4 * read, 0.0};
     sample.specific_force_m_s2 = {0.0, 1e-3 * k, 9.8};
     holds.observe(sample, clipped, out.state);
-    const HeldReading& gyro = out.state.of(Triad::gyro);
+    const RepeatedReading& gyro = out.state.of(Triad::gyro);
     if (k >= 200 && gyro.repeats != (read == before)) ++out.wrong;
     if (k >= 200 && !gyro.repeats) {
       out.least_age = std::min(out.least_age, k - read);
@@ -40,36 +40,37 @@ Watched watch_holds(double period, double rate_rad_s, bool clipped = false) {
   return out;
 }
 
-TEST(HoldWatch, TellsPeriodAndRepeats) {
+TEST(RepeatDetector, TellsPeriodAndRepeats) {
   for (const double period : {1.25, 1.8, 3.3, 7.9}) {
-    const Watched found = watch_holds(period, 1.0);
-    const HeldReading& gyro = found.state.of(Triad::gyro);
-    ASSERT_TRUE(gyro.held()) << period;
+    const Watched found = watch_repeats(period, 1.0);
+    const RepeatedReading& gyro = found.state.of(Triad::gyro);
+    ASSERT_TRUE(gyro.is_slower_than_log()) << period;
     EXPECT_NEAR(gyro.period_samples, period, 0.01 * period);
     EXPECT_EQ(found.wrong, 0) << period;
     // what is taken for half a sample lies within one
     EXPECT_GE(found.least_age, 0.0);
     EXPECT_LT(found.largest_age, 1.0);
     // the accelerometer of the same log has a reading of its own in each sample
-    EXPECT_FALSE(found.state.of(Triad::accelerometer).held());
+    EXPECT_FALSE(found.state.of(Triad::accelerometer).is_slower_than_log());
   }
 }
 
-TEST(HoldWatch, WhatIsStaleIsTheSlopeTimesTheAge) {
-  const Watched found = watch_holds(3.3, 1.0);
-  const HeldReading& gyro = found.state.of(Triad::gyro);
+TEST(RepeatDetector, WhatIsStaleIsTheSlopeTimesTheAge) {
+  const Watched found = watch_repeats(3.3, 1.0);
+  const RepeatedReading& gyro = found.state.of(Triad::gyro);
   const double behind = gyro.age_samples + 0.5 * (gyro.period_samples - 1.0);
   EXPECT_NEAR(gyro.stale().y(), 1e-4 * behind, 1e-4 * 0.05 * behind);
   EXPECT_EQ(gyro.stale().x(), 0.0);
 }
 
 // Controls: new readings each time, a body that rests, a sensor that froze.
-TEST(HoldWatch, SaysNothingOfOthers) {
-  EXPECT_FALSE(watch_holds(1.0, 1.0).state.of(Triad::gyro).held());
-  EXPECT_EQ(watch_holds(1.0, 1.0).state.of(Triad::gyro).stale(), Eigen::Vector3d::Zero());
-  EXPECT_FALSE(watch_holds(3.3, 0.0).state.of(Triad::gyro).held());
-  EXPECT_FALSE(watch_holds(1e6, 1.0).state.of(Triad::gyro).held());
-  EXPECT_FALSE(watch_holds(3.3, 1.0, true).state.of(Triad::gyro).held());  // at its rails on all axes it repeats too
+TEST(RepeatDetector, SaysNothingOfOthers) {
+  EXPECT_FALSE(watch_repeats(1.0, 1.0).state.of(Triad::gyro).is_slower_than_log());
+  EXPECT_EQ(watch_repeats(1.0, 1.0).state.of(Triad::gyro).stale(), Eigen::Vector3d::Zero());
+  EXPECT_FALSE(watch_repeats(3.3, 0.0).state.of(Triad::gyro).is_slower_than_log());
+  EXPECT_FALSE(watch_repeats(1e6, 1.0).state.of(Triad::gyro).is_slower_than_log());
+  EXPECT_FALSE(watch_repeats(3.3, 1.0, true).state.of(Triad::gyro).is_slower_than_log());  // at its rails on all axes
+                                                                                           // it repeats too
 }
 
 }  // namespace

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "unseen_rails.hpp"
+#include "possible_saturation.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -55,8 +55,8 @@ bool LeastRails::refute(const Eigen::Vector3d& rate_rad_s, Eigen::Index axis) co
   return std::abs(rate_rad_s[axis]) + kUnseenTilt * beside_of(rate_rad_s, axis) < (1.0 - kBesideRail) * least;
 }
 
-void doubt_unseen_rails(const RailPlanes& planes, const LeastRails& least, double noise_rad_s, const ImuSample* before,
-                        RateObservation& now, const ImuSample* after) {
+void inflate_possible_saturation(const RailPlanes& planes, const LeastRails& least, double noise_rad_s,
+                                 const ImuSample* before, RateObservation& now, const ImuSample* after) {
   const double rail = lowest_rail(planes);
   now.lone = 0;
   if (rail == 0.0) return;
@@ -64,8 +64,8 @@ void doubt_unseen_rails(const RailPlanes& planes, const LeastRails& least, doubl
   for (Eigen::Index j = 0; j < 3; ++j) {
     const auto& own = planes.element[static_cast<std::size_t>(j)];
     const int sign = reading[j] < 0.0 ? -1 : 1;
-    const unsigned told = now.clipping.gyro | now.clipping.missing_gyro | now.subsample_saturated;
-    if ((own && own->seen(sign)) || (told >> j & 1u) != 0) continue;
+    const unsigned unusable = now.clipping.gyro | now.clipping.missing_gyro | now.subsample_saturated;
+    if ((own && own->seen(sign)) || (unusable >> j & 1u) != 0) continue;
     const double beside = beside_of(reading, j);
     if (std::abs(reading[j]) < (1.0 - kBesideRail) * rail - kUnseenTilt * beside) continue;
     if (least.refute(reading, j)) continue;
@@ -79,8 +79,8 @@ void doubt_unseen_rails(const RailPlanes& planes, const LeastRails& least, doubl
   }
 }
 
-void doubt_motion_plateaus(const RailPlanes& planes, const LeastRails& least, double offset_share, double noise_rad_s,
-                           std::span<RateObservation> observations) {
+void inflate_motion_plateaus(const RailPlanes& planes, const LeastRails& least, double offset_share, double noise_rad_s,
+                             std::span<RateObservation> observations) {
   const double from = (1.0 - kElementsApart * offset_share) * lowest_rail(planes);
   const bool flags = std::any_of(observations.begin(), observations.end(),
                                  [](const RateObservation& o) { return o.sample.device_clip_flags != 0; });
@@ -112,7 +112,7 @@ void doubt_motion_plateaus(const RailPlanes& planes, const LeastRails& least, do
           if (((o.clipping.gyro | o.clipping.missing_gyro) >> j & 1u) != 0) continue;
           const double sigma = (o.lone >> j & 1u) != 0 ? o.lost_sigma_rad_s[axis] : noise_rad_s;
           o.lone = static_cast<std::uint8_t>(o.lone & ~(1u << j));
-          o.doubted = static_cast<std::uint8_t>(o.doubted | 1u << j);
+          o.suspect = static_cast<std::uint8_t>(o.suspect | 1u << j);
           o.lost_sigma_rad_s[axis] = std::hypot(sigma, kUnseenOfStep * rise);
         }
       }

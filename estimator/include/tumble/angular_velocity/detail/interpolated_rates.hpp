@@ -16,28 +16,29 @@
 namespace tumble {
 
 /// A rate between two readings of the gyro, including its bias.
-struct HeldRate {
+struct InterpolatedRate {
   Eigen::Vector3d rate_rad_s = Eigen::Vector3d::Zero();
   Eigen::Vector3d variance_rad2_s2 = Eigen::Vector3d::Zero();  ///< of the interpolation, without noise
 };
 
 /// Returns the rate of sample `k` of a stream's window. Empty if each sample has its own reading, before the next
 /// reading has arrived, and if one of the two readings is not fully usable. O(samples of three readings).
-std::optional<HeldRate> rate_between_readings(std::span<const RateStreamKnot> window, std::size_t k, double period_s);
+std::optional<InterpolatedRate> rate_between_readings(std::span<const RateStreamKnot> window, std::size_t k,
+                                                      double period_s);
 
 /// Returns the rates of a recording. Empty if each sample has its own reading. Axes in `hidden` (one mask per sample)
-/// are not used, so no rate is computed next to them or at the ends. O(N), plus find_held.
-std::vector<std::optional<HeldRate>> rates_between_readings(std::span<const ImuSample> samples,
-                                                            std::span<const std::uint8_t> hidden);
-struct HeldReadings;
-/// Same, with an earlier result of find_held for the gyro.
-std::vector<std::optional<HeldRate>> rates_between_readings(std::span<const ImuSample> samples,
-                                                            std::span<const std::uint8_t> hidden,
-                                                            const std::optional<HeldReadings>& held);
+/// are not used, so no rate is computed next to them or at the ends. O(N), plus find_repeated.
+std::vector<std::optional<InterpolatedRate>> rates_between_readings(std::span<const ImuSample> samples,
+                                                                    std::span<const std::uint8_t> hidden);
+struct RepeatedReadings;
+/// Same, with an earlier result of find_repeated for the gyro.
+std::vector<std::optional<InterpolatedRate>> rates_between_readings(std::span<const ImuSample> samples,
+                                                                    std::span<const std::uint8_t> hidden,
+                                                                    const std::optional<RepeatedReadings>& repeated);
 
 /// Returns the force at the time of each sample, for an accelerometer that is slower than its log. Linear interpolation
 /// between readings, constant before the first and after the last. Empty if each sample has its own reading. O(N), plus
-/// find_held.
+/// find_repeated.
 std::vector<Eigen::Vector3d> forces_between_readings(std::span<const ImuSample> samples);
 
 }  // namespace tumble

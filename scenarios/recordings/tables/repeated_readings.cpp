@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "scenarios/recordings/tables/held_readings.hpp"
+#include "scenarios/recordings/tables/repeated_readings.hpp"
 
 #include <fmt/format.h>
 
@@ -41,7 +41,7 @@ double repeated_share(std::size_t fresh, std::size_t rows) {
 
 /// Readings that almost always repeat are not held: the sensor is frozen or noise-free at rest, and its period is
 /// unknown.
-bool is_held(double share) {
+bool is_repeated(double share) {
   return share > kHeldShare && share < kFrozenShare;
 }
 
@@ -79,12 +79,12 @@ HoldReport undo_hold(const LoggedReadings& log, sim::ImuRecord& imu) {
   report.gyro_repeated = repeated_share(gyro.size(), report.rows);
   report.accel_repeated = repeated_share(accel.size(), report.rows);
   report.accel_readings = accel.size();
-  report.gyro_held = is_held(report.gyro_repeated);
-  imu.time_ns = report.gyro_held ? beat_of(log.time_ns, gyro) : log.time_ns;
-  imu.gyro_rad_s = report.gyro_held ? at_rows(log.gyro_rad_s, gyro) : log.gyro_rad_s;
-  const std::vector<Eigen::Vector3d> beside = report.gyro_held ? at_rows(log.accel_m_s2, gyro) : log.accel_m_s2;
-  report.accel_held = is_held(repeated_share(fresh_rows(beside).size(), beside.size()));
-  imu.accel_m_s2 = report.accel_held
+  report.gyro_repeats = is_repeated(report.gyro_repeated);
+  imu.time_ns = report.gyro_repeats ? beat_of(log.time_ns, gyro) : log.time_ns;
+  imu.gyro_rad_s = report.gyro_repeats ? at_rows(log.gyro_rad_s, gyro) : log.gyro_rad_s;
+  const std::vector<Eigen::Vector3d> beside = report.gyro_repeats ? at_rows(log.accel_m_s2, gyro) : log.accel_m_s2;
+  report.accel_repeats = is_repeated(repeated_share(fresh_rows(beside).size(), beside.size()));
+  imu.accel_m_s2 = report.accel_repeats
                        ? interpolated(beat_of(log.time_ns, accel), at_rows(log.accel_m_s2, accel), imu.time_ns)
                        : beside;
   imu.clip_flags.assign(imu.time_ns.size(), 0);
@@ -93,13 +93,13 @@ HoldReport undo_hold(const LoggedReadings& log, sim::ImuRecord& imu) {
 }
 
 std::string HoldReport::text() const {
-  if (!gyro_held && !accel_held) return "";
+  if (!gyro_repeats && !accel_repeats) return "";
   std::string out = fmt::format(
       "sample and hold: {:.1f} % of the gyro's and {:.1f} % of the accelerometer's rows repeat the previous row: {} "
       "readings of the gyro and {} of the accelerometer in {} rows",
-      100.0 * gyro_repeated, 100.0 * accel_repeated, gyro_held ? readings : rows, accel_readings, rows);
-  if (gyro_held) out += "; repeated rows are left out, and the remaining readings get the sample times of the gyro";
-  if (accel_held) out += "; the accelerometer is interpolated between its distinct readings";
+      100.0 * gyro_repeated, 100.0 * accel_repeated, gyro_repeats ? readings : rows, accel_readings, rows);
+  if (gyro_repeats) out += "; repeated rows are left out, and the remaining readings get the sample times of the gyro";
+  if (accel_repeats) out += "; the accelerometer is interpolated between its distinct readings";
   return out;
 }
 
