@@ -21,7 +21,7 @@ std::string text(nb::handle value) {
   return nb::str(value).c_str();
 }
 
-/// A masked number is none: numpy hands out what lies below the mask.
+/// Rejects masked arrays: numpy would pass on the values below the mask.
 void require_unmasked(nb::handle value, const std::string& field) {
   if (!nb::hasattr(value, "_mask")) return;
   if (nb::cast<bool>(nb::module_::import_("numpy.ma").attr("is_masked")(value)))
@@ -34,7 +34,7 @@ std::string shape_text(const std::vector<std::size_t>& shape) {
   return out + (shape.size() == 1 ? ",)" : ")");
 }
 
-/// The array of exactly this type and shape; of floats integers and other floats too, converted.
+/// Returns an array of exactly this type and shape. For floats, integers and other float types are converted.
 template <class Scalar>
 Given<Scalar> array_of(nb::handle value, const std::string& field, const std::vector<std::size_t>& shape) {
   constexpr bool kFloat = std::is_floating_point_v<Scalar>;
@@ -59,7 +59,7 @@ Given<Scalar> array_of(nb::handle value, const std::string& field, const std::ve
   return out;
 }
 
-/// Whole numbers of any width, each within [0, most].
+/// Converts integers of any width to `Scalar`, each checked to be within its range from 0.
 template <class Scalar>
 std::vector<Scalar> counts_of(nb::handle value, const std::string& field, std::size_t count) {
   std::vector<Scalar> out(count);
@@ -85,7 +85,7 @@ std::vector<Scalar> counts_of(nb::handle value, const std::string& field, std::s
   return out;
 }
 
-/// Row k of N x 3.
+/// Returns row k of an N x 3 array.
 template <class Scalar>
 Eigen::Matrix<Scalar, 3, 1> row(const Given<Scalar>& array, std::size_t k) {
   const Scalar* const at = array.data() + static_cast<std::int64_t>(k) * array.stride(0);
@@ -110,7 +110,7 @@ nb::object as_array(nb::handle value, const std::string& field) {
   require_unmasked(value, field);
   try {
     return nb::module_::import_("numpy").attr("asarray")(value);
-  } catch (const nb::python_error& error) {  // rows of several lengths, say
+  } catch (const nb::python_error& error) {  // for example, rows of different lengths
     if (!error.matches(PyExc_ValueError) && !error.matches(PyExc_TypeError)) throw;
   }
   raise_input("type", field, value.type(), nb::str("an array of numbers"));
@@ -121,7 +121,7 @@ double number_of(nb::handle value, const std::string& field) {
     const nb::object number = nb::steal(PyNumber_Float(value.ptr()));
     double out = 0.0;
     if (number.is_valid() && nb::try_cast(number, out)) return out;
-    PyErr_Clear();  // of a complex number, an array, an integer beyond a double
+    PyErr_Clear();  // the value is complex, an array, or beyond the range of a double
   }
   raise_input("type", field, value, nb::str("a number"));
 }
@@ -130,7 +130,7 @@ TimeNs time_of(nb::handle value, const char* field) {
   const bool whole_number = PyIndex_Check(value.ptr()) != 0 && !PyBool_Check(value.ptr());
   if (!whole_number) raise_input("type", field, value, nb::str("a whole number of nanoseconds"));
   const nb::object index = nb::steal(PyNumber_Index(value.ptr()));
-  if (!index.is_valid()) {  // of an array
+  if (!index.is_valid()) {  // the value is an array
     PyErr_Clear();
     raise_input("type", field, value, nb::str("a whole number of nanoseconds"));
   }
@@ -139,18 +139,18 @@ TimeNs time_of(nb::handle value, const char* field) {
   return out;
 }
 
-/// Whole numbers that are counts of something else: no IMU gives twenty samples a millisecond on the median.
+/// Rejects times that are not in nanoseconds: no IMU has a median sample period below 50 us.
 static void require_nanoseconds(const std::vector<ImuSample>& samples) {
-  constexpr std::size_t kFewest = 20;
-  constexpr std::int64_t kLeastStep_ns = 50'000;
-  if (samples.size() < kFewest) return;
+  constexpr std::size_t kMinSamples = 20;
+  constexpr std::int64_t kMinStep_ns = 50'000;
+  if (samples.size() < kMinSamples) return;
   std::vector<std::int64_t> steps;
   for (std::size_t k = 1; k < samples.size(); ++k) steps.push_back(samples[k].time_ns - samples[k - 1].time_ns);
   const auto middle = steps.begin() + static_cast<std::ptrdiff_t>(steps.size() / 2);
   std::nth_element(steps.begin(), middle, steps.end());
-  // what does not rise is the estimator's to refuse, with the index
-  if (*middle > 0 && *middle < kLeastStep_ns) {
-    raise_input("out_of_range", "time_ns (median step, ns)", nb::int_(*middle), nb::int_(kLeastStep_ns));
+  // the estimator rejects times that do not increase, and reports the index
+  if (*middle > 0 && *middle < kMinStep_ns) {
+    raise_input("out_of_range", "time_ns (median step, ns)", nb::int_(*middle), nb::int_(kMinStep_ns));
   }
 }
 
@@ -215,8 +215,9 @@ Eigen::Isometry3d pose_of(nb::handle value, const std::string& field) {
     for (int j = 0; j < 4; ++j) m(i, j) = array.data()[i * array.stride(0) + j * array.stride(1)];
   }
   const Eigen::Matrix3d R = m.topLeftCorner<3, 3>();
-  const double off = (R.transpose() * R - Eigen::Matrix3d::Identity()).cwiseAbs().maxCoeff();
-  const bool rigid = m.allFinite() && off < 1e-6 && R.determinant() > 0.0 && m.row(3) == Eigen::RowVector4d(0, 0, 0, 1);
+  const double rotation_error = (R.transpose() * R - Eigen::Matrix3d::Identity()).cwiseAbs().maxCoeff();
+  const bool rigid =
+      m.allFinite() && rotation_error < 1e-6 && R.determinant() > 0.0 && m.row(3) == Eigen::RowVector4d(0, 0, 0, 1);
   if (!rigid)
     raise_input("out_of_range", field, nb::str("no rigid transform"), nb::str("a rotation and a translation"));
   Eigen::Isometry3d out;

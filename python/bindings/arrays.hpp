@@ -13,8 +13,8 @@
 #include "tumble/common/imu.hpp"
 #include "tumble/mapping/lidar.hpp"
 
-/// Between numpy's arrays and the library's messages. What comes in is checked for type and shape and copied into
-/// messages; what goes out are views, read-only, that keep the object alive whose memory they show.
+/// Converts between numpy arrays and the library's messages. Inputs are checked for type and shape, and copied into
+/// messages. Outputs are read-only views that keep the object alive whose memory they show.
 namespace tumble::python {
 
 namespace nb = nanobind;
@@ -23,12 +23,12 @@ inline bool is_any_object(PyObject*) {
   return true;
 }
 
-/// Whatever numpy makes an array of, as stubs say: any object comes in, and is refused by the field's name below.
+/// Any object that numpy can convert to an array. The functions below check it and report errors by the field's name.
 class ArrayLike : public nb::object {
   NB_OBJECT_DEFAULT(ArrayLike, nb::object, "numpy.typing.ArrayLike", is_any_object)
 };
 
-/// A whole number, of Python or numpy; the same.
+/// An integer of Python or numpy. The functions below check it.
 class WholeNumber : public nb::object {
   NB_OBJECT_DEFAULT(WholeNumber, nb::object, "typing.SupportsIndex", is_any_object)
 };
@@ -37,43 +37,44 @@ inline bool is_array(PyObject* object) {
   return nb::ndarray_check(nb::handle(object));
 }
 
-/// What goes out as an array of doubles.
+/// An array of doubles that is returned.
 class Doubles : public nb::object {
   NB_OBJECT_DEFAULT(Doubles, nb::object, "numpy.typing.NDArray[numpy.float64]", is_array)
 };
 
 /// Samples of an IMU: one (an int, two vectors of 3) or N (int64 of N, two N x 3). `clip_flags`: None, or ClipFlag
-/// bits. TumbleError with `type` for times that are not int64 (seconds would lose their fractions), `shape`,
-/// `out_of_range` for steps of less than 50 us on the median of twenty samples and more: they count something else.
+/// bits. Raises TumbleError `type` for times that are not int64 (seconds would lose their fractions), `shape`, or
+/// `out_of_range` if the median step of at least twenty samples is below 50 us: such times are not nanoseconds.
 std::vector<ImuSample> samples_of(nb::handle time_ns, nb::handle gyro_rad_s, nb::handle accel_m_s2,
                                   nb::handle clip_flags);
 
-/// Points of a sweep: N x 3 positions, offsets of N; ring and intensity of N, or None.
+/// Points of a sweep: N x 3 positions, N offsets; N rings and intensities, or None.
 std::vector<LidarPoint> points_of(nb::handle position_L_m, nb::handle offset_ns, nb::handle ring, nb::handle intensity);
 
-/// A time in nanoseconds: an integer, of Python or numpy. `type` for anything else.
+/// Converts a time in nanoseconds, an integer of Python or numpy. Raises `type` for anything else.
 TimeNs time_of(nb::handle value, const char* field);
 
-/// What numpy makes an array of; `type` where it makes none, or where a mask is over some of it.
+/// Converts to a numpy array. Raises `type` if this fails or if some values are masked.
 nb::object as_array(nb::handle value, const std::string& field);
 
-/// One number, of Python or numpy; `type` for anything else, an integer beyond a double among it.
+/// Converts one number of Python or numpy. Raises `type` for anything else, including integers beyond a double's range.
 double number_of(nb::handle value, const std::string& field);
 
-/// A row of `count` numbers.
+/// Converts an array of `count` numbers.
 std::vector<double> numbers_of(nb::handle value, const std::string& field, std::size_t count);
 Eigen::Vector3d vector_of(nb::handle value, const std::string& field);
 
-/// A rigid transform from a 4 x 4 matrix: `out_of_range` unless its rotation is one to 1e-6 and its last row 0 0 0 1.
+/// Converts a 4 x 4 matrix to a rigid transform. Raises `out_of_range` unless the rotation is orthonormal to 1e-6 and
+/// the last row is 0 0 0 1.
 Eigen::Isometry3d pose_of(nb::handle value, const std::string& field);
-/// From 2 x 3, least and largest corner; None: an empty box.
+/// Converts a 2 x 3 array of the smallest and the largest corner; None gives an empty box.
 Eigen::AlignedBox3d box_of(nb::handle value, const std::string& field);
 
 template <class Scalar, nb::ssize_t... Shape>
 using Array = nb::ndarray<nb::numpy, const Scalar, nb::shape<Shape...>>;
 
-/// Column of `records` whose first number in each is `first(record)`: N x Rest, shown where it lies. A matrix of Eigen
-/// lies by columns.
+/// View of one column of `records`, N x Rest, without a copy. `first(record)` points to the first number of a row.
+/// Eigen stores a matrix by columns.
 template <class Scalar, nb::ssize_t... Rest, class Record, class First>
 Array<Scalar, -1, Rest...> column(const std::vector<Record>& records, First first) {
   static_assert(sizeof(Record) % sizeof(Scalar) == 0);
@@ -90,7 +91,7 @@ Array<Scalar, -1, Rest...> column(const std::vector<Record>& records, First firs
   return Array<Scalar, -1, Rest...>(data, kAxes, shape, nb::handle(), strides);
 }
 
-/// A fixed vector or matrix of Eigen's, shown where it lies.
+/// View of a fixed-size vector or matrix of Eigen, without a copy.
 template <nb::ssize_t... Shape, class Scalar>
 Array<Scalar, Shape...> whole(const Scalar* first) {
   const std::size_t shape[] = {static_cast<std::size_t>(Shape)...};
@@ -103,7 +104,7 @@ Array<Scalar, Shape...> whole(const Scalar* first) {
   return Array<Scalar, Shape...>(first, sizeof...(Shape), shape, nb::handle(), strides);
 }
 
-/// A copy of `values` that Python owns.
+/// Returns a copy of `values` that Python owns.
 template <class Scalar>
 nb::ndarray<nb::numpy, Scalar, nb::ndim<1>> owned(std::vector<Scalar> values) {
   auto* const kept = new std::vector<Scalar>(std::move(values));
@@ -112,7 +113,7 @@ nb::ndarray<nb::numpy, Scalar, nb::ndim<1>> owned(std::vector<Scalar> values) {
   return nb::ndarray<nb::numpy, Scalar, nb::ndim<1>>(kept->data(), 1, shape, owner);
 }
 
-/// 4 x 4 of a rigid transform, a copy.
+/// Returns a copy of a rigid transform as a 4 x 4 matrix.
 Doubles matrix(const Eigen::Isometry3d& pose);
 
 }  // namespace tumble::python

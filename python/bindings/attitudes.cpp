@@ -18,7 +18,7 @@ namespace tumble::python {
 
 namespace {
 
-/// A filter of samples whose state has the attitude q_WI.
+/// Binds a filter that processes one sample at a time and whose state contains the attitude q_WI.
 template <class Filter>
 auto bind_filter(nb::module_& m, const char* name, const char* doc) {
   using Object = Guarded<Running<Filter>>;
@@ -46,7 +46,8 @@ auto bind_filter(nb::module_& m, const char* name, const char* doc) {
             return feed<Attitudes>(self, samples_of(time_ns, gyro, accel, clip_flags), step);
           },
           nb::arg("time_ns"), nb::arg("gyro"), nb::arg("accel"), nb::arg("clip_flags") = nb::none(),
-          "Takes one sample or many; returns the attitude at each. The first sample levels it, with yaw 0.")
+          "Adds one sample or many. Returns the attitude at each sample. The first sample sets roll and pitch, with "
+          "yaw 0.")
       .def_static("parameters", [] { return list_fields(typename Filter::Params{}); });
   bind_copy<Object>(bound);
   return bound;
@@ -57,17 +58,18 @@ auto bind_filter(nb::module_& m, const char* name, const char* doc) {
 void bind_attitudes(nb::module_& m) {
   bind_filter<Vqf>(
       m, "Vqf",
-      "The versatile quaternion filter, gyro and accelerometer (D. Laidig, T. Seel, Information Fusion 91,\n"
-      "2023). Vqf(**options): parameters().");
+      "Estimates attitude from gyro and accelerometer with the versatile quaternion filter (D. Laidig, T. Seel,\n"
+      "Information Fusion 91, 2023). Vqf(**options): see parameters().");
   bind_filter<TumbleAttitude>(
       m, "TumbleAttitude",
-      "Attitude from gyro and accelerometer by what a body cannot do: its velocity is bounded, and at\n"
-      "rest it is zero. radius_m above 0: of a rolling sphere. TumbleAttitude(**options): parameters().")
+      "Estimates attitude from gyro and accelerometer. Assumes that the velocity is bounded, and zero when "
+      "stationary.\n"
+      "With radius_m above 0 the body is a rolling sphere. TumbleAttitude(**options): see parameters().")
       .def_prop_ro("at_rest", [](Guarded<Running<TumbleAttitude>>& self) {
         return self.run([](Running<TumbleAttitude>& at) { return at.state.at_rest; });
       });
   bind_filter<Strapdown>(m, "Strapdown",
-                         "Attitude by integration of the gyro alone. Strapdown(**options): parameters().");
+                         "Estimates attitude by integrating the gyro alone. Strapdown(**options): see parameters().");
 }
 
 }  // namespace tumble::python

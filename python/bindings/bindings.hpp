@@ -3,7 +3,7 @@
 
 #include <nanobind/nanobind.h>
 
-/// What each source binds into the module, in this order: later ones name classes of earlier ones.
+/// Each source binds its classes into the module, in this order: later sources use classes of earlier ones.
 namespace tumble::python {
 
 void bind_rails(nanobind::module_& m);

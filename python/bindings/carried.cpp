@@ -25,7 +25,7 @@ namespace tumble::python {
 
 namespace {
 
-/// CarriedSmoother with what its data sheet says of the rails.
+/// A CarriedSmoother with the ranges that the data sheet of the IMU states.
 struct Carried {
   CarriedSmoother smoother;
   RailDetector::Params upright_rails;
@@ -55,20 +55,21 @@ std::tuple<Rates, Attitudes, CarriedSmoother::Report> carried(const Carried& sel
 
 void bind_smoother(nb::module_& m) {
   using Report = CarriedSmoother::Report;
-  nb::class_<Report>(m, "CarriedReport", "What a run of CarriedSmoother tells about itself.")
+  nb::class_<Report>(m, "CarriedReport", "Statistics of a run of CarriedSmoother.")
       .def_ro("iterations", &Report::iterations)
       .def_ro("converged", &Report::converged)
       .def_ro("cost", &Report::cost)
-      .def_ro("hand_mahalanobis", &Report::hand_mahalanobis, "2 and more: thrown, or a rough hand")
+      .def_ro("hand_mahalanobis", &Report::hand_mahalanobis,
+              "2 or more indicates a thrown body or violent hand-held motion")
       .def_ro("revolutions_asked", &Report::revolutions_asked)
       .def_ro("revolutions_taken", &Report::revolutions_taken)
       .def_ro("revolutions_open", &Report::revolutions_open,
-              "clipped segments in which another number of turns stays possible");
+              "clipped segments in which another number of turns remains possible");
   nb::class_<Carried>(
       m, "CarriedSmoother",
-      "Attitude and angular velocity of a body that is carried (held, swung, twirled), also where its gyro\n"
-      "clips, over a whole recording.\n\n"
-      "CarriedSmoother(gyro_range_rad_s=None, accel_range_m_s2=None, **options): parameters().")
+      "Estimates attitude and angular velocity of a hand-held body (held, swung, twirled) over a whole recording,\n"
+      "also where its gyro clips.\n\n"
+      "CarriedSmoother(gyro_range_rad_s=None, accel_range_m_s2=None, **options): see parameters().")
       .def(
           "__init__",
           [](Carried* self, const nb::kwargs& options) {
@@ -83,21 +84,20 @@ void bind_smoother(nb::module_& m) {
           nb::arg("options"), takes_options())
       .def("estimate", &carried, nb::arg("time_ns"), nb::arg("gyro"), nb::arg("accel"),
            nb::arg("clip_flags") = nb::none(),
-           "Rates, attitudes (heading 0 at the start), one of each per sample, and what the run tells of itself.")
+           "Returns rates and attitudes (heading 0 at the start), one of each per sample, and a CarriedReport.")
       .def_static("parameters", [] { return list_fields(CarriedSmoother::Params{}); });
 }
 
-/// The stream makes one step for a node, whatever this says.
-const std::vector<const char*> kWithoutMeaning = {"iterations_max"};
+/// The stream makes one step per node and does not use these parameters.
+const std::vector<const char*> kUnusedParameters = {"iterations_max"};
 
 void bind_stream(nb::module_& m) {
   using Live = Streaming<CarriedLive>;
   using Object = Guarded<Live>;
   nb::class_<Object> bound(m, "CarriedStream",
-                           "The streaming form of CarriedSmoother: each rate is given out when its sample is lag_s "
-                           "old. Rails are those that\n"
-                           "the readings have shown so far.\n\n"
-                           "CarriedStream(gyro_range_rad_s=None, accel_range_m_s2=None, **options): parameters().");
+                           "The streaming form of CarriedSmoother: returns each rate when its sample is lag_s old.\n"
+                           "The stream uses the rails detected in the readings so far.\n\n"
+                           "CarriedStream(gyro_range_rad_s=None, accel_range_m_s2=None, **options): see parameters().");
   bound
       .def(
           "__init__",
@@ -105,7 +105,7 @@ void bind_stream(nb::module_& m) {
             Keywords keywords("CarriedStream", options);
             CarriedLive::Params params;
             read_ranges(keywords, params.rails.clipping.upright_rails);
-            read_fields(keywords, params.stream, kWithoutMeaning);
+            read_fields(keywords, params.stream, kUnusedParameters);
             keywords.done();
             new (self) Object(Live(params));
           },
@@ -123,7 +123,7 @@ void bind_stream(nb::module_& m) {
             return feed<Rates>(self, samples_of(time_ns, gyro, accel, clip_flags), step);
           },
           nb::arg("time_ns"), nb::arg("gyro"), nb::arg("accel"), nb::arg("clip_flags") = nb::none(),
-          "Takes one sample or many; returns the rates that are smoothed with them, lag_s old each.")
+          "Adds one sample or many. Returns the rates that became available, each lag_s old.")
       .def(
           "flush",
           [](Object& self) {
@@ -131,11 +131,11 @@ void bind_stream(nb::module_& m) {
             self.run([&](Live& at) { at.filter.flush(*at.state, out.rows); });
             return out;
           },
-          "Rates of the samples still in the window, as they stand. The stream stays as it is.")
+          "Returns the current estimates for the samples still in the window. The stream is unchanged.")
       .def_prop_ro(
           "failures", [](Object& self) { return self.run([](Live& at) { return at.state->stream.failures; }); },
-          "steps that were left out, since their equations were not positive definite")
-      .def_static("parameters", [] { return list_fields(CarriedStream::Params{}, kWithoutMeaning); });
+          "number of steps skipped because their equations were not positive definite")
+      .def_static("parameters", [] { return list_fields(CarriedStream::Params{}, kUnusedParameters); });
   bind_keeping<CarriedLive>(bound);
 }
 

@@ -13,13 +13,13 @@ namespace tumble::python {
 
 namespace nb = nanobind;
 
-/// Times that an estimator was given last, to the nanosecond: a Status has them as doubles.
+/// Latest times that an estimator received, exact to the nanosecond. A Status stores times as doubles.
 struct LastTimes {
   std::optional<TimeNs> sample_ns, sweep_end_ns;
 };
 
-/// An estimator that several threads of Python may call: each call waits for the one before, without the interpreter's
-/// lock. Copies are of the estimator.
+/// An estimator that several Python threads may call. Each call waits for the previous one and releases the
+/// interpreter's lock. A copy copies the estimator.
 template <class T>
 class Guarded {
  public:
@@ -28,7 +28,7 @@ class Guarded {
   Guarded& operator=(const Guarded&) = delete;
   ~Guarded() = default;
 
-  /// Calls `work(estimator)` while other threads of Python go on; it must not touch any object of Python.
+  /// Calls `work(estimator)` while other Python threads run. `work` must not use any Python object.
   template <class Work>
   auto run(Work&& work) {
     const nb::gil_scoped_release released;
@@ -36,7 +36,7 @@ class Guarded {
     return work(inside_);
   }
 
-  /// The same with `work(estimator, last times)`, which keeps the times.
+  /// Calls `work(estimator, last times)`, which also updates the times.
   template <class Work>
   auto run_timed(Work&& work) {
     const nb::gil_scoped_release released;
@@ -58,12 +58,13 @@ class Guarded {
   LastTimes last_;
 };
 
-/// copy.copy and copy.deepcopy, which are the same: all state is the estimator's own.
+/// Binds copy.copy and copy.deepcopy, which are equal because an estimator owns all its state.
 template <class T, class Class>
 void bind_copy(Class& bound) {
   bound
       .def(
-          "__copy__", [](const T& self) { return T(self); }, "A copy goes on with the same bits.")
+          "__copy__", [](const T& self) { return T(self); },
+          "Returns a copy, whose later results are identical to the bit.")
       .def(
           "__deepcopy__", [](const T& self, nb::handle) { return T(self); }, nb::arg("memo"));
 }

@@ -21,28 +21,31 @@ namespace {
 using Report = LidarInertialOdometry::SweepReport;
 
 void bind_report(nb::module_& m) {
-  nb::enum_<SweepVerdict>(m, "SweepVerdict", nb::is_arithmetic(),
-                          "What became of a sweep; but for `registered` the pose rests on the inertial prior.")
+  nb::enum_<SweepVerdict>(
+      m, "SweepVerdict", nb::is_arithmetic(),
+      "Result of registering a sweep. Unless it is `registered`, the pose depends on the inertial prior.")
       .value("first", SweepVerdict::first, "started the map")
       .value("registered", SweepVerdict::registered, "aligned with the map in all six directions")
       .value("degenerate", SweepVerdict::degenerate, "aligned where the surfaces allow it, prior elsewhere")
       .value("rejected", SweepVerdict::rejected, "too few matches, or a correction beyond the bound");
-  nb::class_<Report>(m, "SweepReport", "What the mapper made of a sweep. Poses are the IMU's, in W.")
+  nb::class_<Report>(m, "SweepReport", "Result of a sweep. Poses are of the IMU, in W.")
       .def_ro("verdict", &Report::verdict)
       .def_ro("pose", &Report::pose, "pose and velocity at the end of the sweep, with covariance")
       .def_prop_ro(
-          "trajectory", [](const Report& r) { return Poses{r.trajectory}; }, "poses inside of the sweep at IMU times")
+          "trajectory", [](const Report& r) { return Poses{r.trajectory}; }, "poses at the IMU times within the sweep")
       .def_prop_ro(
           "smoothed", [](const Report& r) { return Poses{r.smoothed}; },
-          "the last word on the sweep that leaves the window with this one: of two the one before; empty while\n"
-          "the window fills")
+          "final (smoothed) poses of the sweep that leaves the window when this one enters; empty while the window\n"
+          "fills")
       .def_ro("inlier_share", &Report::inlier_share)
       .def_ro("conditioning", &Report::conditioning)
-      .def_ro("weakest_sigma_m", &Report::weakest_sigma_m, "where the surfaces hold the pose least")
+      .def_ro("weakest_sigma_m", &Report::weakest_sigma_m,
+              "standard deviation in the direction that the surfaces constrain least")
       .def_prop_ro("weakest_direction", [](const Report& r) { return whole<6>(r.weakest_direction.data()); })
-      .def_ro("innovation", &Report::innovation, "correction over the prior's deviation, per root of unknowns")
+      .def_ro("innovation", &Report::innovation,
+              "correction divided by the standard deviation of the prior, per square root of the number of unknowns")
       .def_ro("iterations", &Report::iterations)
-      .def_ro("lost_sweeps", &Report::lost_sweeps, "rejected in a row, this one included")
+      .def_ro("lost_sweeps", &Report::lost_sweeps, "number of consecutive rejected sweeps, including this one")
       .def_prop_ro("saturation_deficit_rad_s",
                    [](const Report& r) { return whole<3>(r.saturation_deficit_rad_s.data()); })
       .def_ro("points_used", &Report::points_used)
@@ -50,7 +53,7 @@ void bind_report(nb::module_& m) {
       .def_ro("points_registered", &Report::points_registered)
       .def_ro("map_points_added", &Report::map_points_added);
   using C = SweepCalibration;
-  nb::class_<C>(m, "SweepCalibration", "What ties a lidar to an IMU and both to the world, as estimated.")
+  nb::class_<C>(m, "SweepCalibration", "Estimated calibration of lidar, IMU and gravity.")
       .def_prop_ro(
           "T_IL", [](const C& c) { return matrix(c.T_IL); }, "(4, 4), lidar in IMU axes")
       .def_ro("time_offset_s", &C::time_offset_s, "the IMU's clock minus the lidar's")
@@ -58,8 +61,8 @@ void bind_report(nb::module_& m) {
           "gravity_m_s2", [](const C& c) { return whole<3>(c.gravity_W_m_s2.data()); }, "(3,), in W");
 }
 
-/// Of a box the corners are no fields here: `own_body_L` is the box.
-const std::vector<const char*> kOfTheBox = {"own_body_*"};
+/// Python sets the box by `own_body_L`, so the fields of its corners are hidden.
+const std::vector<const char*> kBoxParameters = {"own_body_*"};
 
 LidarInertialOdometry::Params mapper_params(const nb::kwargs& given) {
   Keywords keywords("LidarInertialOdometry", given);
@@ -67,12 +70,12 @@ LidarInertialOdometry::Params mapper_params(const nb::kwargs& given) {
   params.T_IL = pose_of(keywords.need("T_IL"), "T_IL");
   const nb::object body = keywords.take("own_body_L");
   params.own_body_L = body.is_valid() ? box_of(body, "own_body_L") : Eigen::AlignedBox3d();
-  read_fields(keywords, params, kOfTheBox);
+  read_fields(keywords, params, kBoxParameters);
   keywords.done();
   return params;
 }
 
-/// Rates as given, or the gyro as it reads where none are.
+/// Returns the given rates, or the gyro's readings if `rates` is None.
 std::vector<RateState> rates_for(const std::vector<ImuSample>& samples, nb::handle rates) {
   std::vector<RateState> out;
   if (rates.is_none()) {
@@ -119,7 +122,7 @@ Report add_sweep(Object& self, const WholeNumber& start_ns, const WholeNumber& e
     status = mapper.add_sweep(start, end, points, report);
     if (status.ok() || !report.trajectory.empty()) last.sweep_end_ns = end;
   });
-  // with a trajectory the pose is the inertial prior, and the verdict `rejected`
+  // a report with a trajectory has the verdict `rejected` and the pose of the inertial prior: no error
   if (report.trajectory.empty())
     require(status, std::nullopt, nb::none(), exact_sweep(status, start, end, before.sweep_end_ns));
   return report;
@@ -131,11 +134,12 @@ void bind_mapping(nb::module_& m) {
   bind_report(m);
   nb::class_<Object> bound(
       m, "LidarInertialOdometry",
-      "Lidar-inertial odometry and mapping of a body that tumbles, given the rates that a rate method found.\n\n"
-      "LidarInertialOdometry(T_IL=..., own_body_L=None, **options): T_IL (4, 4), lidar in IMU axes; own_body_L (2, "
-      "3),\n"
-      "least and largest corner of the box in lidar axes whose returns are the robot's own. Options: parameters().\n"
-      "World: z up, origin and yaw at the IMU at the first sample. Begin at rest, half a second or more.");
+      "Lidar-inertial odometry and mapping of a tumbling body, with angular velocities from a rate method.\n\n"
+      "LidarInertialOdometry(T_IL=..., own_body_L=None, **options): T_IL (4, 4) is the pose of the lidar in IMU axes.\n"
+      "own_body_L (2, 3) has the smallest and the largest corner of a box in lidar axes; returns within the box "
+      "belong\n"
+      "to the robot. Options: see parameters(). World: z up, origin and yaw of the IMU at the first sample. The body\n"
+      "must be stationary for the first half second.");
   bound
       .def(
           "__init__",
@@ -145,17 +149,15 @@ void bind_mapping(nb::module_& m) {
           nb::arg("options"), takes_options())
       .def("add_imu", &add_imu, nb::arg("time_ns"), nb::arg("gyro"), nb::arg("accel"), nb::arg("rates") = nb::none(),
            nb::arg("clip_flags") = nb::none(),
-           "Takes one sample or many with the Rates of a rate method; without any the gyro is believed as it reads.")
+           "Adds one sample or many, with the Rates of a rate method. Without rates, the gyro's readings are used.")
       .def("add_sweep", &add_sweep, nb::arg("start_ns"), nb::arg("end_ns"), nb::arg("position"), nb::arg("offset_ns"),
            nb::arg("ring") = nb::none(), nb::arg("intensity") = nb::none(),
-           "Registers a sweep of points fired in [start_ns, end_ns], which the IMU has to cover: position (N, 3), m, "
-           "in the\n"
-           "lidar's axes at each point's own instant; offset_ns (N,), after the start. Of a sweep that has no place in "
-           "the\n"
-           "map the verdict is `rejected` and the pose the inertial prior.")
+           "Registers a sweep of points measured in [start_ns, end_ns]. IMU samples must cover this interval.\n"
+           "position (N, 3), m: in lidar axes at the time of each point. offset_ns (N,): time after start_ns. If\n"
+           "registration fails, the verdict is `rejected` and the pose is the inertial prior.")
       .def(
           "calibration", [](Object& self) { return self.run([](auto& mapper) { return mapper.calibration(); }); },
-          "T_IL, the clocks' offset and gravity as estimated so far.")
+          "Returns the current estimates of T_IL, clock offset and gravity.")
       .def(
           "pose_at",
           [](Object& self, const ArrayLike& time_ns) {
@@ -164,15 +166,15 @@ void bind_mapping(nb::module_& m) {
             require(self.run([&](auto& mapper) { return mapper.pose_at(at, pose); }));
             return pose;
           },
-          nb::arg("time_ns"), "Pose at any time within the window of sweeps.")
+          nb::arg("time_ns"), "Returns the pose at any time within the window of sweeps.")
       .def(
           "window_trajectory",
           [](Object& self) { return joined(self.run([](auto& mapper) { return mapper.window_trajectories(); })); },
-          "Poses of the sweeps in the window that have not had their last word yet.")
+          "Returns the poses of the sweeps in the window, which are not final yet.")
       .def(
           "map", [](Object& self) { return MapPoints{self.run([](auto& mapper) { return mapper.map(); })}; },
-          "The map within map_radius_m of the sensor.")
-      .def_static("parameters", [] { return list_fields(LidarInertialOdometry::Params{}, kOfTheBox); });
+          "Returns the map within map_radius_m of the sensor.")
+      .def_static("parameters", [] { return list_fields(LidarInertialOdometry::Params{}, kBoxParameters); });
   bind_copy<Object>(bound);
 }
 

@@ -7,7 +7,7 @@
 #include "trouble.hpp"
 
 NB_MODULE(_tumble, m) {
-  m.doc() = "The estimators of tumble. Everything here is found under the name tumble, too.";
+  m.doc() = "The estimators of tumble. The package tumble exports everything in this module.";
   tumble::python::translate_invalid_params();
   tumble::python::bind_parameter(m);
   tumble::python::bind_results(m);

@@ -21,11 +21,11 @@ std::string bounds_text(const Field& field) {
 }
 
 void require_within_field(const std::string& name, const Field& field, double value) {
-  if (value >= field.low && value <= field.high) return;  // NaN is not
+  if (value >= field.low && value <= field.high) return;  // false for NaN
   raise_input("out_of_range", name, nb::float_(value), nb::str(bounds_text(field).c_str()));
 }
 
-/// Steps of one letter that take one name to the other.
+/// Levenshtein distance of two names.
 std::size_t distance(std::string_view a, std::string_view b) {
   std::vector<std::size_t> row(b.size() + 1);
   for (std::size_t j = 0; j <= b.size(); ++j) row[j] = j;
@@ -91,15 +91,17 @@ nb::object as_object(const Eigen::Vector3d& value) {
 }
 
 void bind_parameter(nb::module_& m) {
-  nb::class_<Parameter>(m, "Parameter", "One number that a class takes as a keyword, as its `parameters()` lists them.")
+  nb::class_<Parameter>(
+      m, "Parameter",
+      "A parameter of a class, which its constructor accepts as a keyword. `parameters()` of the class lists them.")
       .def_ro("name", &Parameter::name)
-      .def_ro("unit", &Parameter::unit, "\"1\" when dimensionless")
+      .def_ro("unit", &Parameter::unit, "\"1\" if dimensionless")
       .def_ro("default", &Parameter::value,
               nb::for_getter(nb::sig("def default(self) -> bool | int | float | tuple[float, float, float]")))
-      .def_ro("low", &Parameter::low, "least value; of a vector, of each coordinate")
-      .def_ro("high", &Parameter::high, "largest value")
+      .def_ro("low", &Parameter::low, "smallest allowed value; for a vector, of each coordinate")
+      .def_ro("high", &Parameter::high, "largest allowed value")
       .def_ro("meaning", &Parameter::meaning)
-      .def_ro("first", &Parameter::first, "one of those that a user sets before others")
+      .def_ro("first", &Parameter::first, "whether a user should set this parameter before the others")
       .def(
           "__repr__",
           [](const Parameter& p) {

@@ -11,40 +11,40 @@
 #include "tumble/common/fields_by_name.hpp"
 #include "tumble/common/parameters.hpp"
 
-/// The numbers of a `Params` as keywords of Python: what its fields say (common/parameters.hpp) is all that reading,
-/// checking and listing know.
+/// Exposes the numbers of a `Params` as Python keywords. Reading, checking and listing use the descriptions of its
+/// fields (common/parameters.hpp).
 namespace tumble::python {
 
 namespace nb = nanobind;
 
-/// One number of a `Params`, as `parameters()` of a class lists them.
+/// One number of a `Params`. `parameters()` of a class lists them.
 struct Parameter {
   std::string name, unit;
   nb::object value;  ///< the default
   double low, high;
   std::string meaning;
-  bool first;  ///< of those that a user sets before others
+  bool first;  ///< whether a user should set it before the others
 };
 
-/// How a constructor that takes Keywords reads in the stubs.
+/// Signature in the stubs for a constructor that accepts Keywords.
 inline nb::sig takes_options() {
   return {"def __init__(self, **options: object) -> None"};
 }
 
-/// Keywords of a constructor. What is taken is known; what is left over in the end is not.
+/// Keywords of a constructor. Names that are requested are known; done() rejects all others.
 class Keywords {
  public:
-  /// `of`: the class, for messages.
+  /// @param of  name of the class, for messages
   Keywords(const char* of, const nb::kwargs& given) : of_(of), given_(given) {}
 
-  /// The value given for a name; an invalid object where there is none. The name is known from here on.
+  /// Returns the value given for a name, or an invalid object if there is none. The name becomes known.
   nb::object take(const std::string& name);
-  /// The same; TumbleError `empty` where there is none.
+  /// Same as take(), but raises TumbleError `empty` if no value is given.
   nb::object need(const std::string& name);
-  /// A number within its field's bounds.
+  /// Reads a number and checks the bounds of its field.
   void read(const std::string& name, const Field& field, bool whole, double& out);
   void read(const std::string& name, const Field& field, Eigen::Vector3d& out);
-  /// TumbleError `unknown` for the first keyword that nobody has asked for, with the nearest known one and all of them.
+  /// Raises TumbleError `unknown` for the first keyword that is not known. The message names all known keywords.
   void done() const;
 
  private:
@@ -53,8 +53,8 @@ class Keywords {
   std::vector<std::string> known_;
 };
 
-/// Calls `each(name, value, field)` for each field of a `Params`, but for hidden ones (`is_among`): what follows from
-/// another number.
+/// Calls `each(name, value, field)` for each field of a `Params`, except hidden ones (`is_among`), which are derived
+/// from other numbers.
 template <class Params, class Each>
 void visit_shown(Params& params, const std::vector<const char*>& hidden, Each each) {
   visit_by_name(params, [&](const std::string& name, auto& value, const Field& field) {
@@ -62,7 +62,7 @@ void visit_shown(Params& params, const std::vector<const char*>& hidden, Each ea
   });
 }
 
-/// Reads all fields of `params` that are given.
+/// Reads all given keywords into the fields of `params`.
 template <class Params>
 void read_fields(Keywords& keywords, Params& params, const std::vector<const char*>& hidden = {}) {
   visit_shown(params, hidden, [&](const std::string& name, auto& value, const Field& field) {
@@ -79,7 +79,7 @@ void read_fields(Keywords& keywords, Params& params, const std::vector<const cha
 
 nb::object as_object(const Eigen::Vector3d& value);
 
-/// What `read_fields` knows, with the defaults of `params`.
+/// Lists the parameters that `read_fields` accepts, with the defaults of `params`.
 template <class Params>
 std::vector<Parameter> list_fields(const Params& params, const std::vector<const char*>& hidden = {}) {
   std::vector<Parameter> out;

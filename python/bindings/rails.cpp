@@ -69,44 +69,47 @@ nb::list as_list(const RailPlanes& planes) {
 
 void bind_rails(nb::module_& m) {
   nb::class_<RailPlane>(
-      m, "RailPlane", "The rail of one sensing element, as readings show it: the planes row . y = offset -+ distance.")
+      m, "RailPlane",
+      "The rail of one sensing element, estimated from readings: the planes row . y = offset -+ distance.")
       .def_prop_ro(
           "row", [](const RailPlane& p) { return whole<3>(p.row.data()); },
           "(3,): 1 along the element's own axis, its slopes along the other two")
-      .def_ro("distance", &RailPlane::distance_rad_s, "rad/s; of an accelerometer m/s^2")
+      .def_ro("distance", &RailPlane::distance_rad_s, "rad/s for a gyro, m/s^2 for an accelerometer")
       .def_ro("offset", &RailPlane::offset_rad_s)
-      .def_ro("tolerance", &RailPlane::tolerance_rad_s, "a reading within this of the plane, or beyond it, is clipped")
-      .def_ro("samples", &RailPlane::samples, "on the plane of the negative and of the positive sign")
-      .def_ro("log_odds", &RailPlane::log_odds, "of a rail against a motion that only looks like one");
-  nb::class_<Found>(m, "Rails", "The rails of an IMU, and which readings of a recording stand at them.")
+      .def_ro("tolerance", &RailPlane::tolerance_rad_s,
+              "a reading is clipped if it is within this distance of the plane, or beyond the plane")
+      .def_ro("samples", &RailPlane::samples, "number of samples on the negative and on the positive plane")
+      .def_ro("log_odds", &RailPlane::log_odds, "log odds of a rail versus a motion that resembles one");
+  nb::class_<Found>(m, "Rails", "The rails of an IMU, and the readings of a recording that are clipped.")
       .def_prop_ro(
           "gyro", [](const Found& f) { return as_list(f.rails.planes); },
           nb::for_getter(nb::sig("def gyro(self) -> list[RailPlane | None]")),
-          "planes of the gyro's elements x, y, z, each a RailPlane or None where none was seen")
+          "planes of the gyro elements x, y, z: a RailPlane each, or None if no rail was detected")
       .def_prop_ro(
           "accel", [](const Found& f) { return as_list(f.rails.accel_planes); },
           nb::for_getter(nb::sig("def accel(self) -> list[RailPlane | None]")))
       .def_prop_ro(
           "upright", [](const Found& f) { return f.rails.upright; },
-          "the device clips what it delivers: nothing is off on the axes beside")
+          "whether the device clips its output axes, so that clipping of one axis leaves the other axes unaffected")
       .def_prop_ro(
           "clipped_gyro", [](const Found& f) { return bits(f, &Clipping::gyro); },
-          "(N,) uint8, bit j: axis j at its rail, the truth lies at or beyond the reading")
+          "(N,) uint8, bit j: axis j is clipped; the true value is at or beyond the reading")
       .def_prop_ro("clipped_accel", [](const Found& f) { return bits(f, &Clipping::accel); })
       .def_prop_ro(
           "missing_gyro", [](const Found& f) { return bits(f, &Clipping::missing_gyro); },
-          "(N,) uint8, bit j: the reading of axis j says nothing (its sign flipped at the rail)");
+          "(N,) uint8, bit j: the reading of axis j is invalid (its sign flipped at the rail)");
   m.def(
       "find_rails", &find_rails, nb::arg("time_ns"), nb::arg("gyro"), nb::arg("accel"),
       nb::arg("clip_flags") = nb::none(), nb::arg("options"),
       nb::sig("def find_rails(time_ns: numpy.typing.ArrayLike, gyro: numpy.typing.ArrayLike, accel: "
               "numpy.typing.ArrayLike, "
               "clip_flags: numpy.typing.ArrayLike | None = None, **options: object) -> Rails"),
-      "Finds which readings of a recording are clipped, without flags and without a stated range: level plateaus and\n"
-      "tilted planes. gyro_range_rad_s, accel_range_m_s2: what the data sheet states, if anything. Further keywords:\n"
-      "rails_parameters().");
+      "Detects which readings of a recording are clipped. Needs neither flags nor a stated range: searches for level\n"
+      "plateaus and tilted planes. gyro_range_rad_s, accel_range_m_s2: the ranges that the data sheet states, or "
+      "None.\n"
+      "Further keywords: see rails_parameters().");
   m.def(
-      "rails_parameters", [] { return list_fields(ClippingFinder::Params{}); }, "Keywords of find_rails.");
+      "rails_parameters", [] { return list_fields(ClippingFinder::Params{}); }, "Lists the keywords of find_rails.");
 }
 
 }  // namespace tumble::python

@@ -11,10 +11,10 @@
 
 namespace tumble::python {
 
-/// Takes `gyro_range_rad_s` and `accel_range_m_s2`, what the data sheet states; None: nothing.
+/// Reads `gyro_range_rad_s` and `accel_range_m_s2`, the ranges that the data sheet states; None: not stated.
 void read_ranges(Keywords& keywords, RailDetector::Params& rails);
 
-/// [RailPlane or None] of three elements.
+/// Returns a list of three elements, each a RailPlane or None.
 nb::list as_list(const RailPlanes& planes);
 
 }  // namespace tumble::python

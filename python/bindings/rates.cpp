@@ -26,7 +26,7 @@ namespace tumble::python {
 
 namespace {
 
-/// What the model of both smoothers is told beside its numbers.
+/// Reads lever arm, calibration and ranges, which are not numeric fields of the parameters.
 void read_rig(Keywords& keywords, RateModelParams& model, RailDetector::Params& rails) {
   model.nominal.lever_arm_m = vector_of(keywords.need("lever_arm_m"), "lever_arm_m");
   const nb::object calibration = keywords.take("calibration");
@@ -34,7 +34,7 @@ void read_rig(Keywords& keywords, RateModelParams& model, RailDetector::Params& 
   read_ranges(keywords, rails);
 }
 
-/// Where the numbers of a class have the model and the rails.
+/// Returns the part of a class's parameters that contains the model and the rails.
 RateSmoother::Params& rate_part(RateSmoother::Params& params) {
   return params;
 }
@@ -63,12 +63,12 @@ RateStream::Params stream_params(const nb::kwargs& given) {
   return params_of<RateStream>("RateStream", given);
 }
 
-/// RegimeStream takes these from its RateStream, and the stream of the carried body iterates as it goes.
-const std::vector<const char*> kOfTheRate = {"carried_period_s", "carried_lag_s", "carried_gap_max_s",
-                                             "carried_iterations_max"};
+/// RegimeStream derives these from its RateStream; its CarriedStream makes one iteration per node.
+const std::vector<const char*> kDerivedRegimeParameters = {"carried_period_s", "carried_lag_s", "carried_gap_max_s",
+                                                           "carried_iterations_max"};
 
 RegimeStream::Params regime_params(const nb::kwargs& given) {
-  RegimeStream::Params params = params_of<RegimeStream>("RegimeStream", given, kOfTheRate);
+  RegimeStream::Params params = params_of<RegimeStream>("RegimeStream", given, kDerivedRegimeParameters);
   params.carried.body.expert.gap_max_s = params.rate.gap_max_s;
   return params;
 }
@@ -109,21 +109,24 @@ nb::dict shares_of(const RegimeShares& shares) {
 }
 
 void bind_batch(nb::module_& m) {
-  nb::class_<RateReport>(m, "RateReport", "What a run of RateSmoother tells about itself.")
+  nb::class_<RateReport>(m, "RateReport", "Statistics of a run of RateSmoother.")
       .def_ro("iterations", &RateReport::iterations)
       .def_ro("converged", &RateReport::converged)
       .def_ro("restarts", &RateReport::restarts)
-      .def_ro("calibration", &RateReport::calibration, "what was learnt of the rig: can be given to the next run")
+      .def_ro("calibration", &RateReport::calibration,
+              "estimated calibration of the rig, which the next run can start from")
       .def_ro("calibration_mahalanobis", &RateReport::calibration_mahalanobis,
-              "how far the rig's constants moved from what was known; far beyond 1 the prior is wrong")
+              "distance of the calibration from its prior; a value far above 1 indicates a wrong prior")
       .def_ro("calibration_at_prior", &RateReport::calibration_at_prior,
-              "nothing was learnt, the constants stayed at their prior")
-      .def_ro("rail", &RateReport::rail, "in use: gyro x y z [rad/s], accelerometer [m/s^2]; None: not seen")
+              "whether the calibration was not updated and equals its prior")
+      .def_ro("rail", &RateReport::rail, "rails in use: gyro x y z [rad/s], accelerometer [m/s^2]; None: not detected")
       .def_prop_ro(
           "planes", [](const RateReport& r) { return as_list(r.planes); },
-          nb::for_getter(nb::sig("def planes(self) -> list[RailPlane | None]")), "of the gyro's elements")
-      .def_ro("rate_unit_suspect", &RateReport::rate_unit_suspect, "readings that no body has: perhaps degrees")
-      .def_ro("force_unit_suspect", &RateReport::force_unit_suspect, "the specific force is near 1: perhaps in g")
+          nb::for_getter(nb::sig("def planes(self) -> list[RailPlane | None]")), "rails of the gyro elements")
+      .def_ro("rate_unit_suspect", &RateReport::rate_unit_suspect,
+              "whether the rates are implausible, for example in degrees")
+      .def_ro("force_unit_suspect", &RateReport::force_unit_suspect,
+              "whether the specific force is near 1, for example in g")
       .def_ro("samples", &RateReport::samples)
       .def_ro("clipped", &RateReport::clipped)
       .def_ro("recovered_flight", &RateReport::recovered_flight)
@@ -132,15 +135,15 @@ void bind_batch(nb::module_& m) {
       .def_ro("flight_share", &RateReport::flight_share)
       .def_prop_ro(
           "suspect_axes", [](const RateReport& r) { return owned(r.suspect_axes); }, nb::rv_policy::automatic,
-          "(N,) uint8, bit j: axis j may stand at a rail that was not seen");
+          "(N,) uint8, bit j: axis j may be at a rail that was not detected");
   nb::class_<RateSmoother>(
       m, "RateSmoother",
-      "Angular velocity of a tumbling body through saturation of its gyro, over a whole recording.\n\n"
+      "Estimates the angular velocity of a tumbling body through gyro saturation, over a whole recording.\n\n"
       "RateSmoother(lever_arm_m=(x, y, z), gyro_range_rad_s=None, accel_range_m_s2=None,\n"
-      "calibration=None, **options): lever_arm_m from the centre of mass to the IMU, IMU axes; ranges\n"
-      "as the data sheet states them, if it does; calibration: a RigCalibration of an earlier run.\n"
-      "Options: parameters(). For a body that flies and touches; one that a hand carries is\n"
-      "RegimeStream's or CarriedSmoother's, and tumble.rate() decides.")
+      "calibration=None, **options): lever_arm_m is from the centre of mass to the IMU, in IMU axes.\n"
+      "The ranges are those of the data sheet, or None. calibration is a RigCalibration of an earlier run.\n"
+      "Options: see parameters(). The model covers flight and contact. For hand-held motion use RegimeSmoother or\n"
+      "CarriedSmoother; tumble.rate() uses RegimeSmoother.")
       .def(
           "__init__",
           [](RateSmoother* self, const nb::kwargs& options) {
@@ -148,23 +151,25 @@ void bind_batch(nb::module_& m) {
           },
           nb::arg("options"), takes_options())
       .def("estimate", &smooth<RateSmoother, RateReport>, nb::arg("time_ns"), nb::arg("gyro"), nb::arg("accel"),
-           nb::arg("clip_flags") = nb::none(), "One rate per sample, and what the run tells of itself.")
+           nb::arg("clip_flags") = nb::none(), "Returns one rate per sample, and a RateReport.")
       .def_static("parameters", [] { return list_fields(RateSmoother::Params{}); });
   using Joint = RegimeSmoother::Report;
-  nb::class_<Joint>(m, "RegimeReport", "What a run of RegimeSmoother tells about itself.")
-      .def_ro("rate", &Joint::rate, "of RateSmoother")
+  nb::class_<Joint>(m, "RegimeReport", "Statistics of a run of RegimeSmoother.")
+      .def_ro("rate", &Joint::rate, "report of RateSmoother")
       .def_prop_ro(
           "shares", [](const Joint& r) { return shares_of(r.shares); },
           nb::for_getter(nb::sig("def shares(self) -> dict[str, float]")),
-          "means of the probabilities of flight, contact and being carried")
-      .def_ro("carried_clipped_max", &Joint::carried_clipped_max, "largest share of being carried where the gyro clips")
-      .def_ro("carried_asked", &Joint::carried_asked, "CarriedSmoother had a word")
-      .def_ro("carried", &Joint::carried, "of CarriedSmoother, where it had");
+          "mean probabilities of flight, contact and hand-held motion")
+      .def_ro("carried_clipped_max", &Joint::carried_clipped_max,
+              "largest probability of hand-held motion in a clipped segment")
+      .def_ro("carried_asked", &Joint::carried_asked, "whether CarriedSmoother was used")
+      .def_ro("carried", &Joint::carried, "report of CarriedSmoother, if it was used");
   nb::class_<RegimeSmoother>(m, "RegimeSmoother",
-                             "Angular velocity of a body that flies, touches or is carried, over a whole recording:\n"
-                             "RateSmoother, and where a hand held the body while its gyro clipped CarriedSmoother.\n\n"
+                             "Estimates the angular velocity of a body in flight, contact or hand-held motion, over a\n"
+                             "whole recording. Uses RateSmoother, and CarriedSmoother where the gyro clipped during\n"
+                             "hand-held motion.\n\n"
                              "RegimeSmoother(lever_arm_m=(x, y, z), gyro_range_rad_s=None, accel_range_m_s2=None,\n"
-                             "calibration=None, **options): as RateSmoother; options: parameters().")
+                             "calibration=None, **options): as RateSmoother. Options: see parameters().")
       .def(
           "__init__",
           [](RegimeSmoother* self, const nb::kwargs& options) {
@@ -172,14 +177,15 @@ void bind_batch(nb::module_& m) {
           },
           nb::arg("options"), takes_options())
       .def("estimate", &smooth<RegimeSmoother, Joint>, nb::arg("time_ns"), nb::arg("gyro"), nb::arg("accel"),
-           nb::arg("clip_flags") = nb::none(), "One rate per sample, and what the run tells of itself.")
+           nb::arg("clip_flags") = nb::none(), "Returns one rate per sample, and a RegimeReport.")
       .def_static("parameters", [] { return list_fields(RegimeSmoother::Params{}); });
   nb::class_<Saave>(
       m, "Saave",
-      "The published recovery of one clipped axis (Deschenes et al., ICRA 2024), then its smoother, over a\n"
-      "whole recording. Saave(lever_arm_m=(x, y, z), saturation_point_rad_s=..., **options): lever_arm_m from the "
-      "centre of\n"
-      "mass to the IMU, IMU axes; a reading beyond saturation_point_rad_s is clipped; options: parameters().")
+      "Recovers one clipped axis by the published method (Deschenes et al., ICRA 2024), followed by a smoother over "
+      "the\n"
+      "whole recording.\n\n"
+      "Saave(lever_arm_m=(x, y, z), saturation_point_rad_s=..., **options): lever_arm_m is from the centre of mass to\n"
+      "the IMU, in IMU axes. A reading beyond saturation_point_rad_s is clipped. Options: see parameters().")
       .def(
           "__init__",
           [](Saave* self, const nb::kwargs& options) {
@@ -193,11 +199,11 @@ void bind_batch(nb::module_& m) {
           },
           nb::arg("options"), takes_options())
       .def("estimate", &saave, nb::arg("time_ns"), nb::arg("gyro"), nb::arg("accel"),
-           nb::arg("clip_flags") = nb::none(), "One rate per sample.")
+           nb::arg("clip_flags") = nb::none(), "Returns one rate per sample.")
       .def_static("parameters", [] { return list_fields(Saave::Params{}); });
 }
 
-/// What the two streams have in common. `rate(stream)` and `state(state)`: the RateStream inside.
+/// Binds the interface that both streams share. `rate(stream)` and `rate_state(state)` return the RateStream inside.
 template <class Stream, class Rate, class RateState_>
 auto bind_stream(nb::module_& m, const char* name, const char* doc,
                  typename Stream::Params (*params)(const nb::kwargs&), Rate rate, RateState_ rate_state) {
@@ -221,7 +227,7 @@ auto bind_stream(nb::module_& m, const char* name, const char* doc,
             return feed<Rates>(self, samples_of(time_ns, gyro, accel, clip_flags), step);
           },
           nb::arg("time_ns"), nb::arg("gyro"), nb::arg("accel"), nb::arg("clip_flags") = nb::none(),
-          "Takes one sample or many; returns the rates that are smoothed with them, lag_s old each.")
+          "Adds one sample or many. Returns the rates that became available, each lag_s old.")
       .def(
           "flush",
           [](Object& self) {
@@ -229,7 +235,7 @@ auto bind_stream(nb::module_& m, const char* name, const char* doc,
             self.run([&](Streaming<Stream>& at) { at.filter.flush(*at.state, out.rows); });
             return out;
           },
-          "Rates of the samples still in the window, as they stand. The stream stays as it is.")
+          "Returns the current estimates for the samples still in the window. The stream is unchanged.")
       .def(
           "newest",
           [rate, rate_state](Object& self) {
@@ -240,13 +246,13 @@ auto bind_stream(nb::module_& m, const char* name, const char* doc,
             });
             return out;
           },
-          "Provisional rate of the newest sample; no row before the first.")
+          "Returns the provisional rate of the newest sample; no row before the first sample.")
       .def(
           "calibration",
           [rate, rate_state](Object& self) {
             return self.run([&](Streaming<Stream>& at) { return rate(at.filter).calibration(rate_state(*at.state)); });
           },
-          "What has been learnt of the rig.")
+          "Returns the calibration of the rig estimated so far.")
       .def(
           "health",
           [rate, rate_state](Object& self) {
@@ -261,20 +267,19 @@ auto bind_stream(nb::module_& m, const char* name, const char* doc,
 void bind_streams(nb::module_& m) {
   bind_stream<RateStream>(
       m, "RateStream",
-      "The streaming form of RateSmoother: each rate is given out when its sample is lag_s old.\n\n"
+      "The streaming form of RateSmoother: returns each rate when its sample is lag_s old.\n\n"
       "RateStream(lever_arm_m=(x, y, z), gyro_range_rad_s=None, accel_range_m_s2=None, calibration=None, **options):\n"
-      "as RateSmoother; options: parameters().",
+      "as RateSmoother. Options: see parameters().",
       &stream_params, [](const RateStream& s) -> const RateStream& { return s; },
       [](const RateStream::State& s) -> const RateStream::State& { return s; })
       .def_static("parameters", [] { return list_fields(RateStream::Params{}); });
   bind_stream<RegimeStream>(
       m, "RegimeStream",
-      "Angular velocity of a body that flies, touches or is carried, as a stream: RateStream, and where a hand holds "
-      "the\n"
-      "body while its gyro clips a smoother of carried bodies.\n\n"
-      "RegimeStream(lever_arm_m=(x, y, z), gyro_range_rad_s=None, accel_range_m_s2=None, calibration=None, "
-      "**options):\n"
-      "as RateSmoother; options: parameters().",
+      "Estimates the angular velocity of a body in flight, contact or hand-held motion, as a stream. Uses RateStream, "
+      "and\n"
+      "CarriedStream where the gyro clips during hand-held motion.\n\n"
+      "RegimeStream(lever_arm_m=(x, y, z), gyro_range_rad_s=None, accel_range_m_s2=None, calibration=None,\n"
+      "**options): as RateSmoother. Options: see parameters().",
       &regime_params, [](const RegimeStream& s) -> const RateStream& { return s.rate(); },
       [](const RegimeStream::State& s) -> const RateStream::State& { return s.rate; })
       .def(
@@ -284,20 +289,20 @@ void bind_streams(nb::module_& m) {
             return shares_of(shares);
           },
           nb::sig("def regime_shares(self) -> dict[str, float]"),
-          "Probabilities of flight, contact and being carried, at the sample given out last.")
-      .def_static("parameters", [] { return list_fields(RegimeStream::Params{}, kOfTheRate); });
+          "Returns the probabilities of flight, contact and hand-held motion at the sample returned last.")
+      .def_static("parameters", [] { return list_fields(RegimeStream::Params{}, kDerivedRegimeParameters); });
 }
 
 }  // namespace
 
 void bind_rates(nb::module_& m) {
-  nb::enum_<RateSource>(m, "RateSource", nb::is_arithmetic(), "Where an angular velocity comes from.")
-      .value("measured", RateSource::measured, "no axis of the gyro is clipped, nor doubted to be")
+  nb::enum_<RateSource>(m, "RateSource", nb::is_arithmetic(), "Source of an angular velocity.")
+      .value("measured", RateSource::measured, "no axis of the gyro is clipped or suspect")
       .value("recovered_flight", RateSource::recovered_flight,
              "clipped, recovered from the centripetal specific force of free flight")
       .value("recovered_contact", RateSource::recovered_contact, "clipped, recovered while in contact")
       .value("bounded_only", RateSource::bounded_only,
-             "clipped or doubted to be, nothing known but the rail and the smoothness of the motion");
+             "clipped or suspect; constrained only by the rail and the smoothness of the motion");
   bind_rig(m);
   bind_batch(m);
   bind_streams(m);

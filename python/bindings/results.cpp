@@ -23,7 +23,7 @@ auto times(const Rows& self) {
   return column<std::int64_t>(self.rows, [](const auto& row) { return &row.time_ns; });
 }
 
-/// What all of them have.
+/// Binds the length and the concatenation of rows.
 template <class Rows>
 nb::class_<Rows> bind_rows(nb::module_& m, const char* name, const char* doc) {
   nb::class_<Rows> bound(m, name, doc);
@@ -38,12 +38,12 @@ nb::class_<Rows> bind_rows(nb::module_& m, const char* name, const char* doc) {
             }
             return out;
           },
-          nb::arg("parts"), "The rows of several, one after the other.");
+          nb::arg("parts"), "Returns the concatenated rows of several objects.");
   return bound;
 }
 
 constexpr const char* kTimes = "(N,) int64, nanoseconds";
-constexpr const char* kQuaternions = "(N, 4): Hamilton, x y z w as scipy has them; sensor or body axes to world";
+constexpr const char* kQuaternions = "(N, 4): Hamilton, x y z w as in scipy; rotates sensor or body axes to the world";
 constexpr const char* kPoseCovariance =
     "(6, 6), of (position error in W [m], attitude error phi in W [rad]); zero where not reported";
 constexpr const char* kPoseCovariances = "(N, 6, 6), of (position error in W [m], attitude error phi in W [rad])";
@@ -108,7 +108,7 @@ void bind_poses(nb::module_& m) {
             pose.translation() = s.p_WA_m;
             return matrix(pose);
           },
-          "(4, 4), takes coordinates of the frame to W");
+          "(4, 4), transforms coordinates of the frame to W");
   bind_rows<Poses>(m, "Poses", "Poses and velocities of a frame in the world, in order of time.")
       .def_prop_ro("time_ns", &times<Poses>, kTimes)
       .def_prop_ro(
@@ -130,7 +130,7 @@ void bind_poses(nb::module_& m) {
 
 void bind_rolling_of_results(nb::module_& m) {
   using R = RollingPoses;
-  bind_rows<R>(m, "RollingPoses", "Poses of a rolling sphere's centre, with what is known of the contact.")
+  bind_rows<R>(m, "RollingPoses", "Poses of the centre of a rolling sphere, with the state of the contact.")
       .def_prop_ro("time_ns", &times<R>, kTimes)
       .def_prop_ro(
           "position", [](const R& s) { return column<double, 3>(s.rows, [](auto& r) { return r.p_WG_m.data(); }); },
@@ -156,7 +156,7 @@ void bind_rolling_of_results(nb::module_& m) {
           "at_rest", [](const R& s) { return column<bool>(s.rows, [](auto& r) { return &r.at_rest; }); }, "(N,) bool")
       .def_prop_ro(
           "uncertain", [](const R& s) { return column<bool>(s.rows, [](auto& r) { return &r.uncertain; }); },
-          "(N,) bool: in an event that made the position uncertain");
+          "(N,) bool: whether the sample is in an event that made the position uncertain");
 }
 
 void bind_map(nb::module_& m) {

@@ -10,7 +10,7 @@
 #include "tumble/mapping/lidar.hpp"
 #include "tumble/rolling/rolling_smoother.hpp"
 
-/// What estimators give out, in rows: each class shows the columns as arrays where they lie.
+/// Results of estimators, in rows. Each class exposes its columns as views of the rows.
 namespace tumble::python {
 
 struct Rates {
@@ -29,7 +29,7 @@ struct MapPoints {
   std::vector<MapPoint> rows;
 };
 
-/// The rows of several as one.
+/// Concatenates the poses of several trajectories.
 Poses joined(const std::vector<std::vector<PoseState>>& parts);
 
 void bind_results(nanobind::module_& m);

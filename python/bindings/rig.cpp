@@ -14,7 +14,7 @@ namespace tumble::python {
 
 namespace {
 
-/// Constants in the order of RigConstants, with their covariance.
+/// Reads constants in the order of RigConstants, and their covariance.
 RigCalibration rig_from(nb::handle constants, nb::handle covariance) {
   constexpr int kSize = RigConstants::kSize;
   const std::vector<double> vector = numbers_of(constants, "constants", kSize);
@@ -25,11 +25,12 @@ RigCalibration rig_from(nb::handle constants, nb::handle covariance) {
   }
   RigCalibration out;
   out.constants.add(Eigen::Map<const RigConstants::Vector>(vector.data()));
-  out.covariance = Eigen::Map<const RigConstants::Matrix>(flat.data()).transpose();  // numpy's rows, Eigen's columns
+  out.covariance =
+      Eigen::Map<const RigConstants::Matrix>(flat.data()).transpose();  // numpy stores rows, Eigen stores columns
   const bool symmetric = (out.covariance - out.covariance.transpose()).cwiseAbs().maxCoeff() <=
                          1e-9 * out.covariance.cwiseAbs().maxCoeff();
   if (!symmetric || Eigen::LLT<RigConstants::Matrix>(out.covariance).info() != Eigen::Success) {
-    raise_input("out_of_range", "covariance", nb::str("not so"), nb::str("symmetric and positive definite"));
+    raise_input("out_of_range", "covariance", nb::str("not a covariance"), nb::str("symmetric and positive definite"));
   }
   return out;
 }
@@ -44,13 +45,14 @@ RigCalibration rig_of(nb::handle given, const char* field) {
 
 void bind_rig(nb::module_& m) {
   using R = RigCalibration;
-  nb::class_<R>(m, "RigCalibration", "What one run has learnt of the rig and another may start from.")
+  nb::class_<R>(m, "RigCalibration", "Calibration of the rig estimated by one run, which another run can start from.")
       .def(
           "__init__",
           [](R* self, const ArrayLike& constants, const ArrayLike& covariance) {
             new (self) R(rig_from(constants, covariance));
           },
-          nb::arg("constants"), nb::arg("covariance"), "(20,) and (20, 20), as `constants` and `covariance` show them")
+          nb::arg("constants"), nb::arg("covariance"),
+          "constants: (20,), covariance: (20, 20), in the order of the properties with these names")
       .def_prop_ro(
           "constants",
           [](const R& r) {

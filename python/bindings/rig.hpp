@@ -7,7 +7,7 @@
 
 namespace tumble::python {
 
-/// What an earlier run has learnt: a RigCalibration of Python's. `type` for anything else.
+/// Converts a RigCalibration of Python. Raises TumbleError `type` for anything else.
 RigCalibration rig_of(nanobind::handle given, const char* field);
 
 void bind_rig(nanobind::module_& m);

@@ -25,10 +25,10 @@ void bind_rolling_smoother(nb::module_& m) {
   using Object = Guarded<Streaming<RollingSmoother>>;
   nb::class_<Object> bound(
       m, "RollingSmoother",
-      "Pose of a rolling sphere from one IMU, smoothed with a fixed lag or, by default, over the whole run.\n\n"
-      "RollingSmoother(radius_m=..., lever_arm_m=(x, y, z), **options): lever_arm_m from the centre to the IMU, "
-      "sensor\n"
-      "axes; options: parameters(). Begin with a second of rest.");
+      "Estimates the pose of a rolling sphere from one IMU, smoothed with a fixed lag or, by default, over the whole "
+      "run.\n\n"
+      "RollingSmoother(radius_m=..., lever_arm_m=(x, y, z), **options): lever_arm_m is from the centre to the IMU, in\n"
+      "sensor axes. Options: see parameters(). The sphere must be stationary for the first second.");
   bound
       .def(
           "__init__",
@@ -51,7 +51,7 @@ void bind_rolling_smoother(nb::module_& m) {
             return feed<RollingPoses>(self, samples_of(time_ns, gyro, accel, clip_flags), step);
           },
           nb::arg("time_ns"), nb::arg("gyro"), nb::arg("accel"), nb::arg("clip_flags") = nb::none(),
-          "Takes one sample or many; returns the poses that are old enough with them.")
+          "Adds one sample or many. Returns the poses that became available.")
       .def(
           "finish",
           [](Object& self) {
@@ -59,7 +59,7 @@ void bind_rolling_smoother(nb::module_& m) {
             self.run([&](Streaming<RollingSmoother>& at) { at.filter.finish(*at.state, out.rows); });
             return out;
           },
-          "The poses that are still owed. The run has ended.")
+          "Ends the run and returns the remaining poses.")
       .def_static("parameters", [] { return list_fields(RollingSmoother::Params{}); });
   bind_keeping<RollingSmoother>(bound);
 }
@@ -69,9 +69,9 @@ void bind_filter(nb::module_& m) {
   using Object = Guarded<Live>;
   nb::class_<Object> bound(
       m, "RollingFilter",
-      "Pose of a rolling sphere from one IMU, live: each by what came before it. RollingSmoother also hears what "
-      "follows.\n\n"
-      "RollingFilter(radius_m=..., lever_arm_m=(x, y, z), **options): as RollingSmoother; options: parameters().");
+      "Estimates the pose of a rolling sphere from one IMU, live: each pose depends on earlier samples only.\n"
+      "RollingSmoother also uses later samples.\n\n"
+      "RollingFilter(radius_m=..., lever_arm_m=(x, y, z), **options): as RollingSmoother. Options: see parameters().");
   bound
       .def(
           "__init__",
@@ -96,48 +96,49 @@ void bind_filter(nb::module_& m) {
             return feed<RollingPoses>(self, samples_of(time_ns, gyro, accel, clip_flags), step);
           },
           nb::arg("time_ns"), nb::arg("gyro"), nb::arg("accel"), nb::arg("clip_flags") = nb::none(),
-          "Takes one sample or many; returns the pose at each. Of the covariance the place alone is known; zero: the "
-          "rest.")
+          "Adds one sample or many. Returns the pose at each. The covariance contains the position only; all other "
+          "entries\n"
+          "are zero.")
       .def_prop_ro(
           "slip_probability",
           [](Object& self) { return self.run([](Live& at) { return at.state->slip_probability; }); },
-          "that the contact moves, over all hypotheses")
+          "probability that the contact point slides, over all hypotheses")
       .def_prop_ro(
           "bump_probability",
           [](Object& self) { return self.run([](Live& at) { return at.state->bump_probability; }); },
-          "the part of slip_probability in which the sphere hops")
+          "part of slip_probability in which the sphere also leaves the floor")
       .def_prop_ro(
           "contact_velocity",
           [](Object& self) {
             const Eigen::Vector3d v = self.run([](Live& at) { return at.state->contact_velocity_m_s; });
             return owned(std::vector<double>(v.begin(), v.end()));
           },
-          nb::rv_policy::automatic, "(3,), m/s, W: of the sphere's material point that touches the floor")
+          nb::rv_policy::automatic, "(3,), m/s, W: velocity of the point of the sphere that touches the floor")
       .def_prop_ro(
           "gaps", [](Object& self) { return self.run([](Live& at) { return at.state->gaps; }); },
-          "between samples, that were bridged")
+          "number of bridged gaps between samples")
       .def_prop_ro(
           "started_in_motion",
           [](Object& self) { return self.run([](Live& at) { return at.state->started_in_motion; }); },
-          "its attitude is believed less then")
+          "whether the run started in motion, so that the initial attitude has a larger uncertainty")
       .def_static("parameters", [] { return list_fields(RollingFilter::Params{}); });
   bind_keeping<RollingFilter>(bound);
 }
 
-/// The door's own numbers, and what its sheets say, take the place of these.
-const std::vector<const char*> kOfTheDoor = {"merge_count",
-                                             "merge_gyro_range_rad_s",
-                                             "merge_accel_range_m_s2",
-                                             "rolling_radius_m",
-                                             "rolling_gravity_m_s2",
-                                             "rolling_lever_arm_m",
-                                             "rolling_lever_arm_sigma_m",
-                                             "rolling_gyro_range_rad_s",
-                                             "rolling_accel_range_m_s2",
-                                             "rolling_recovered_rate_sigma_rad_s",
-                                             "rolling_lag_s"};
+/// RollingOdometry derives these parameters from its own numbers and from the data sheets.
+const std::vector<const char*> kDerivedRollingParameters = {"merge_count",
+                                                            "merge_gyro_range_rad_s",
+                                                            "merge_accel_range_m_s2",
+                                                            "rolling_radius_m",
+                                                            "rolling_gravity_m_s2",
+                                                            "rolling_lever_arm_m",
+                                                            "rolling_lever_arm_sigma_m",
+                                                            "rolling_gyro_range_rad_s",
+                                                            "rolling_accel_range_m_s2",
+                                                            "rolling_recovered_rate_sigma_rad_s",
+                                                            "rolling_lag_s"};
 
-RollingOdometry::Params door_params(const nb::kwargs& given) {
+RollingOdometry::Params rolling_params(const nb::kwargs& given) {
   Keywords keywords("RollingOdometry", given);
   RollingOdometry::Params params;
   const nb::object units = keywords.need("units");
@@ -154,7 +155,7 @@ RollingOdometry::Params door_params(const nb::kwargs& given) {
       raise_input("type", "units", nb::str(pair), nb::str("pairs (ImuSheet, T_BI)"));
     params.units.push_back({sheet, pose_of(pair[1], "units T_BI")});
   }
-  read_fields(keywords, params, kOfTheDoor);
+  read_fields(keywords, params, kDerivedRollingParameters);
   keywords.done();
   return params;
 }
@@ -164,7 +165,8 @@ RollingEstimate as_estimate(const RollingOdometry::Pose& p) {
           p.pose.covariance, p.mode,        p.at_rest,   p.uncertain};
 }
 
-/// Samples of all units: one triple of arrays, or a list with one for each unit. The first's times count.
+/// Returns the samples of all units, from one triple of arrays or from lists with one array per unit. All units share
+/// `time_ns`.
 std::vector<std::vector<ImuSample>> samples_of_units(const ArrayLike& time_ns, const ArrayLike& gyro,
                                                      const ArrayLike& accel, std::size_t units) {
   if (units == 1 && !nb::isinstance<nb::list>(gyro)) return {samples_of(time_ns, gyro, accel, nb::none())};
@@ -173,7 +175,7 @@ std::vector<std::vector<ImuSample>> samples_of_units(const ArrayLike& time_ns, c
     for (const auto& [name, list] : {std::pair{"gyro", gyro}, std::pair{"accel", accel}}) {
       if (!nb::isinstance<nb::list>(list) || nb::len(list) != units) {
         raise_input("shape", name, list.type(),
-                    nb::str(("a list of " + std::to_string(units) + " arrays, one a unit").c_str()));
+                    nb::str(("a list of " + std::to_string(units) + " arrays, one per unit").c_str()));
       }
     }
     out.push_back(samples_of(time_ns, gyro[k], accel[k], nb::none()));
@@ -181,14 +183,14 @@ std::vector<std::vector<ImuSample>> samples_of_units(const ArrayLike& time_ns, c
   return out;
 }
 
-RollingPoses taken(RollingOdometry& odometry) {
+RollingPoses take_all(RollingOdometry& odometry) {
   RollingPoses out;
   while (const std::optional<RollingOdometry::Pose> pose = odometry.take()) out.rows.push_back(as_estimate(*pose));
   return out;
 }
 
-/// The door, with how many units it has.
-struct Door {
+/// RollingOdometry with the number of its units.
+struct BoundRollingOdometry {
   RollingOdometry odometry;
   std::size_t units;
 
@@ -196,57 +198,58 @@ struct Door {
   Status load(std::span<const std::byte> bytes) { return odometry.load(bytes); }
 };
 
-Door restored_door(std::span<const std::byte> bytes) {
+BoundRollingOdometry restored_rolling(std::span<const std::byte> bytes) {
   RollingOdometry::Params params;
   require(RollingOdometry::saved_params(bytes, params));
-  Door out{RollingOdometry(params), params.units.size()};
+  BoundRollingOdometry out{RollingOdometry(params), params.units.size()};
   require(out.load(bytes));
   return out;
 }
 
 void bind_unit(nb::module_& m) {
   using U = ImuMergeUnit;
-  nb::class_<U>(m, "SphereUnit", "What the IMUs of a sphere say of one of them. Of one alone nothing is said.")
-      .def_ro("frozen", &U::frozen, "it repeats itself while the others move")
-      .def_ro("disagrees", &U::disagrees, "it is off from the others for long, and left out")
-      .def_ro("left_out", &U::left_out, "windows in which it was left out of the force")
-      .def_ro("absent", &U::absent, "samples that were not finite")
-      .def_prop_ro("time_offset_s", &U::offset_s, "of its clock about the mean of all")
+  nb::class_<U>(m, "SphereUnit",
+                "State of one IMU of a sphere, from a comparison with the others. Not computed for a single IMU.")
+      .def_ro("frozen", &U::frozen, "whether its readings are constant while the others change")
+      .def_ro("disagrees", &U::disagrees, "whether it has disagreed with the others for long and is excluded")
+      .def_ro("left_out", &U::left_out, "number of windows in which its specific force was excluded")
+      .def_ro("absent", &U::absent, "number of samples that were not finite")
+      .def_prop_ro("time_offset_s", &U::offset_s, "offset of its clock from the mean of all units")
       .def_prop_ro(
-          "rate_bias_rad_s", [](const U& u) { return whole<3>(u.x.data()); }, "(3,), about the mean of all");
+          "rate_bias_rad_s", [](const U& u) { return whole<3>(u.x.data()); },
+          "(3,), bias relative to the mean of all units");
 }
 
-void bind_door(nb::module_& m) {
-  using Object = Guarded<Door>;
+void bind_rolling_odometry(nb::module_& m) {
+  using Object = Guarded<BoundRollingOdometry>;
   nb::class_<Object> bound(
       m, "RollingOdometry",
-      "Pose of a rolling sphere from one to four IMUs, through grip, slip, bumps and slopes: live, and smoothed with "
-      "what\n"
-      "follows within lag_s.\n\n"
-      "RollingOdometry(units=[(ImuSheet, T_BI), ...], radius_m=..., **options): T_BI (4, 4) places a unit in axes of "
-      "the\n"
-      "sphere, from its centre. Options: parameters(). World: z up, origin at the centre at the first sample, yaw 0.\n"
-      "Begin with a second of rest.");
+      "Estimates the pose of a rolling sphere from one to four IMUs, through grip, slip, bumps and slopes. Poses are "
+      "live,\n"
+      "and smoothed with a lag of lag_s.\n\n"
+      "RollingOdometry(units=[(ImuSheet, T_BI), ...], radius_m=..., **options): T_BI (4, 4) is the pose of a unit in\n"
+      "sphere axes, relative to the centre. Options: see parameters(). World: z up, origin at the centre at the first\n"
+      "sample, yaw 0. The sphere must be stationary for the first second.");
   bound
       .def(
           "__init__",
           [](Object* self, const nb::kwargs& options) {
-            const RollingOdometry::Params params = door_params(options);
-            new (self) Object(Door{RollingOdometry(params), params.units.size()});
+            const RollingOdometry::Params params = rolling_params(options);
+            new (self) Object(BoundRollingOdometry{RollingOdometry(params), params.units.size()});
           },
           nb::arg("options"), takes_options())
       .def(
           "add_imu",
           [](Object& self, const ArrayLike& time_ns, const ArrayLike& gyro, const ArrayLike& accel) {
-            const std::size_t units = self.run([](Door& door) { return door.units; });
+            const std::size_t units = self.run([](BoundRollingOdometry& rolling) { return rolling.units; });
             const std::vector<std::vector<ImuSample>> all = samples_of_units(time_ns, gyro, accel, units);
             Status status;
             std::size_t k = 0;
-            const std::optional<TimeNs> last_ns = self.run_timed([&](Door& door, LastTimes& last) {
+            const std::optional<TimeNs> last_ns = self.run_timed([&](BoundRollingOdometry& rolling, LastTimes& last) {
               std::vector<ImuSample> now(units);
               for (; k < all.front().size(); ++k) {
                 for (std::size_t unit = 0; unit < units; ++unit) now[unit] = all[unit][k];
-                status = door.odometry.add_imus(now);
+                status = rolling.odometry.add_imus(now);
                 if (!status.ok()) break;
                 last.sample_ns = now.front().time_ns;
               }
@@ -255,66 +258,76 @@ void bind_door(nb::module_& m) {
             if (!status.ok()) require(status, k, nb::none(), {all.front()[k].time_ns, last_ns});
           },
           nb::arg("time_ns"), nb::arg("gyro"), nb::arg("accel"),
-          "Takes what all units read at one time, or at N: of one unit arrays, of several lists with one for each "
-          "unit.\n"
-          "A unit that has nothing to say gives NaN.")
+          "Adds the readings of all units at one time or at N times: arrays for one unit, lists with one array per "
+          "unit for\n"
+          "several. NaN marks a missing reading of a unit.")
       .def(
           "newest",
           [](Object& self) {
             RollingPoses out;
-            self.run([&](Door& door) {
-              if (const auto pose = door.odometry.newest()) out.rows.push_back(as_estimate(*pose));
+            self.run([&](BoundRollingOdometry& rolling) {
+              if (const auto pose = rolling.odometry.newest()) out.rows.push_back(as_estimate(*pose));
             });
             return out;
           },
-          "Pose at the newest sample by what came before it; no row before the first.")
+          "Returns the live pose at the newest sample; no row before the first sample.")
       .def(
-          "take", [](Object& self) { return self.run([](Door& door) { return taken(door.odometry); }); },
-          "The poses that have become known since the last call, each once: lag_s old, or live ones without a lag.")
+          "take",
+          [](Object& self) {
+            return self.run([](BoundRollingOdometry& rolling) { return take_all(rolling.odometry); });
+          },
+          "Returns the poses that became available since the last call, each once: lag_s old, or live if lag_s is 0.")
       .def(
-          "health", [](Object& self) { return health_of(self.run([](Door& door) { return door.odometry.health(); })); },
+          "health",
+          [](Object& self) {
+            return health_of(self.run([](BoundRollingOdometry& rolling) { return rolling.odometry.health(); }));
+          },
           nb::sig("def health(self) -> tumble.errors.TumbleError | None"), kHealth)
       .def(
-          "finish", [](Object& self) { self.run([](Door& door) { door.odometry.finish(); }); },
-          "Smooths what is still within the lag: the run has ended, until reset(). take() gives it.")
+          "finish", [](Object& self) { self.run([](BoundRollingOdometry& rolling) { rolling.odometry.finish(); }); },
+          "Ends the run and smooths the poses within the lag, which take() returns. reset() starts the next run.")
       .def(
-          "reset", [](Object& self) { self.run([](Door& door) { door.odometry.reset(); }); },
-          "Begins a new run: at the origin, at rest.")
+          "reset", [](Object& self) { self.run([](BoundRollingOdometry& rolling) { rolling.odometry.reset(); }); },
+          "Starts a new run, stationary at the origin.")
       .def_prop_ro(
           "rejected_readings",
-          [](Object& self) { return self.run([](Door& door) { return door.odometry.rejected_readings(); }); },
-          "number of readings that were rejected because they are wild, over all units")
+          [](Object& self) {
+            return self.run([](BoundRollingOdometry& rolling) { return rolling.odometry.rejected_readings(); });
+          },
+          "number of readings of all units that were rejected as outliers")
       .def_prop_ro(
           "estimated_jitter_s",
-          [](Object& self) { return self.run([](Door& door) { return door.odometry.estimated_jitter_s(); }); },
-          "standard deviation of the stamps about a regular clock, while that clock's times count for them; else None")
+          [](Object& self) {
+            return self.run([](BoundRollingOdometry& rolling) { return rolling.odometry.estimated_jitter_s(); });
+          },
+          "standard deviation of the stamps about a regular clock, while that clock replaces them; else None")
       .def_prop_ro(
           "units",
           [](Object& self) {
-            return self.run([](Door& door) {
-              const auto& all = door.odometry.units().units;
-              return std::vector<ImuMergeUnit>(all.begin(), all.begin() + static_cast<std::ptrdiff_t>(door.units));
+            return self.run([](BoundRollingOdometry& rolling) {
+              const auto& all = rolling.odometry.units().units;
+              return std::vector<ImuMergeUnit>(all.begin(), all.begin() + static_cast<std::ptrdiff_t>(rolling.units));
             });
           },
-          "What the units say of each other, in their order.")
-      .def_static("parameters", [] { return list_fields(RollingOdometry::Params{}, kOfTheDoor); });
+          "state of each unit from a comparison of the units, in their order")
+      .def_static("parameters", [] { return list_fields(RollingOdometry::Params{}, kDerivedRollingParameters); });
   bind_copy<Object>(bound);
-  bind_saving<Door>(bound, &restored_door);
+  bind_saving<BoundRollingOdometry>(bound, &restored_rolling);
 }
 
 }  // namespace
 
 void bind_rolling(nb::module_& m) {
-  nb::enum_<RollingMode>(m, "RollingMode", nb::is_arithmetic(), "How the sphere meets the floor.")
-      .value("grip", RollingMode::grip, "the contact point stands still, the floor is level")
-      .value("slip", RollingMode::slip, "it moves along the floor")
-      .value("bump", RollingMode::bump, "it also rises or falls")
-      .value("incline", RollingMode::incline, "it stands still on a slope")
-      .value("rough", RollingMode::rough, "it stands still, the floor goes up and down");
+  nb::enum_<RollingMode>(m, "RollingMode", nb::is_arithmetic(), "Type of contact between sphere and floor.")
+      .value("grip", RollingMode::grip, "the contact point does not slide, the floor is level")
+      .value("slip", RollingMode::slip, "the contact point slides along the floor")
+      .value("bump", RollingMode::bump, "the contact point also moves up or down")
+      .value("incline", RollingMode::incline, "the contact point does not slide, on a slope")
+      .value("rough", RollingMode::rough, "the contact point does not slide, the floor is uneven");
   bind_filter(m);
   bind_rolling_smoother(m);
   bind_unit(m);
-  bind_door(m);
+  bind_rolling_odometry(m);
 }
 
 }  // namespace tumble::python

@@ -12,15 +12,15 @@
 
 namespace tumble::python {
 
-/// What somebody gave as a saved state; TumbleError `type` where it is no bytes.
+/// Returns the bytes of a saved state. Raises TumbleError `type` if `given` is not bytes.
 inline std::span<const std::byte> state_of(nb::handle given) {
   if (!nb::isinstance<nb::bytes>(given)) raise_input("type", "state", given.type(), nb::str("bytes"));
   const auto bytes = nb::borrow<nb::bytes>(given);
   return {reinterpret_cast<const std::byte*>(bytes.c_str()), bytes.size()};
 }
 
-/// save() and load(), which T has, and pickling by them. `restored(bytes)` makes a T of the parameters that the bytes
-/// tell.
+/// save() and load(), which T has, and pickling by them. `restored(bytes)` constructs a T with the parameters stored
+/// in the bytes.
 template <class T, class Class, class Restored>
 void bind_saving(Class& bound, Restored restored) {
   using Object = Guarded<T>;
@@ -30,7 +30,7 @@ void bind_saving(Class& bound, Restored restored) {
   };
   bound
       .def("save", saved, nb::sig("def save(self) -> bytes"),
-           "All that it knows, its parameters included, with a checksum; the same on every machine.")
+           "Returns the whole state and the parameters, with a checksum. The bytes are the same on every machine.")
       .def(
           "load",
           [](Object& self, nb::handle state) {
@@ -42,9 +42,10 @@ void bind_saving(Class& bound, Restored restored) {
             }));
           },
           nb::arg("state"), nb::sig("def load(self, state: bytes) -> None"),
-          "Goes on from where save() was called, with the same bits. Bytes that are damaged, of other parameters or of "
-          "another\n"
-          "version of the library are TumbleError, and it stays as it was. pickle needs no object to begin with.")
+          "Restores the state that save() returned; later results are identical to the bit. Raises TumbleError if the "
+          "bytes\n"
+          "are damaged, or belong to other parameters or another version of the library; the state is then unchanged.\n"
+          "pickle also restores the object itself.")
       .def("__getstate__", saved, nb::sig("def __getstate__(self) -> bytes"))
       .def(
           "__setstate__", [restored](Object& self, nb::handle state) { new (&self) Object(restored(state_of(state))); },

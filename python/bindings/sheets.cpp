@@ -41,14 +41,14 @@ nb::class_<Sheet> bind_sheet(nb::module_& m, const char* name, const char* doc) 
 }  // namespace
 
 void bind_sheets(nb::module_& m) {
-  bind_sheet<ImuSheet>(m, "ImuSheet",
-                       "What the data sheet of an IMU says. A range of 0 is not stated. ImuSheet(**numbers).")
+  bind_sheet<ImuSheet>(
+      m, "ImuSheet", "Data sheet of an IMU. A range of 0 means that the sheet does not state it. ImuSheet(**numbers).")
       .def_ro("rate_hz", &ImuSheet::rate_hz)
       .def_ro("gyro_range_rad_s", &ImuSheet::gyro_range_rad_s)
       .def_ro("accel_range_m_s2", &ImuSheet::accel_range_m_s2)
       .def_ro("gyro_noise_rad_s_sqrt_hz", &ImuSheet::gyro_noise_rad_s_sqrt_hz)
       .def_ro("accel_noise_m_s2_sqrt_hz", &ImuSheet::accel_noise_m_s2_sqrt_hz);
-  bind_sheet<LidarSheet>(m, "LidarSheet", "What the data sheet of a lidar says. LidarSheet(**numbers).")
+  bind_sheet<LidarSheet>(m, "LidarSheet", "Data sheet of a lidar. LidarSheet(**numbers).")
       .def_ro("range_min_m", &LidarSheet::range_min_m)
       .def_ro("range_max_m", &LidarSheet::range_max_m);
   m.def("mti30", &sheets::mti30, "Xsens MTi-30, fifth generation (20 g).");

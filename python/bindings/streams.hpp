@@ -21,15 +21,15 @@ namespace tumble::python {
 
 namespace nb = nanobind;
 
-/// A filter of the library with its State, as one object of Python.
+/// A filter of the library with its State, as one Python object.
 template <class Filter, class State = typename Filter::State>
 struct Running {
   Filter filter;
   State state;
 };
 
-/// A stream with its State, which can be saved. That of a sphere is half a megabyte and does not lie inside of an
-/// object of Python's.
+/// A stream with its State, which can be saved. The State is on the heap because that of a sphere has half a
+/// megabyte.
 template <SavedStream Stream>
 struct Streaming {
   using Params = typename Stream::Params;
@@ -52,7 +52,7 @@ struct Streaming {
   Status load(std::span<const std::byte> bytes) { return load_state<Stream>(bytes, params, *state); }
 };
 
-/// Made anew of bytes alone.
+/// Constructs a stream from saved bytes alone.
 template <class Stream>
 Streaming<Stream> restored(std::span<const std::byte> bytes) {
   typename Stream::Params params;
@@ -62,15 +62,15 @@ Streaming<Stream> restored(std::span<const std::byte> bytes) {
   return out;
 }
 
-/// copy, save, load and pickle.
+/// Binds copy, save, load and pickle.
 template <class Stream, class Class>
 void bind_keeping(Class& bound) {
   bind_copy<Guarded<Streaming<Stream>>>(bound);
   bind_saving<Streaming<Stream>>(bound, &restored<Stream>);
 }
 
-/// Gives samples to an estimator one after the other, up to the first that it refuses, which is TumbleError with the
-/// sample's index and what came out before. `step(estimator, sample, out)` returns a Status.
+/// Adds samples to an estimator up to the first rejected sample. The TumbleError then has the index of that sample and
+/// the results before it. `step(estimator, sample, out)` returns a Status.
 template <class Out, class Estimator, class Step>
 Out feed(Guarded<Estimator>& to, const std::vector<ImuSample>& samples, Step step) {
   Out out;
@@ -88,16 +88,17 @@ Out feed(Guarded<Estimator>& to, const std::vector<ImuSample>& samples, Step ste
   return out;
 }
 
-/// The times of a sweep that was refused: against its own start, or against the end of the sweep before.
+/// Exact times of a rejected sweep: relative to its own start, or to the end of the previous sweep.
 inline ExactTimes exact_sweep(const Status& status, TimeNs start_ns, TimeNs end_ns, std::optional<TimeNs> before_ns) {
   if (std::string_view(status.field) == "end_ns") return {end_ns, start_ns};
   return {start_ns, before_ns};
 }
 
-/// Of every method that takes samples.
+/// Documents the arguments of every method that accepts samples.
 inline constexpr const char* kSamples =
     "time_ns: an int, or (N,) int64, the end of each sample's window; gyro: (3,) or (N, 3), rad/s; accel: specific "
-    "force,\n(3,) or (N, 3), m/s^2, +9.8 up at rest; clip_flags: bits gyro x y z, accel x y z of what the device says "
+    "force,\n(3,) or (N, 3), m/s^2, +9.8 up at rest; clip_flags: bits gyro x y z, accel x y z that the device reports "
+    "as "
     "clipped.";
 
 }  // namespace tumble::python

@@ -16,7 +16,7 @@ nb::object error_class() {
   return nb::module_::import_("tumble.errors").attr("TumbleError");
 }
 
-/// "FIELD is VALUE, must be BOUND", as InvalidParams says it.
+/// Raises TumbleError from a message of InvalidParams: "FIELD is VALUE, must be BOUND".
 void set_invalid(const std::string& message) {
   const std::size_t is = message.find(" is "), must = message.find(", must be ");
   nb::object field = nb::none(), value = nb::none(), bound = nb::none();
@@ -30,16 +30,16 @@ void set_invalid(const std::string& message) {
   PyErr_SetObject(type.ptr(), error.ptr());
 }
 
-/// As Python says it; Python does not say integers of thousands of digits.
-std::string said(nb::handle value) {
+/// Returns str(value). Python refuses to convert integers with thousands of digits, so those give their type.
+std::string text_of(nb::handle value) {
   try {
     return nb::str(value).c_str();
   } catch (const nb::python_error&) {
-    return std::string("of ") + nb::str(value.type()).c_str();
+    return std::string("a value of ") + nb::str(value.type()).c_str();
   }
 }
 
-/// A whole number: `exact`, unless a double says that it is another one.
+/// Returns `exact` if it rounds to `time_ns`, else `time_ns` as an integer, or as a float beyond 64 bits.
 nb::object time_object(double time_ns, std::optional<TimeNs> exact) {
   if (exact && static_cast<double>(*exact) == time_ns) return nb::int_(*exact);
   constexpr double kLargest_ns = 9.2e18;
@@ -50,7 +50,7 @@ nb::object time_object(double time_ns, std::optional<TimeNs> exact) {
 }  // namespace
 
 void raise_input(const char* trouble, const std::string& field, nb::handle value, nb::handle bound) {
-  const std::string text = field + " is " + said(value) + ", must be " + said(bound);
+  const std::string text = field + " is " + text_of(value) + ", must be " + text_of(bound);
   const nb::object type = error_class();
   const nb::object error = type(text.c_str(), trouble, field.c_str(), value, bound);
   PyErr_SetObject(type.ptr(), error.ptr());
@@ -64,11 +64,11 @@ void require(const Status& status, std::optional<std::size_t> index, nb::object 
   if (std::string_view(status.field).ends_with("_ns")) {
     value = time_object(status.value, times.value);
     bound = time_object(status.bound, times.bound);
-    // a bound that was rounded down must not say that the time is in order
+    // a bound that was rounded down must not make the time look valid
     if (status.trouble == Trouble::time_order && PyObject_RichCompareBool(bound.ptr(), value.ptr(), Py_LT) == 1)
       bound = value;
-    message =
-        std::string(to_string(status.trouble)) + ": " + status.field + " is " + said(value) + ", bound " + said(bound);
+    message = std::string(to_string(status.trouble)) + ": " + status.field + " is " + text_of(value) + ", bound " +
+              text_of(bound);
   }
   nb::object at = nb::none();
   if (index) {
@@ -83,14 +83,14 @@ void require(const Status& status, std::optional<std::size_t> index, nb::object 
 }
 
 void require(const Status& status, std::span<const ImuSample> samples) {
-  const auto meant = [&status](const Status& found) {
+  const auto matches = [&status](const Status& found) {
     return found.trouble == status.trouble && std::strcmp(found.field, status.field) == 0;
   };
   for (std::size_t k = 0; !status.ok() && k < samples.size(); ++k) {
     const double gap_max_s = status.trouble == Trouble::gap ? status.bound : std::numeric_limits<double>::infinity();
-    const bool late = k > 0 && meant(check_follows(samples[k].time_ns, samples[k - 1].time_ns, gap_max_s));
+    const bool late = k > 0 && matches(check_follows(samples[k].time_ns, samples[k - 1].time_ns, gap_max_s));
     if (late) require(status, k, nb::none(), {samples[k].time_ns, samples[k - 1].time_ns});
-    if (meant(check_sample(samples[k]))) require(status, k);
+    if (matches(check_sample(samples[k]))) require(status, k);
   }
   require(status);
 }

@@ -12,7 +12,7 @@
 #include "tumble/common/status.hpp"
 #include "tumble/common/time.hpp"
 
-/// How trouble of the library reaches Python: as tumble.TumbleError with trouble, field, value and bound.
+/// Converts errors of the library to tumble.TumbleError with trouble, field, value and bound.
 namespace tumble::python {
 
 namespace nb = nanobind;
@@ -21,7 +21,7 @@ namespace nb = nanobind;
 /// `shape`, `unknown` of an argument. `bound`: a number or a text.
 [[noreturn]] void raise_input(const char* trouble, const std::string& field, nb::handle value, nb::handle bound);
 
-/// What a Status has as doubles, which have lost the nanoseconds of stamps since 1970; where it is known.
+/// Exact value and bound of a time, if known. A Status stores doubles, which cannot represent nanoseconds since 1970.
 struct ExactTimes {
   std::optional<TimeNs> value, bound;
 };
@@ -34,13 +34,13 @@ void require(const Status& status, std::optional<std::size_t> index = std::nullo
 /// The same of a whole recording, which is refused with all its samples: looks for the one that the status means.
 void require(const Status& status, std::span<const ImuSample> samples);
 
-/// What health() of an estimator gives: nothing where all can be believed, else a TumbleError that is not raised.
+/// Returns None if all sensors and the pose are healthy, else a TumbleError that is not raised.
 nb::object health_of(const Status& status);
 inline constexpr const char* kHealth =
-    "Whether it can be believed just now: None, or what speaks against a sensor or the place on the map, as a\n"
-    "TumbleError that is not raised (field, value, bound; str() says it). The estimator goes on either way.";
+    "Returns None if all sensors and the pose are healthy. Else returns a TumbleError, which is not raised, with the\n"
+    "suspect sensor or pose: field, value, bound; str() gives the message. The estimator continues in both cases.";
 
-/// From here on InvalidParams, which constructors throw, is a TumbleError too.
+/// Registers the translation of InvalidParams, which constructors throw, to TumbleError.
 void translate_invalid_params();
 
 }  // namespace tumble::python

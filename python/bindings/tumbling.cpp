@@ -30,29 +30,29 @@ TumblingOdometry restored_tumbling(std::span<const std::byte> bytes) {
   return out;
 }
 
-using TumblingDoor = Guarded<TumblingOdometry>;
+using BoundTumblingOdometry = Guarded<TumblingOdometry>;
 using Sweep = TumblingOdometry::Sweep;
 
-/// The door's own numbers take the place of these.
-const std::vector<const char*> kOfTumbling = {"imu_*",
-                                              "range_*",
-                                              "rate_lever_arm_sigma_m",
-                                              "rate_gyro_noise_density",
-                                              "rate_accel_noise_density",
-                                              "rate_period_s",
-                                              "rate_lag_s",
-                                              "rate_evidence_gravity_m_s2",
-                                              "rate_carried_gravity_m_s2",
-                                              "rate_carried_gap_max_s",
-                                              "rate_carried_period_s",
-                                              "rate_carried_lag_s",
-                                              "rate_carried_iterations_max",
-                                              "mapping_mount_sigma_*",
-                                              "mapping_time_offset_sigma_s",
-                                              "mapping_gravity_m_s2",
-                                              "mapping_range_*",
-                                              "mapping_own_body_*",
-                                              "mapping_accel_rail_m_s2"};
+/// TumblingOdometry derives these parameters from its own numbers.
+const std::vector<const char*> kDerivedTumblingParameters = {"imu_*",
+                                                             "range_*",
+                                                             "rate_lever_arm_sigma_m",
+                                                             "rate_gyro_noise_density",
+                                                             "rate_accel_noise_density",
+                                                             "rate_period_s",
+                                                             "rate_lag_s",
+                                                             "rate_evidence_gravity_m_s2",
+                                                             "rate_carried_gravity_m_s2",
+                                                             "rate_carried_gap_max_s",
+                                                             "rate_carried_period_s",
+                                                             "rate_carried_lag_s",
+                                                             "rate_carried_iterations_max",
+                                                             "mapping_mount_sigma_*",
+                                                             "mapping_time_offset_sigma_s",
+                                                             "mapping_gravity_m_s2",
+                                                             "mapping_range_*",
+                                                             "mapping_own_body_*",
+                                                             "mapping_accel_rail_m_s2"};
 
 template <class Sheet>
 Sheet sheet_of(nb::handle given, const char* field, const char* type) {
@@ -73,13 +73,13 @@ TumblingOdometry::Params tumbling_params(const nb::kwargs& given) {
     params.own_body_L = box_of(body, "own_body_L");
   if (const nb::object rig = keywords.take("calibration"); rig.is_valid() && !rig.is_none())
     params.expert.rate.rate.model.calibration = rig_of(rig, "calibration");
-  read_fields(keywords, params, kOfTumbling);
+  read_fields(keywords, params, kDerivedTumblingParameters);
   keywords.done();
   return params;
 }
 
-void add_tumbling_imu(TumblingDoor& self, const ArrayLike& time_ns, const ArrayLike& gyro, const ArrayLike& accel,
-                      const ArrayLike& clip_flags) {
+void add_tumbling_imu(BoundTumblingOdometry& self, const ArrayLike& time_ns, const ArrayLike& gyro,
+                      const ArrayLike& accel, const ArrayLike& clip_flags) {
   const std::vector<ImuSample> samples = samples_of(time_ns, gyro, accel, clip_flags);
   Status status;
   std::size_t k = 0;
@@ -90,7 +90,7 @@ void add_tumbling_imu(TumblingDoor& self, const ArrayLike& time_ns, const ArrayL
   if (!status.ok()) require(status, k, nb::none(), {samples[k].time_ns, last_ns});
 }
 
-void add_tumbling_sweep(TumblingDoor& self, const WholeNumber& start_ns, const WholeNumber& end_ns,
+void add_tumbling_sweep(BoundTumblingOdometry& self, const WholeNumber& start_ns, const WholeNumber& end_ns,
                         const ArrayLike& position, const ArrayLike& offset_ns, const ArrayLike& ring,
                         const ArrayLike& intensity) {
   const TimeNs start = time_of(start_ns, "start_ns"), end = time_of(end_ns, "end_ns");
@@ -112,177 +112,191 @@ Rates rates_of(const std::optional<RateState>& rate) {
 }
 
 template <class Class>
-void bind_talk(Class& bound) {
+void bind_accessors(Class& bound) {
   bound
       .def(
           "newest",
-          [](TumblingDoor& self) {
+          [](BoundTumblingOdometry& self) {
             PoseState pose;
             require(self.run([&](TumblingOdometry& odometry) { return odometry.newest(pose); }));
             return pose;
           },
-          "Pose and velocity of the IMU at its newest sample, by inertia from the last sweep that was registered, "
-          "with\n"
-          "covariance. TumbleError `empty` before that.")
+          "Returns pose and velocity of the IMU at its newest sample, with covariance, predicted from the last "
+          "registered\n"
+          "sweep. Raises TumbleError `empty` before the first registered sweep.")
       .def(
           "newest_rate",
-          [](TumblingDoor& self) {
+          [](BoundTumblingOdometry& self) {
             return rates_of(self.run([](TumblingOdometry& odometry) { return odometry.newest_rate(); }));
           },
-          "Rate of the newest sample, provisional where the gyro clips; no row before the first.")
+          "Returns the rate of the newest sample, provisional where the gyro clips; no row before the first sample.")
       .def(
           "smoothed_rate",
-          [](TumblingDoor& self) {
+          [](BoundTumblingOdometry& self) {
             return rates_of(self.run([](TumblingOdometry& odometry) { return odometry.smoothed_rate(); }));
           },
-          "Latest rate of the fixed-lag smoother, lag_s old; no row while the lag fills.")
+          "Returns the latest rate of the fixed-lag smoother, lag_s old; no row while the lag fills.")
       .def(
-          "rig", [](TumblingDoor& self) { return self.run([](TumblingOdometry& odometry) { return odometry.rig(); }); },
-          "What is known of the IMU on the body: lever arm, biases, elements. For the next run's `calibration`.")
+          "rig",
+          [](BoundTumblingOdometry& self) {
+            return self.run([](TumblingOdometry& odometry) { return odometry.rig(); });
+          },
+          "Returns the estimated calibration of the IMU: lever arm, biases, elements. Pass it to the next run as "
+          "`calibration`.")
       .def(
           "calibration",
-          [](TumblingDoor& self) {
+          [](BoundTumblingOdometry& self) {
             return self.run([](TumblingOdometry& odometry) { return odometry.mapper().calibration(); });
           },
-          "T_IL, the clocks' offset and gravity as estimated so far.")
+          "Returns the current estimates of T_IL, clock offset and gravity.")
       .def(
           "calibration_covariance",
-          [](TumblingDoor& self) {
+          [](BoundTumblingOdometry& self) {
             const auto P =
                 self.run([](TumblingOdometry& odometry) { return odometry.mapper().calibration_covariance(); });
             constexpr int kErrors = SweepCalibration::kErrors;
             const nb::object all = nb::cast(owned(std::vector<double>(P.data(), P.data() + P.size())));
             return nb::cast<Doubles>(all.attr("reshape")(kErrors, kErrors).attr("copy")());
           },
-          "(N, N), of its errors; 0 where not estimated.")
+          "Returns the covariance (N, N) of the errors of calibration(); 0 for values that are not estimated.")
       .def(
           "window_trajectory",
-          [](TumblingDoor& self) {
+          [](BoundTumblingOdometry& self) {
             return joined(self.run([](TumblingOdometry& odometry) { return odometry.mapper().window_trajectories(); }));
           },
-          "Poses of the sweeps in the window that have not had their last word yet.")
+          "Returns the poses of the sweeps in the window, which are not final yet.")
       .def(
           "map",
-          [](TumblingDoor& self) {
+          [](BoundTumblingOdometry& self) {
             return MapPoints{self.run([](TumblingOdometry& odometry) { return odometry.mapper().map(); })};
           },
-          "The map within mapping_map_radius_m of the sensor.")
+          "Returns the map within mapping_map_radius_m of the sensor.")
       .def(
           "health",
-          [](TumblingDoor& self) {
+          [](BoundTumblingOdometry& self) {
             return health_of(self.run([](TumblingOdometry& odometry) { return odometry.health(); }));
           },
           nb::sig("def health(self) -> tumble.errors.TumbleError | None"), kHealth)
       .def_prop_ro(
           "gaps",
-          [](TumblingDoor& self) { return self.run([](TumblingOdometry& odometry) { return odometry.gaps(); }); },
-          "of the IMU, after which the rates began anew")
+          [](BoundTumblingOdometry& self) {
+            return self.run([](TumblingOdometry& odometry) { return odometry.gaps(); });
+          },
+          "number of gaps in the IMU samples after which rate estimation restarted")
       .def_prop_ro(
           "rejected_samples",
-          [](TumblingDoor& self) {
+          [](BoundTumblingOdometry& self) {
             return self.run([](TumblingOdometry& odometry) { return odometry.rejected_samples(); });
           },
-          "that the mapper did not take with their rates: 0 unless something is wrong")
+          "number of samples that the mapper rejected with their rates: 0 in normal operation")
       .def_prop_ro(
           "rejected_readings",
-          [](TumblingDoor& self) {
+          [](BoundTumblingOdometry& self) {
             return self.run([](TumblingOdometry& odometry) { return odometry.rejected_readings(); });
           },
-          "number of samples that were rejected because their readings or stamps are wild")
+          "number of samples that were rejected because their readings or stamps are outliers")
       .def_prop_ro(
           "newest_ns",
-          [](TumblingDoor& self) { return self.run([](TumblingOdometry& odometry) { return odometry.newest_ns(); }); },
-          "time of the newest sample that was taken in; None before the first")
+          [](BoundTumblingOdometry& self) {
+            return self.run([](TumblingOdometry& odometry) { return odometry.newest_ns(); });
+          },
+          "time of the newest accepted sample; None before the first")
       .def_prop_ro(
           "estimated_jitter_s",
-          [](TumblingDoor& self) {
+          [](BoundTumblingOdometry& self) {
             return self.run([](TumblingOdometry& odometry) { return odometry.estimated_jitter_s(); });
           },
-          "standard deviation of the IMU's stamps about a regular clock, while that clock's times count for them; else "
-          "None")
+          "standard deviation of the IMU's stamps about a regular clock, while that clock replaces them; else None")
       .def_prop_ro(
           "sweep_scale",
-          [](TumblingDoor& self) {
+          [](BoundTumblingOdometry& self) {
             return self.run([](TumblingOdometry& odometry) { return odometry.sweep_scale(); });
           },
-          "by how much the lidar's ranges are longer than the IMU has it, as far as the motion told")
+          "ratio of the lidar's scale to the IMU's scale, estimated from the motion so far")
       .def_prop_ro(
           "second_pass_applied",
-          [](TumblingDoor& self) {
+          [](BoundTumblingOdometry& self) {
             return self.run([](TumblingOdometry& odometry) { return odometry.second_pass_applied(); });
           },
-          "whether map and pose are those of the second pass")
+          "whether the map and the pose come from the second pass")
       .def_prop_ro(
           "dropped_sweeps",
-          [](TumblingDoor& self) {
+          [](BoundTumblingOdometry& self) {
             return self.run([](TumblingOdometry& odometry) { return odometry.dropped_sweeps(); });
           },
-          "that nobody took in time");
+          "number of sweeps that were dropped because take() was not called in time");
 }
 
 }  // namespace
 
 void bind_tumbling(nb::module_& m) {
-  nb::class_<Sweep>(m, "Sweep", "What became of a sweep.")
+  nb::class_<Sweep>(m, "Sweep", "Result of a sweep that was added.")
       .def_prop_ro("ok", [](const Sweep& s) { return s.status.ok(); })
       .def_prop_ro(
-          "message", [](const Sweep& s) { return s.status.message(); }, "\"ok\", or the trouble with it")
+          "message", [](const Sweep& s) { return s.status.message(); }, "\"ok\", or the error")
       .def_prop_ro(
           "placed", [](const Sweep& s) { return !s.report.trajectory.empty(); },
-          "whether it has poses; one that begins before the IMU has none")
+          "whether the sweep has poses; a sweep that starts before the first IMU sample has none")
       .def_ro("report", &Sweep::report);
-  nb::class_<SweepScale>(m, "SweepScale", "By how much ways between sweeps are longer than the IMU has it.")
+  nb::class_<SweepScale>(m, "SweepScale",
+                         "Ratio of the motion between sweeps measured by the lidar to that measured by the IMU.")
       .def_ro("scale", &SweepScale::scale)
-      .def_ro("sigma", &SweepScale::sigma, "its standard deviation; infinite while nothing was compared")
-      .def_ro("changes", &SweepScale::changes, "of velocity that were compared")
-      .def_prop_ro("is_off", &SweepScale::is_off, "further from 1 than 2 % and than five of its deviations");
-  nb::class_<TumblingDoor> bound(
+      .def_ro("sigma", &SweepScale::sigma, "standard deviation of scale; infinite before the first comparison")
+      .def_ro("changes", &SweepScale::changes, "number of compared changes of velocity")
+      .def_prop_ro("is_off", &SweepScale::is_off,
+                   "whether scale differs from 1 by more than 2 % and more than five standard deviations");
+  nb::class_<BoundTumblingOdometry> bound(
       m, "TumblingOdometry",
-      "Pose, velocity and map of a body that tumbles, from one IMU whose gyro may clip and a lidar whose sweeps are "
-      "bent:\n"
-      "causal, sample by sample.\n\n"
+      "Estimates pose, velocity and map of a tumbling body, causally and sample by sample. The sensors are one IMU, "
+      "whose\n"
+      "gyro may clip, and a lidar, whose sweeps are distorted by the motion.\n\n"
       "TumblingOdometry(imu=ImuSheet, T_IL=..., lever_arm_m=(x, y, z), lidar=LidarSheet(), own_body_L=None,\n"
-      "calibration=None, **options): T_IL (4, 4), lidar in IMU axes; lever_arm_m from the centre of mass to the IMU, "
-      "IMU\n"
-      "axes, to a centimetre; own_body_L (2, 3), least and largest corner of the box in lidar axes whose returns are "
-      "the\n"
-      "robot's own; calibration: rig() of an earlier run. Options: parameters().\n"
-      "World: z up, origin and yaw at the IMU at the first sample. Begin at rest, half a second or more.");
+      "calibration=None, **options): T_IL (4, 4) is the pose of the lidar in IMU axes. lever_arm_m is from the centre "
+      "of\n"
+      "mass to the IMU, in IMU axes, accurate to 1 cm. own_body_L (2, 3) has the smallest and the largest corner of a "
+      "box\n"
+      "in lidar axes; returns within the box belong to the robot. calibration is rig() of an earlier run. Options: "
+      "see\n"
+      "parameters(). World: z up, origin and yaw of the IMU at the first sample. The body must be stationary for the\n"
+      "first half second.");
   bound
       .def(
           "__init__",
-          [](TumblingDoor* self, const nb::kwargs& options) {
-            new (self) TumblingDoor(TumblingOdometry(tumbling_params(options)));
+          [](BoundTumblingOdometry* self, const nb::kwargs& options) {
+            new (self) BoundTumblingOdometry(TumblingOdometry(tumbling_params(options)));
           },
           nb::arg("options"), takes_options())
       .def("add_imu", &add_tumbling_imu, nb::arg("time_ns"), nb::arg("gyro"), nb::arg("accel"),
            nb::arg("clip_flags") = nb::none(),
-           "Takes one sample or many, in order of time. Sweeps whose rates are known with them are registered now.")
-      .def("add_sweep", &add_tumbling_sweep, nb::arg("start_ns"), nb::arg("end_ns"), nb::arg("position"),
-           nb::arg("offset_ns"), nb::arg("ring") = nb::none(), nb::arg("intensity") = nb::none(),
-           "Takes a sweep of points fired in [start_ns, end_ns], at any time after its last point: position (N, 3), m, "
-           "in\n"
-           "the lidar's axes at each point's own instant; offset_ns (N,), after the start.")
+           "Adds one sample or many, in order of time. Registers the sweeps whose rates became available.")
+      .def(
+          "add_sweep", &add_tumbling_sweep, nb::arg("start_ns"), nb::arg("end_ns"), nb::arg("position"),
+          nb::arg("offset_ns"), nb::arg("ring") = nb::none(), nb::arg("intensity") = nb::none(),
+          "Adds a sweep of points measured in [start_ns, end_ns]; the call may come at any time after the last point.\n"
+          "position (N, 3), m: in lidar axes at the time of each point. offset_ns (N,): time after start_ns.")
       .def(
           "take",
-          [](TumblingDoor& self) { return self.run([](TumblingOdometry& odometry) { return odometry.take(); }); },
-          "The next sweep that was registered, in order; None when there is none yet.")
+          [](BoundTumblingOdometry& self) {
+            return self.run([](TumblingOdometry& odometry) { return odometry.take(); });
+          },
+          "Returns the next processed sweep, in order; None if there is none yet.")
       .def(
           "take_all",
-          [](TumblingDoor& self) {
+          [](BoundTumblingOdometry& self) {
             return self.run([](TumblingOdometry& odometry) {
               std::vector<Sweep> out;
               while (std::optional<Sweep> sweep = odometry.take()) out.push_back(std::move(*sweep));
               return out;
             });
           },
-          "All of them.")
+          "Returns all processed sweeps that take() has not returned yet.")
       .def(
-          "finish", [](TumblingDoor& self) { self.run([](TumblingOdometry& odometry) { odometry.finish(); }); },
-          "Settles what there is, at the end of a run or at a halt: take() gives the sweeps that the IMU covers.")
-      .def_static("parameters", [] { return list_fields(TumblingOdometry::Params{}, kOfTumbling); });
-  bind_talk(bound);
-  bind_copy<TumblingDoor>(bound);
+          "finish",
+          [](BoundTumblingOdometry& self) { self.run([](TumblingOdometry& odometry) { odometry.finish(); }); },
+          "Processes all waiting sweeps that the IMU covers, at the end of a run or at a halt. take() returns them.")
+      .def_static("parameters", [] { return list_fields(TumblingOdometry::Params{}, kDerivedTumblingParameters); });
+  bind_accessors(bound);
+  bind_copy<BoundTumblingOdometry>(bound);
   bind_saving<TumblingOdometry>(bound, &restored_tumbling);
 }
 

@@ -13,9 +13,9 @@ namespace tumble::evalio_bindings {
 
 namespace {
 
-constexpr std::size_t kSamplesMax = 256;  ///< that wait for a sweep
-/// Sweeps that wait for samples: ten seconds of most lidars. Data whose IMU is later than that, or has none, would fill
-/// the memory.
+constexpr std::size_t kSamplesMax = 256;  ///< samples that are buffered until a sweep needs them
+/// Sweeps that may wait for samples: ten seconds of most lidars. Without a limit, data without an IMU would fill the
+/// memory.
 constexpr std::size_t kSweepsMax = 100;
 
 std::string seconds(std::int64_t time_ns) {
@@ -25,7 +25,7 @@ std::string seconds(std::int64_t time_ns) {
 template <class Scalar, nb::ssize_t... Shape>
 using Shown = nb::ndarray<const Scalar, nb::shape<Shape...>, nb::c_contig, nb::device::cpu>;
 
-/// An attribute that is an array, contiguous and of this type.
+/// Returns an attribute of `of` as a contiguous array of this type.
 template <class Scalar, nb::ssize_t... Shape>
 Shown<Scalar, Shape...> rows(nb::handle of, const char* name, const char* type) {
   const nb::object array = nb::module_::import_("numpy").attr("ascontiguousarray")(of.attr(name), type);
@@ -54,10 +54,10 @@ void Feed::begin(nb::object odometry, std::int64_t sweep_length_ns) {
 }
 
 void Feed::finish() {
-  give_samples();
-  waiting_.clear();  // no sample covers them
+  add_samples();
+  waiting_.clear();  // no samples cover these sweeps
   odometry().attr("finish")();
-  save_words();
+  save_final_poses();
   save_poses(odometry().attr("window_trajectory")());
 }
 
@@ -68,10 +68,10 @@ void Feed::add_imu(evalio::ImuMeasurement given) {
   last_sample_ns_ = now_ns;
   const bool covers = !waiting_.empty() && waiting_.front().end_ns <= now_ns;
   if (!covers && samples_.time_ns.size() < kSamplesMax) return;
-  give_samples();
+  add_samples();
   for (; !waiting_.empty() && waiting_.front().end_ns <= now_ns; waiting_.pop_front())
-    give_sweep(std::move(waiting_.front()));
-  save_words();
+    add_sweep(std::move(waiting_.front()));
+  save_final_poses();
 }
 
 void Feed::add_lidar(evalio::LidarMeasurement given) {
@@ -79,7 +79,7 @@ void Feed::add_lidar(evalio::LidarMeasurement given) {
   require_room();
   try {
     Sweep sweep = sweep_of(given, sweep_length_ns_);
-    // where stamps jitter a sweep ends when the next one begins
+    // if stamps jitter, a sweep ends when the next one starts
     if (!waiting_.empty() && sweep.start_ns < waiting_.back().end_ns)
       waiting_.back().end_ns = std::max(sweep.start_ns, waiting_.back().last_ns);
     waiting_.push_back(std::move(sweep));
@@ -120,8 +120,8 @@ nb::handle Feed::odometry() const {
   return odometry_;
 }
 
-/// The sample that is refused is left out, those behind it are given again.
-void Feed::give_samples() {
+/// Skips a rejected sample and adds the samples after it again.
+void Feed::add_samples() {
   Samples samples = std::exchange(samples_, {});
   while (!samples.time_ns.empty()) {
     try {
@@ -130,14 +130,14 @@ void Feed::give_samples() {
       return;
     } catch (nb::python_error& error) {
       if (!is_tumble_error(error) || error.value().attr("index").is_none()) throw;
-      const auto refused = nb::cast<std::size_t>(error.value().attr("index"));
+      const auto rejected = nb::cast<std::size_t>(error.value().attr("index"));
       warn(nb::cast<std::string>(nb::str(error.value())));
-      samples = samples.from(refused + 1);
+      samples = samples.from(rejected + 1);
     }
   }
 }
 
-void Feed::give_sweep(Sweep sweep) {
+void Feed::add_sweep(Sweep sweep) {
   try {
     odometry().attr("add_sweep")(sweep.start_ns, sweep.end_ns, array_of(std::move(sweep.position_L_m), 3),
                                  array_of(std::move(sweep.offset_ns)), array_of(std::move(sweep.ring)),
@@ -148,7 +148,7 @@ void Feed::give_sweep(Sweep sweep) {
   }
 }
 
-void Feed::save_words() {
+void Feed::save_final_poses() {
   for (const nb::handle sweep : odometry().attr("take_all")()) save_poses(sweep.attr("report").attr("smoothed"));
 }
 

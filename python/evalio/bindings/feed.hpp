@@ -17,27 +17,27 @@ namespace tumble::evalio_bindings {
 
 namespace nb = nanobind;
 
-/// A pipeline of evalio over an estimator of the package tumble that has add_imu, add_sweep, take_all and map
-/// (TumblingOdometry). Who derives from it in Python gives it one, in `initialize()`, by `begin`.
+/// An evalio pipeline for an estimator of the package tumble that has add_imu, add_sweep, take_all and map
+/// (TumblingOdometry). A derived Python class passes the estimator to `begin` in `initialize()`.
 ///
-/// evalio hands out a sweep when its first return was fired; it waits here for the samples that cover it, as a robot
-/// has it. Poses saved are each sweep's last word, some 0.3 s after its end. evalio has no call at the end of a run, so
-/// that what is younger then stays unsaid (half a second), unless somebody calls `finish`. What the estimator refuses
-/// (TumbleError) is left out with a warning of Python's, and the rest goes on. A hundred sweeps that wait are an error:
-/// the data have no IMU, or one of another clock.
+/// evalio passes on a sweep at the time of its first return. The sweep waits here until IMU samples cover it, as on a
+/// robot. The saved poses are the final (smoothed) poses of each sweep, about 0.3 s after its end. evalio has no call
+/// at the end of a run, so the poses of the last half second are saved only if the caller calls `finish`. Data that the
+/// estimator rejects (TumbleError) are skipped with a Python warning. A hundred waiting sweeps are an error: the data
+/// have no IMU, or its clock differs.
 class Feed : public evalio::Pipeline {
  public:
   /// `sweep_length_ns`: from the first return's time to the end of the sweep.
   void begin(nb::object odometry, std::int64_t sweep_length_ns);
-  /// At the end of a run: saves what has not been saved. A sweep that the IMU did not cover has no pose.
+  /// Ends the run and saves the remaining poses. A sweep that the IMU did not cover has no pose.
   void finish();
 
   void add_imu(evalio::ImuMeasurement given) override;
   void add_lidar(evalio::LidarMeasurement given) override;
-  /// The map as one cloud, "map".
+  /// Returns the map as one cloud named "map".
   const evalio::Map<> map() override;
 
-  // of who derives from it
+  // members that a derived Python class implements
   void set_imu_params(evalio::ImuParams) override {}
   void set_lidar_params(evalio::LidarParams) override {}
   void set_imu_T_lidar(evalio::SE3) override {}
@@ -49,16 +49,16 @@ class Feed : public evalio::Pipeline {
  private:
   nb::handle odometry() const;
   void require_room() const;
-  void give_samples();
-  void give_sweep(Sweep sweep);
-  void save_words();
+  void add_samples();
+  void add_sweep(Sweep sweep);
+  void save_final_poses();
   void save_poses(nb::handle poses);
 
   nb::object odometry_;
   std::int64_t sweep_length_ns_ = 0;
-  Samples samples_;  ///< not given yet
+  Samples samples_;  ///< not added to the estimator yet
   std::optional<std::int64_t> last_sample_ns_;
-  std::deque<Sweep> waiting_;  ///< for samples that cover them
+  std::deque<Sweep> waiting_;  ///< sweeps that IMU samples do not cover yet
 };
 
 }  // namespace tumble::evalio_bindings

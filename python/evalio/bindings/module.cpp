@@ -12,25 +12,26 @@ namespace nb = nanobind;
 
 namespace {
 
-/// Classes are shared between modules of one ABI of nanobind alone.
+/// Modules can share classes only if they have the same nanobind ABI.
 void require_abi(const std::string& of_evalio) {
   if (of_evalio == NB_ABI_TAG) return;
-  throw std::runtime_error(
-      "tumble-evalio is compiled for nanobind's ABI " NB_ABI_TAG ", evalio here has " + of_evalio +
-      ": install evalio >= 0.6.1, < 0.7, or compile tumble-evalio anew beside the evalio that is there");
+  throw std::runtime_error("tumble-evalio is compiled for nanobind's ABI " NB_ABI_TAG ", evalio here has " + of_evalio +
+                           ": install evalio >= 0.6.1, < 0.7, or compile tumble-evalio against the installed evalio");
 }
 
 }  // namespace
 
 NB_MODULE(tumble_evalio, m) {
   using tumble::evalio_bindings::Feed;
-  m.doc() = "The compiled half of tumble.evalio, which is what to use.";
-  m.def("require_abi", &require_abi, nb::arg("of_evalio"), "RuntimeError unless this was compiled for that ABI.");
+  m.doc() = "The compiled part of tumble.evalio. Use tumble.evalio instead of this module.";
+  m.def("require_abi", &require_abi, nb::arg("of_evalio"),
+        "Raises RuntimeError unless this module was compiled for the given ABI.");
   require_abi(nb::cast<std::string>(nb::module_::import_("evalio").attr("_abi_tag")()));
-  nb::class_<Feed, evalio::Pipeline>(m, "Feed", "A pipeline of evalio over an estimator that `begin` is given.")
+  nb::class_<Feed, evalio::Pipeline>(m, "Feed", "An evalio pipeline for an estimator that is passed to `begin`.")
       .def(nb::init<>())
       .def("begin", &Feed::begin, nb::arg("odometry"), nb::arg("sweep_length_ns"),
-           "odometry: has add_imu, add_sweep, take_all, window_trajectory, finish and map, as TumblingOdometry.")
+           "odometry: an object with add_imu, add_sweep, take_all, window_trajectory, finish and map, as "
+           "TumblingOdometry.")
       .def("finish", &Feed::finish,
-           "At the end of a run: saves what has not been saved. A sweep that the IMU did not cover has no pose.");
+           "Ends the run and saves the remaining poses. A sweep that the IMU did not cover has no pose.");
 }

@@ -16,7 +16,7 @@ namespace tumble::evalio_bindings {
 namespace {
 
 constexpr std::int64_t kSecond = 1'000'000'000;
-constexpr std::int64_t kLongest = 4 * kSecond;  ///< what an offset of 32 bits holds
+constexpr std::int64_t kLongest = 4 * kSecond;  ///< limit of a 32-bit offset in nanoseconds
 
 bool is_return(const evalio::Point& point) {
   const bool finite = std::isfinite(point.x) && std::isfinite(point.y) && std::isfinite(point.z);
@@ -43,7 +43,7 @@ Sweep sweep_of(const evalio::LidarMeasurement& given, std::int64_t length_ns) {
     require_within_sweep(point.t.nsec);
     returns.push_back(&point);
   }
-  // evalio's points stand row by row
+  // evalio orders points by row
   std::stable_sort(returns.begin(), returns.end(),
                    [](const evalio::Point* a, const evalio::Point* b) { return a->t.nsec < b->t.nsec; });
   Sweep out;
@@ -79,7 +79,7 @@ evalio::SE3 pose_of(const double* position, const double* quaternion) {
   return evalio::SE3(rotation, Eigen::Vector3d(position[0], position[1], position[2]));
 }
 
-// evalio's own from_nsec goes by way of a double, which lacks the nanoseconds of a stamp since 1970
+// evalio's from_nsec uses a double, which cannot represent nanoseconds since 1970
 evalio::Stamp stamp_of(std::int64_t time_ns) {
   return {.sec = static_cast<std::uint32_t>(time_ns / kSecond), .nsec = static_cast<std::uint32_t>(time_ns % kSecond)};
 }

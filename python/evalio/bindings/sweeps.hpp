@@ -7,12 +7,12 @@
 #include <cstdint>
 #include <vector>
 
-/// Between evalio's measurements and the arrays that tumble's classes take.
+/// Conversion of evalio's measurements to the arrays that tumble's classes accept.
 namespace tumble::evalio_bindings {
 
 namespace nb = nanobind;
 
-/// The returns of a sweep in order of their time, by columns. Times are nanoseconds of evalio's clock.
+/// Returns of a sweep in order of time, stored by columns. Times are nanoseconds of evalio's clock.
 struct Sweep {
   std::int64_t start_ns = 0, end_ns = 0;
   std::int64_t last_ns = 0;         ///< of the latest return
@@ -22,26 +22,26 @@ struct Sweep {
   std::vector<float> intensity;
 };
 
-/// Throws std::invalid_argument, with value and bound, for a return whose time is before the sweep's or four seconds
-/// after it. Cells without a return (all three coordinates 0, or one not finite) are left out.
+/// Converts a sweep. Skips cells without a return: all coordinates 0, or one not finite. Throws std::invalid_argument,
+/// with value and bound, for a return before the start of the sweep or more than four seconds after it.
 Sweep sweep_of(const evalio::LidarMeasurement& given, std::int64_t length_ns);
 
-/// Samples of an IMU by columns.
+/// Samples of an IMU, stored by columns.
 struct Samples {
   std::vector<std::int64_t> time_ns;
   std::vector<double> gyro_I_rad_s, accel_I_m_s2;  ///< x y z each
 
   void push(const evalio::ImuMeasurement& given);
-  /// From sample `first` on.
+  /// Returns the samples from index `first` on.
   Samples from(std::size_t first) const;
 };
 
-/// evalio's pose of position (3) and quaternion (4: x y z w).
+/// Converts position (3) and quaternion (4: x y z w) to a pose of evalio.
 evalio::SE3 pose_of(const double* position, const double* quaternion);
 evalio::Stamp stamp_of(std::int64_t time_ns);
 std::int64_t nanoseconds_of(const evalio::Stamp& stamp);
 
-/// rows x `columns` numbers as an array of numpy that owns them; of one column (rows,).
+/// Moves numbers to a numpy array of rows x `columns`, or (rows,) for one column. The array owns them.
 template <class Scalar>
 nb::object array_of(std::vector<Scalar> numbers, std::size_t columns = 1);
 
