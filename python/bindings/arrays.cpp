@@ -219,7 +219,7 @@ Eigen::Isometry3d pose_of(nb::handle value, const std::string& field) {
   const bool rigid =
       m.allFinite() && rotation_error < 1e-6 && R.determinant() > 0.0 && m.row(3) == Eigen::RowVector4d(0, 0, 0, 1);
   if (!rigid)
-    raise_input("out_of_range", field, nb::str("no rigid transform"), nb::str("a rotation and a translation"));
+    raise_input("out_of_range", field, nb::str("not a rigid transform"), nb::str("a rotation and a translation"));
   Eigen::Isometry3d out;
   out.matrix() = m;
   return out;

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Poses and map of a tumble: map_of_a_tumble.py [RECORDING.h5]
+"""Estimates poses and map of a tumbling rig: map_of_a_tumble.py [RECORDING.h5]
 
-Without a recording the program simulates one: a rig with a lidar that falls down a hill.
+Without an argument, the program simulates a recording: a rig with a lidar that falls down a hill.
 """
 import pathlib
 import sys
@@ -14,11 +14,11 @@ path = pathlib.Path(sys.argv[1]) if len(sys.argv) > 1 else tumble.record("hill",
 recording = tumble.read(path)
 print(f"{recording.scenario}: {len(recording.imus[0])} readings of {recording.imus[0].device}, {len(recording.sweeps)} sweeps")
 
-tumbled = tumble.tumbling(recording)  # as a robot lives through it: see TumblingOdometry for the same, live
-way = np.linalg.norm(np.diff(tumbled.poses.position, axis=0), axis=1).sum()
+tumbled = tumble.tumbling(recording)  # data in the order of a live robot; TumblingOdometry is the live interface
+length_m = np.linalg.norm(np.diff(tumbled.poses.position, axis=0), axis=1).sum()
 names = [sweep.verdict.name for sweep in tumbled.sweeps]
-print(f"{len(tumbled.poses)} poses over {way:.1f} m; sweeps:", {name: names.count(name) for name in sorted(set(names))})
-print(f"a map of {len(tumbled.map)} points; learnt lever arm, m: {np.round(tumbled.odometry.rig().lever_arm_m, 4)}")
+print(f"{len(tumbled.poses)} poses over {length_m:.1f} m; sweeps:", {name: names.count(name) for name in sorted(set(names))})
+print(f"a map of {len(tumbled.map)} points; estimated lever arm, m: {np.round(tumbled.odometry.rig().lever_arm_m, 4)}")
 
 tumble.write_tum("tumble.tum", tumbled.poses)
 sharp = tumbled.map.sigma < 0.05

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""A rate method of your own, swept over tumbles beside others: own_method.py
+"""Compares your own rate method with others over several tumbles: own_method.py
 
-The same file is the method: the program runs it with a recording and a place for the answer.
+This file is also the method: the program runs it with the paths of a recording and of the result.
 """
 import sys
 
@@ -11,7 +11,7 @@ import tumble
 
 
 def rate(recording):
-    """Of the worst clipped axis, the rate that explains the specific force best: in flight that is w x (w x lever arm)."""
+    """Estimates the most clipped axis from the specific force, which in flight is w x (w x lever arm)."""
     imu = recording.imus[0]
     rate, rail = imu.gyro.copy(), 0.98 * np.abs(imu.gyro).max(axis=0)
     for k in np.flatnonzero((np.abs(rate) >= rail).any(axis=1)):

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Angular velocity through saturation: saturated_rate.py [RepoIMU.csv]
+"""Estimates angular velocity through gyro saturation: saturated_rate.py [RepoIMU.csv]
 
-A wand in a hand, twirled faster than its gyro reads. With a file of RepoIMU (github.com/agnieszkaszczesna/RepoIMU, TStick) the
-speed of turning is held to cameras; without one a twirl in closed form takes its place, clipped at 7.3 rad/s.
+A hand-held wand rotates faster than the range of its gyro. With a file of RepoIMU (github.com/agnieszkaszczesna/RepoIMU, TStick), the
+rotation speed is compared with a camera system. Without a file, a simulated twirl is used, clipped at 7.3 rad/s.
 """
 import sys
 
@@ -12,7 +12,7 @@ import tumble
 
 
 def wand(path):
-    """Times, gyro, specific force and the cameras' speed of turning: the way between two attitudes 40 ms apart."""
+    """Returns the IMU samples and the rotation speed of the cameras, from pairs of attitudes 40 ms apart."""
     rows = np.loadtxt(path, delimiter=";", skiprows=2, usecols=range(11))
     t, q = rows[:, 0], rows[:, 1:5]
     imu = tumble.Imu(np.round(1e9 * (t - t[0])).astype(np.int64), rows[:, 8:11], rows[:, 5:8])
@@ -24,9 +24,9 @@ def wand(path):
 
 
 def twirl(seconds=12.0, rate_hz=100.0, rail=7.3):
-    """A body that a hand turns to and fro about a level axis, up to 10 rad/s: gravity turns in it by the integral of that."""
+    """Simulates a hand-held body that oscillates about a horizontal axis at up to 10 rad/s, and its rotation speed."""
     time_ns = (np.arange(1, round(seconds * rate_hz) + 1) * 1e9 / rate_hz).astype(np.int64)
-    t = np.maximum(time_ns * 1e-9 - 2.0, 0.0)  # two seconds of rest
+    t = np.maximum(time_ns * 1e-9 - 2.0, 0.0)  # the body is stationary for the first two seconds
     w, angle = 10.0 * np.sin(np.pi * t), 10.0 / np.pi * (1.0 - np.cos(np.pi * t))
     noise = np.random.default_rng(1)
     gyro = np.stack([w, 0 * w, 0 * w], axis=1) + noise.normal(0, 5e-3, (len(t), 3))
@@ -35,7 +35,7 @@ def twirl(seconds=12.0, rate_hz=100.0, rail=7.3):
 
 
 imu, speed = wand(sys.argv[1]) if len(sys.argv) > 1 else twirl()
-rates = tumble.rate(imu, lever_arm_sigma_m=0.1)  # nobody says where the wand's centre of mass is
+rates = tumble.rate(imu, lever_arm_sigma_m=0.1)  # the centre of mass of the wand is unknown
 
 rails = tumble.find_rails(*imu.samples)
 print("rails found, rad/s:", [None if plane is None else round(plane.distance, 2) for plane in rails.gyro])
@@ -44,4 +44,4 @@ for name, rate in (("gyro", imu.gyro), ("tumble", rates.rate)):
     error = np.abs(np.linalg.norm(rate, axis=1) - speed)[clipped]
     print(f"{name:6} at {clipped.sum()} clipped samples: median error of the speed {np.median(error):.2f} rad/s, 90 % {np.quantile(error, 0.9):.2f}")
 sigma = np.sqrt(rates.covariance[:, 0, 0])
-print(f"stated deviation of x, rad/s: {np.median(sigma[~clipped]):.4f} where the gyro reads, {np.median(sigma[clipped]):.2f} where it clips")
+print(f"estimated standard deviation of x, rad/s: {np.median(sigma[~clipped]):.4f} unclipped, {np.median(sigma[clipped]):.2f} clipped")

@@ -20,10 +20,10 @@ def errors(seed, folder):
     own = tumble.Rates.joined([stream.add_imu(*imu.samples), stream.flush()])
     batch = tumble.CarriedSmoother(**stated).estimate(*imu.samples)[0]
     clipped = batch.clipped_axes != 0
-    told = {"gyro": imu.gyro, "CarriedStream": own.rate, "CarriedSmoother": batch.rate,
+    rates = {"gyro": imu.gyro, "CarriedStream": own.rate, "CarriedSmoother": batch.rate,
             "RegimeStream": tumble.rate(imu, recording.gravity_m_s2, live=True).rate}
     print(seed, f"{np.count_nonzero(clipped)} clipped, {np.count_nonzero((own.clipped_axes != 0) != clipped)} called otherwise by the stream", end="")
-    for name, rate in told.items():
+    for name, rate in rates.items():
         error = np.linalg.norm(rate - truth, axis=1)[clipped]
         print(f"; {name} {np.median(error):.3f} / {np.quantile(error, 0.9):.3f}", end="")
     print()

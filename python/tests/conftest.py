@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""What tests are run on: a small tumble and a small roll that are made here, and recordings of the program where there is one."""
+"""Data for the tests: a small generated tumble and roll, and recordings of the program if it is available."""
 import os
 import pathlib
 import subprocess
@@ -12,13 +12,13 @@ import tumble
 
 @pytest.fixture(scope="session")
 def program():
-    """The program of this tree, which the test of CTest names; without it what compares with it is left out by `-m "not program"`."""
+    """The program of this tree, whose path CTest passes. Without it, skip the comparisons by `-m "not program"`."""
     return tumble.program()
 
 
 @pytest.fixture(scope="session")
 def recordings(program, tmp_path_factory):
-    """A tumble of the rig, the rig twirled in a hand and a slip of the sphere, as the program simulates them."""
+    """Simulated recordings: a tumble of the rig, the rig twirled by hand, and a slip of the sphere."""
     folder = tmp_path_factory.mktemp("recordings")
     return {name: tumble.record(name, folder / f"{name}.h5", seed=1) for name in ("hill", "slip", "twirl")}
 
@@ -40,7 +40,7 @@ def slip(recordings):
 
 @pytest.fixture(scope="session")
 def real_data():
-    """Folder with the real recordings, or None: they are no part of the project."""
+    """Folder with the real recordings, which are not part of the project, or None."""
     root = pathlib.Path(os.environ.get("TUMBLE_SHARED_DATA", pathlib.Path(__file__).parents[3] / "shared" / "data"))
     return root if (root / "repoimu").is_dir() else None
 
@@ -71,7 +71,7 @@ def spin():
 
 
 def run_script(path, folder, *arguments, timeout=250):
-    """Runs a script of Python in a folder; its output. Fails with what it said."""
+    """Runs a Python script in a folder and returns its output. Fails with the output on an error."""
     import sys
 
     ended = subprocess.run([sys.executable, str(path), *map(str, arguments)], cwd=folder, capture_output=True, text=True, timeout=timeout)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""evalio both ways: our pipeline and our recordings in it, the released package; its pipelines as methods of the program."""
+"""Tests with the released evalio: our pipeline and recordings in evalio, and its pipelines as methods of the program."""
 import os
 import pathlib
 import subprocess
@@ -23,12 +23,12 @@ ROOT = pathlib.Path(__file__).parents[2]
 
 @pytest.fixture(scope="module")
 def stroll(program, tmp_path_factory):
-    """The rig carried gently through a hall: anybody must follow it."""
+    """A rig that is carried gently through a hall, which every pipeline must follow."""
     return tumble.record("stroll", tmp_path_factory.mktemp("stroll") / "hall.h5", seed=1)
 
 
 def cut(path, target, sweeps):
-    """The first so many sweeps of a recording."""
+    """Returns a recording cut after its first sweeps."""
     recording = tumble.read(path)
     lidar, (imu, *_) = recording.sweeps, recording.imus
     points, samples = int(lidar.sweep_first[sweeps]), int(np.searchsorted(imu.time_ns, lidar.sweep_start_ns[sweeps])) + 1
@@ -41,7 +41,7 @@ def cut(path, target, sweeps):
 
 
 def in_evalio(code, **environment):
-    """What a program of Python prints with $EVALIO_CUSTOM as users set it; its status."""
+    """Runs Python code with $EVALIO_CUSTOM set; returns exit status and output."""
     ended = subprocess.run([sys.executable, "-c", textwrap.dedent(code)], capture_output=True, text=True, timeout=250,
                            env=os.environ | {"EVALIO_CUSTOM": "tumble.evalio"} | {k: str(v) for k, v in environment.items()})
     return ended.returncode, ended.stdout + ended.stderr
@@ -74,8 +74,8 @@ RUN = """
 """
 
 
-def test_poses_are_the_doors(recordings, tmp_path):
-    """Through evalio and directly: the same bits, given the same mounting; and the program's, to what a mounting as a quaternion loses."""
+def test_poses_equal_those_of_tumbling_odometry(recordings, tmp_path):
+    """Poses through evalio are identical to direct ones, and equal to the program's up to the rounding of the mounting quaternion."""
     short = cut(recordings["hill"], tmp_path / "tumbling.h5", 40)
     status, said = in_evalio(RUN.format(name="tumbling", out=tmp_path / "poses.npz"), TUMBLE_EVALIO_FILES=short)
     assert status == 0, said
@@ -85,14 +85,14 @@ def test_poses_are_the_doors(recordings, tmp_path):
     assert len(own.poses) > 300 and np.array_equal(through["time_ns"] - ORIGIN_NS, own.poses.time_ns)
     assert np.array_equal(through["position"], own.poses.position) and np.array_equal(through["quaternion"], own.poses.quaternion)
     assert through["map"] == len(own.map) > 1000
-    told = tumble.read_estimate(tumble.estimate(short, "slam/tumble_lag", tmp_path / "program")).sweep_poses
-    assert np.array_equal(told.time_ns, own.poses.time_ns) and np.abs(told.position - through["position"]).max() < 1e-6
+    expected = tumble.read_estimate(tumble.estimate(short, "slam/tumble_lag", tmp_path / "program")).sweep_poses
+    assert np.array_equal(expected.time_ns, own.poses.time_ns) and np.abs(expected.position - through["position"]).max() < 1e-6
     other = tumble.tumbling(recording, lidar=tumble.sheets.rs16(), T_IL=through["T_IL"], lag_s=0.1)
     assert not np.array_equal(other.poses.position[:300], through["position"][:300]), "the negative control"
 
 
 def test_evalio_runs_ours_and_theirs(stroll, tmp_path):
-    """`evalio run` on a recording of ours, scored by us: both follow a stroll."""
+    """Scores `evalio run` on our recording: both pipelines follow a stroll."""
     (tmp_path / "both.yaml").write_text("datasets: [{name: tumble/hall}]\npipelines: [tumble, kiss]\n")
     ended = subprocess.run([pathlib.Path(sys.executable).parent / "evalio", "run", "-c", "both.yaml"], cwd=tmp_path, capture_output=True,
                            text=True, timeout=250, env=os.environ | {"EVALIO_CUSTOM": "tumble.evalio", "TUMBLE_EVALIO_FILES": str(stroll)})
@@ -115,7 +115,7 @@ def test_evalio_runs_ours_and_theirs(stroll, tmp_path):
 
 
 def test_a_pipeline_of_evalio_is_a_method(stroll, tmp_path, monkeypatch):
-    """By a description of a few lines over the adapter of peers/, in the environment that is here: evalio's `kiss`."""
+    """Runs evalio's `kiss` as a method of the program, through the adapter in peers/."""
     monkeypatch.setenv("TUMBLE_PEERS", sys.prefix)
     words = ", ".join(f'"{word}"' for word in (ROOT / "peers/run", ROOT / "peers/adapt.py", "evalio_pipeline", "{recording}", "{output}", "kiss"))
     (tmp_path / "kiss.yaml").write_text(f"name: kiss_of_evalio\nkind: slam\nframe: imu\nrobots: [rig]\ncommand: [{words}]\n")
@@ -124,7 +124,7 @@ def test_a_pipeline_of_evalio_is_a_method(stroll, tmp_path, monkeypatch):
 
 
 def test_recordings_as_a_data_set(recordings, tmp_path):
-    """Every sample and every return that is not of the rig itself is there, to the bit; what is not stated is said."""
+    """The data set contains every sample and every return that is not from the rig itself, to the bit."""
     code = """
         import numpy as np
         from evalio import datasets, types
@@ -179,7 +179,7 @@ def test_a_fixed_sequence_has_a_column_each():
     grid = Grid(lidar)
     assert (grid.rows, grid.columns, grid.sequence_ns) == (3, 50, 1000)
     assert np.array_equal(grid.cells(ring, offset)[ring, column], np.arange(150))
-    offset[ring == 1] //= 2  # of ring 1 two share a column: nobody is lost
+    offset[ring == 1] //= 2  # two returns of ring 1 share a column, and none may be lost
     assert sorted(cell for cell in Grid(lidar).cells(ring, offset).ravel() if cell >= 0) == list(range(150))
 
 
@@ -199,7 +199,7 @@ def test_settings_that_are_wrong(name, value, word):
 
 
 def test_a_file_without_an_imu_does_not_spoil_the_list(recordings, tmp_path):
-    """Nor one that is no recording: they are named, and the others are there."""
+    """Files without a lidar or that are not recordings are reported and skipped; the others are listed."""
     (tmp_path / "none.h5").write_bytes(b"nothing")
     blind = tmp_path / "blind.h5"
     with h5py.File(recordings["hill"]) as whole, h5py.File(blind, "w") as file:
@@ -211,7 +211,7 @@ def test_a_file_without_an_imu_does_not_spoil_the_list(recordings, tmp_path):
         names = [each.value for each in Recordings]
         assert "hill" in names and "blind" not in names and "none" not in names, names
     """, TUMBLE_EVALIO_FILES=given)
-    assert status == 0 and "blind.h5 is left out: it has no lidars" in said and "none.h5 is left out" in said, said
+    assert status == 0 and "blind.h5 is skipped: it has no lidars" in said and "none.h5 is skipped" in said, said
 
 
 def test_a_parameter_beyond_its_bounds():
@@ -228,8 +228,8 @@ def test_a_parameter_beyond_its_bounds():
     assert (caught.value.field, caught.value.value) == ("lag_s", 100.0)
 
 
-def test_what_is_refused_is_left_out_aloud():
-    """A sample back in time, one that is no number and a return before its sweep."""
+def test_rejected_data_are_skipped_with_a_warning():
+    """Covers a sample with an earlier time, a sample with NaN, and a return before its sweep."""
     from tumble.evalio import Tumble
 
     pipeline, types = Tumble(), evalio.types
@@ -260,17 +260,17 @@ def test_sweeps_do_not_wait_for_an_imu_without_end():
         pipeline.add_lidar(sweep(k))
     with pytest.raises(RuntimeError, match="100 sweeps wait for samples .* from 1.0.* s to 11.0.* s, .*: there was none yet"):
         pipeline.add_lidar(sweep(110))
-    # an IMU of another clock is told from none
+    # the message distinguishes an IMU with another clock from a missing IMU
     pipeline.add_imu(types.ImuMeasurement(types.Stamp(sec=0, nsec=500_000_000), np.zeros(3), np.array([0.0, 0.0, 9.8])))
     with pytest.raises(RuntimeError, match="the last one is at 0.5"):
         pipeline.add_lidar(sweep(110))
-    # and with one that covers them they are given
+    # samples that cover the sweeps make room for new ones
     for k in range(100, 1200):
         pipeline.add_imu(types.ImuMeasurement(types.Stamp(sec=k // 100, nsec=k % 100 * 10_000_000), np.zeros(3), np.array([0.0, 0.0, 9.8])))
     pipeline.add_lidar(sweep(120))
 
 
-def test_another_abi_or_none_is_said(monkeypatch):
+def test_a_different_abi_or_a_missing_package_is_reported(monkeypatch):
     from tumble.evalio.needed import needed_bindings, needed_evalio
 
     assert needed_bindings().Feed

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""The examples do what they say."""
+"""The examples run and give the documented results."""
 import pathlib
 import re
 
@@ -10,7 +10,7 @@ EXAMPLES = pathlib.Path(__file__).parents[1] / "examples"
 
 
 def errors(text):
-    """Median error of the speed per name."""
+    """Returns the median speed error by name."""
     found = {name: float(error) for name, error in re.findall(r"^(\w+) +at \d+ clipped samples: median error of the speed ([\d.]+)", text, re.M)}
     assert set(found) == {"gyro", "tumble"}, text
     return found
@@ -22,7 +22,7 @@ def test_saturated_rate_in_closed_form(tmp_path):
 
 
 def test_saturated_rate_of_a_real_wand(tmp_path, real_data):
-    """Where the recording is at hand: half the error of the gyro's speed at least; docs/real_gyros.md has the same of the rate."""
+    """Runs if the recording is available. The speed error is at most half that of the gyro; see docs/real_gyros.md for the rate."""
     if real_data is None:
         return
     found = errors(run_script(EXAMPLES / "saturated_rate.py", tmp_path, real_data / "repoimu" / "TStick_Test05_Trial1.csv"))
@@ -39,7 +39,7 @@ def test_map_of_a_tumble(recordings, tmp_path):
 
 @pytest.mark.program
 def test_own_method(tmp_path):
-    """Better than the gyro, worse than ours: as a dozen lines are."""
+    """The example method is better than the gyro and worse than rate/tumble."""
     pytest.importorskip("pandas", reason="the extra `tables`")
     lines = run_script(EXAMPLES / "own_method.py", tmp_path).splitlines()
     names = lines[0].split()[1:]

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Recordings and estimates as files: there and back to the bit, and what is wrong with a file said by place."""
+"""Tests of files of recordings and estimates: lossless writing and reading, and errors that name the place in the file."""
 import dataclasses
 
 import numpy as np
@@ -12,7 +12,7 @@ h5py = pytest.importorskip("h5py", reason="the extra `files`")
 
 
 def small():
-    """A recording with everything in it."""
+    """Returns a recording with all members set."""
     time_ns, gyro, accel, _ = spinning()
     count = len(time_ns)
     random = np.random.default_rng(1)
@@ -38,7 +38,7 @@ def small():
     truth = tumble.Truth(500_000, rows(9, 3), quaternion, rows(9, 3), rows(9, 3), (np.arange(9) % 4).astype(np.uint8), rows(3), [imu_truth],
                          [lidar_truth], rows(9, 3), contacts, ["terrain", "Fels_Ä"], [series_truth])
     return tumble.Recording([imu], [lidar], robot="rig", gravity_m_s2=9.8, scenario="hill", seed=2**64 - 1, situation_yaml="a: 1",
-                            attribution="nobody", origin_ns=1_234_567_890_123_456_789, tumble_version="0.1", engine_version="3", truth=truth, series=[series])
+                            attribution="unknown author", origin_ns=1_234_567_890_123_456_789, tumble_version="0.1", engine_version="3", truth=truth, series=[series])
 
 
 def same(a, b, place="recording"):
@@ -84,7 +84,7 @@ def test_what_an_estimator_may_see_alone(tmp_path):
 
 
 def test_a_reference_that_knows_poses_alone(tmp_path):
-    """Of a real recording: no row of what the instrument does not know, not a number where it saw nothing."""
+    """Truth of a real recording: no rows for unknown quantities, NaN for times without a measurement."""
     first = small()
     known = first.truth
     known.position[3], known.quaternion[3] = np.nan, np.nan
@@ -99,7 +99,7 @@ def test_a_reference_that_knows_poses_alone(tmp_path):
 
 
 def test_a_series(tmp_path):
-    """A sensor that is neither IMU nor lidar: by quantity, left out of files that have none, refused where it is none."""
+    """A sensor that is neither IMU nor lidar: quantities by name, no group if there are none, errors for invalid ones."""
     recording = small()
     barometer = recording.series[0]
     assert len(barometer) == 3 and barometer["pressure_pa"] is barometer.values["pressure_pa"]
@@ -134,7 +134,7 @@ def test_sweeps_are_views():
 
 
 def test_frames():
-    """T_IL of two sensors that are turned and moved: a point seen by the lidar, in IMU axes, by way of the body."""
+    """T_IL of two rotated and translated sensors agrees with the transform of a lidar point through body axes."""
     recording = small()
     turned = np.array([[0.0, -1, 0, 0.4], [1, 0, 0, 0.5], [0, 0, 1, 0.6], [0, 0, 0, 1]])
     recording.imus[0].T_BI = turned

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""What functions of the package are given beside samples: whatever is wrong is TumbleError, with field, value and bound."""
+"""Invalid arguments other than samples raise TumbleError with field, value and bound."""
 import copy
 import subprocess
 import types
@@ -18,7 +18,7 @@ RATES = types.SimpleNamespace(rate=np.zeros((5, 3)), covariance=np.zeros((5, 3, 
 
 @pytest.fixture(autouse=True)
 def no_program(monkeypatch):
-    """Nothing of this gets so far as to be run."""
+    """Fails if the program is called: all arguments below are rejected first."""
     monkeypatch.setenv("TUMBLE_PROGRAM", "/bin/false")
 
 

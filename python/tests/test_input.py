@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""What estimators take and refuse: every refusal says which field, which value, which bound."""
+"""Tests which input estimators accept and reject. Every error contains field, value and bound."""
 import copy
 import pickle
 import threading
@@ -32,7 +32,7 @@ TAKERS = BATCHES | {name: (lambda make: lambda *s: make().add_imu(*s))(make) for
 
 @pytest.mark.parametrize("take", TAKERS.values(), ids=TAKERS.keys())
 def test_takes_a_recording(take, spin):
-    """The positive control of the refusals below."""
+    """Positive control for the rejections below."""
     take(*spin[:3])
 
 
@@ -60,7 +60,7 @@ def test_refuses_time_that_goes_back(take, spin):
 
 @pytest.mark.parametrize("take", TAKERS.values(), ids=TAKERS.keys())
 def test_times_since_1970_are_told_to_the_nanosecond(take, spin):
-    """A double would say that 1753351234567890005 is not after itself."""
+    """Exact times in an error message, which doubles cannot represent: 1753351234567890005."""
     times = spin[0] + 1_753_351_234_567_890_123
     times[20] = times[19] - 5
     with pytest.raises(tumble.TumbleError) as caught:
@@ -71,7 +71,7 @@ def test_times_since_1970_are_told_to_the_nanosecond(take, spin):
 
 
 def test_times_of_another_call_are_told_to_the_nanosecond(spin):
-    """The bound is a sample that was given before, also to the original of a copy; after load() a double's worth of it is known."""
+    """The bound is the time of an earlier sample, also after a copy. After load() it is known to double precision."""
     times = spin[0] + 1_753_351_234_567_890_123
     for make in STREAMS.values():
         stream = make()
@@ -159,7 +159,7 @@ def test_layouts_and_types_of_numbers_give_the_same_bits(spin):
 
 @pytest.mark.parametrize("make", STREAMS.values(), ids=STREAMS.keys())
 def test_sample_by_sample_is_the_array(make, spin):
-    """Also in pieces, and with a copy that goes on in the middle."""
+    """Same results if samples are added in pieces, or if a copy continues midway."""
     whole, single, cut = make(), make(), make()
     kind = type(whole.add_imu(*(r[:1] for r in spin[:3])))
     rows = [name for name in ("rate", "quaternion", "position") if hasattr(kind, name)]
@@ -201,7 +201,7 @@ def test_refuses_a_time_that_is_no_count_of_nanoseconds(time_ns):
 
 
 def test_refuses_none(spin):
-    """Python's own refusal."""
+    """Calls with a wrong signature raise TypeError."""
     for samples in ((None, *spin[1:3]), (spin[0], None, spin[2])):
         with pytest.raises(TypeError):
             tumble.Vqf().add_imu(*samples)
@@ -244,7 +244,7 @@ def test_empty_results_are_empty_arrays():
 
 
 def test_threads_share_an_estimator(spin):
-    """Calls wait for each other: nothing crashes, each sample is taken once or refused."""
+    """Concurrent calls wait for each other. Each sample is accepted once or rejected."""
     vqf, taken, refused = tumble.Vqf(), [], []
 
     def work(k):
@@ -265,7 +265,7 @@ def test_threads_share_an_estimator(spin):
 
 
 def test_interpreter_goes_on_in_long_calls():
-    """While one thread smooths, another one counts."""
+    """Another Python thread runs while one thread smooths."""
     from conftest import spinning
     long = spinning(seconds=100.0, rate_hz=400.0, rail=7.0)
     counted, done = [0], threading.Event()
@@ -354,16 +354,16 @@ def test_doubt_names_what_cannot_be_believed(hill, slip):
         sound.add_imu(imu.time_ns, imu.gyro, imu.accel)
         assert sound.health() is None
         harmed.add_imu(imu.time_ns, frozen, imu.accel)
-        doubt = harmed.health()
-        assert isinstance(doubt, tumble.TumbleError) and doubt.trouble == "out_of_range" and "gyro x" in str(doubt)
-        assert doubt.value > doubt.bound
+        health = harmed.health()
+        assert isinstance(health, tumble.TumbleError) and health.trouble == "out_of_range" and "gyro x" in str(health)
+        assert health.value > health.bound
     sphere = tumble.RollingOdometry(units=[(tumble.sheets.phidget1044(), np.eye(4))], radius_m=0.145)
     sphere.add_imu(unit.time_ns, unit.gyro, unit.accel)
     assert sphere.health() is None
 
 
 def test_mapper_alone(hill):
-    """LidarInertialOdometry with rates of a stream; the gyro alone is another thing."""
+    """LidarInertialOdometry with rates of a stream, compared with the gyro alone."""
     imu, until = hill.imus[0], 8
     rates = tumble.rate(imu)
     mapper, believing = (tumble.LidarInertialOdometry(T_IL=hill.T_IL) for _ in range(2))

@@ -46,11 +46,11 @@ def datasets(path):
 
 @pytest.mark.program
 def test_the_kept_recording_is_what_its_command_makes(program, tmp_path):
-    """Where the simulation has changed, `python docs/notebooks/keep_twirl.py` makes it anew."""
-    run_script(FOLDER / "keep_twirl.py", tmp_path, tmp_path / "anew.h5")
-    kept, anew = datasets(RECORDING), datasets(tmp_path / "anew.h5")
-    assert len(kept) > 20 and kept.keys() == anew.keys()
-    assert [name for name in kept if not np.array_equal(kept[name], anew[name], equal_nan=kept[name].dtype.kind == "f")] == []
+    """If the simulation has changed, run `python docs/notebooks/keep_twirl.py` to write it again."""
+    run_script(FOLDER / "keep_twirl.py", tmp_path, tmp_path / "rewritten.h5")
+    kept, rewritten = datasets(RECORDING), datasets(tmp_path / "rewritten.h5")
+    assert len(kept) > 20 and kept.keys() == rewritten.keys()
+    assert [name for name in kept if not np.array_equal(kept[name], rewritten[name], equal_nan=kept[name].dtype.kind == "f")] == []
 
 
 @pytest.mark.program
@@ -71,7 +71,7 @@ def test_all_are_run():
 
 @pytest.mark.program
 def test_a_real_wand(tmp_path, monkeypatch, real_data):
-    """Where the recording is at hand."""
+    """Runs if the recording is available."""
     if real_data is None:
         return
     monkeypatch.setenv("REPOIMU", str(real_data / "repoimu/TStick_Test05_Trial1.csv"))

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""What the package says of itself: every name is there, explained, and in the stubs."""
+"""Every public name of the package exists, is documented, and is in the stubs."""
 import ast
 import inspect
 import pathlib
@@ -27,7 +27,7 @@ def test_names_are_there_and_explained():
 
 
 def test_arrays_of_records_are_explained():
-    """What shape, which unit: behind each member that is an array, or in the record's own words."""
+    """Each array member documents its shape and unit, in its comment or in the docstring of its class."""
     seen = 0
     for module in ("recordings", "estimates", "truth"):
         text = (TYPES.parent / f"{module}.py").read_text(encoding="utf-8")
@@ -35,8 +35,8 @@ def test_arrays_of_records_are_explained():
             for member in (node for node in record.body if isinstance(node, ast.AnnAssign)):
                 if any(word in ast.unparse(member.annotation) for word in ("Array", "Trajectory", "RateTable", "Truth")):
                     seen += 1
-                    told = ast.unparse(member.target) in (ast.get_docstring(record) or "") or "#: " in text.splitlines()[member.lineno - 1]
-                    assert told, f"{module}.{record.name}: {ast.unparse(member)}"
+                    documented = ast.unparse(member.target) in (ast.get_docstring(record) or "") or "#: " in text.splitlines()[member.lineno - 1]
+                    assert documented, f"{module}.{record.name}: {ast.unparse(member)}"
     assert seen > 50
 
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Every number of every class: its default is within its bounds and accepted, what lies beyond is refused by name."""
+"""For every parameter of every class: the default is within the bounds and accepted; a value beyond a bound is rejected by name."""
 import math
 
 import numpy as np
@@ -70,8 +70,8 @@ def test_defaults_are_accepted_and_unknown_names_are_not(name):
         assert caught.value.trouble == "unknown"
         assert caught.value.value == wrong
         assert listed[-1].name in str(caught.value), "names the known ones"
-        told = str(caught.value).rsplit(": ", 1)[1].split(", ")
-        assert len(told) == len(set(told)), "each once"
+        listed_names = str(caught.value).rsplit(": ", 1)[1].split(", ")
+        assert len(listed_names) == len(set(listed_names)), "each once"
     with pytest.raises(tumble.TumbleError, match=f"nearest: {listed[0].name}"):
         make(name, **{listed[0].name + "s": 1.0})
 
@@ -85,7 +85,7 @@ def test_what_has_no_default_must_be_given(name, key):
 
 
 def test_numbers_arrive():
-    """A parameter that is set changes what comes out; one set to its default does not."""
+    """Setting a parameter changes the results; setting it to its default does not."""
     from conftest import spinning
     samples = spinning(rail=7.0)[:3]
     run = lambda **options: tumble.Vqf(**options).add_imu(*samples).quaternion
@@ -96,7 +96,7 @@ def test_numbers_arrive():
 
 
 def test_relations_between_parameters_name_the_field():
-    """What a constructor of the library refuses by itself reaches Python with field, value and bound."""
+    """An error of a library constructor reaches Python with field, value and bound."""
     with pytest.raises(tumble.TumbleError) as caught:
         tumble.RateStream(lever_arm_m=(0, 0, 0), period_s=1e-4, lag_s=10.0)
     assert caught.value.trouble == "out_of_range"
@@ -123,7 +123,7 @@ def test_refuses_another_sheet(key):
     lambda v: tumble.ImuSheet(gyro_range_rad_s=v), lambda v: tumble.RegimeStream(lever_arm_m=(0, 0, 0), gyro_range_rad_s=v),
     lambda v: tumble.RollingFilter(radius_m=v)])
 def test_what_is_no_number_is_refused(make, value):
-    """Python has no float of these, which was once a null pointer."""
+    """Values that Python cannot convert to a float are rejected."""
     with pytest.raises(tumble.TumbleError) as caught:
         make(value)
     assert (caught.value.trouble, caught.value.bound) == ("type", "a number")

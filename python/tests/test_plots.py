@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Figures: drawn, their axes named with units, what they show where it should be; and where returns lie by closed form."""
+"""Tests of figures (axes named with units, contents in the right place), and of return positions against a closed form."""
 import io
 import sys
 
@@ -13,7 +13,7 @@ pytest.importorskip("matplotlib", reason="the extra `plots`")
 
 
 def drawn(figure):
-    """The figure's pixels, (H, W, 3); every axis has a name with a unit."""
+    """Returns the pixels of a figure, (H, W, 3), after a check that every axis has a name with a unit."""
     from matplotlib.image import imread
 
     for axes in figure.axes:
@@ -63,7 +63,7 @@ def test_true_poses_place_returns_where_they_were():
 
 
 def test_worlds_are_laid_over_each_other_at_the_start():
-    """Another origin and yaw cost nothing; a way that is a tenth too long costs what it is too long."""
+    """The error is independent of origin and yaw. A trajectory scaled by 1.1 has the error of this scale."""
     recording, _, poses = carousel()
     yaw = turned(np.array([0.7]))[0]
     x, y, z, w = poses.quaternion.T
@@ -91,7 +91,7 @@ def test_returns_need_a_truth_and_poses():
     with pytest.raises(tumble.TumbleError) as caught:
         tumble.point_errors(recording, late)
     assert (caught.value.trouble, caught.value.field) == ("empty", "poses")
-    with pytest.raises(tumble.TumbleError, match="2 at least"):
+    with pytest.raises(tumble.TumbleError, match="at least 2"):
         tumble.point_errors(recording, tumble.Trajectory(poses.time_ns[:1], poses.position[:1], poses.quaternion[:1]))
     recording.truth = None
     with pytest.raises(tumble.TumbleError, match="truth"):
@@ -145,7 +145,7 @@ def test_scores():
     ok, lost = ([len(line.get_ydata()) for line in axes.lines if line.get_marker() == marker] for marker in "ox")
     assert ok == [2, 0, 3] and lost == [1, 1, 0]
     medians = [bar.get_segments()[0][0][1] for bar in axes.collections]
-    assert medians == [3.0, 6.0, 0.02]  # of 2, 3 and one that is lost: 3; where all are lost, above all of them
+    assert medians == [3.0, 6.0, 0.02]  # values 2, 3 and one failure: 3; if all fail, above all values
     with pytest.raises(tumble.TumbleError, match="one of error_m"):
         tumble.plot.scores(frame(), "nobody_m")
 

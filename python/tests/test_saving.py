@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""What was saved anywhere, or pickled, goes on with the same bits; bytes of a stranger are refused and change nothing."""
+"""Estimators that were saved or pickled continue with the same bits. Invalid bytes are rejected and change nothing."""
 import copy
 import pickle
 
@@ -14,13 +14,13 @@ SHEET = tumble.sheets.mti30()
 
 
 def rows_of(out):
-    """All numbers of what a stream gave out."""
+    """Returns all numbers in the results of a stream."""
     names = ("time_ns", "rate", "covariance", "quaternion", "position", "velocity")
     return [getattr(out, name).copy() for name in names if hasattr(out, name)]
 
 
 class Stream:
-    """One that gives something out with its samples."""
+    """A stream that returns results from add_imu."""
 
     def __init__(self, make, end="flush"):
         self.make, self.end = make, end
@@ -32,18 +32,18 @@ class Stream:
         return rows_of(getattr(stream, self.end)()) if self.end else []
 
 
-class Door(Stream):
-    """One that is asked for what it knows, with sweeps of a wall of points in between."""
+class Odometry(Stream):
+    """An odometry class, whose results are requested after the samples."""
 
-    def feed(self, door, samples):
-        door.add_imu(*samples)
-        return rows_of(door.take()) if isinstance(door, tumble.RollingOdometry) else []
+    def feed(self, odometry, samples):
+        odometry.add_imu(*samples)
+        return rows_of(odometry.take()) if isinstance(odometry, tumble.RollingOdometry) else []
 
-    def rest(self, door):
-        if isinstance(door, tumble.RollingOdometry):
-            door.finish()
-            return rows_of(door.take())
-        return [*rows_of(door.newest_rate()), *rows_of(door.smoothed_rate()), door.rig().covariance.copy()]
+    def rest(self, odometry):
+        if isinstance(odometry, tumble.RollingOdometry):
+            odometry.finish()
+            return rows_of(odometry.take())
+        return [*rows_of(odometry.newest_rate()), *rows_of(odometry.smoothed_rate()), odometry.rig().covariance.copy()]
 
 
 STREAMS = {
@@ -52,8 +52,8 @@ STREAMS = {
     "carried": Stream(lambda: tumble.CarriedStream(gyro_range_rad_s=10.0, lag_s=0.15)),
     "rolling_live": Stream(lambda: tumble.RollingFilter(radius_m=0.145), end=""),
     "rolling": Stream(lambda: tumble.RollingSmoother(radius_m=0.145, lag_s=0.2), end="finish"),
-    "tumbling_door": Door(lambda: tumble.TumblingOdometry(imu=SHEET, T_IL=np.eye(4), lever_arm_m=LEVER, lag_s=0.1)),
-    "rolling_door": Door(lambda: tumble.RollingOdometry(units=[(tumble.sheets.phidget1044(), np.eye(4))], radius_m=0.145)),
+    "tumbling_odometry": Odometry(lambda: tumble.TumblingOdometry(imu=SHEET, T_IL=np.eye(4), lever_arm_m=LEVER, lag_s=0.1)),
+    "rolling_odometry": Odometry(lambda: tumble.RollingOdometry(units=[(tumble.sheets.phidget1044(), np.eye(4))], radius_m=0.145)),
 }
 
 
@@ -64,7 +64,7 @@ def kind(request):
 
 @pytest.fixture(scope="module")
 def samples():
-    """A spin that clips at 10 rad/s."""
+    """Samples of a spin that clips at 10 rad/s."""
     return spinning(rail=10.0)[:3]
 
 
@@ -130,12 +130,12 @@ def test_other_parameters_are_named(samples):
 
 
 def test_a_map_is_kept(samples):
-    """The door with a wall that it has seen: sweeps before and after."""
+    """Saves TumblingOdometry after sweeps of four walls and a floor, and adds further sweeps to both copies."""
     points = np.stack(np.meshgrid(np.linspace(-2, 2, 40), np.linspace(-2, 2, 30)), -1).reshape(-1, 2)
     cloud = np.concatenate([np.c_[np.full(len(points), side), points] for side in (-3.0, 3.0)] + [
         np.c_[points, np.full(len(points), -1.0)], np.c_[points[:, :1], np.full((len(points), 1), 4.0), points[:, 1:]]]).astype(np.float32)
     offset = np.linspace(0, 99e6, len(cloud)).astype(np.uint32)
-    door = tumble.TumblingOdometry(imu=SHEET, T_IL=np.eye(4), lever_arm_m=LEVER)
+    odometry = tumble.TumblingOdometry(imu=SHEET, T_IL=np.eye(4), lever_arm_m=LEVER)
 
     def feed(which, first, last):
         out = []
@@ -145,9 +145,9 @@ def test_a_map_is_kept(samples):
             out += [sweep.report.pose.matrix.copy() for sweep in which.take_all()]
         return out
 
-    feed(door, 0, 6)
-    other = pickle.loads(pickle.dumps(door))
-    a, b = feed(door, 6, 10), feed(other, 6, 10)
+    feed(odometry, 0, 6)
+    other = pickle.loads(pickle.dumps(odometry))
+    a, b = feed(odometry, 6, 10), feed(other, 6, 10)
     assert len(a) >= 3 and same(a, b)
-    assert len(door.map().position) > 100 and np.array_equal(door.map().position, other.map().position)
-    assert door.save() == other.save()
+    assert len(odometry.map().position) > 100 and np.array_equal(odometry.map().position, other.map().position)
+    assert odometry.save() == other.save()

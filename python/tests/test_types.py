@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""mypy --strict has nothing to say about the package: stubs of the compiled module, and all that is Python."""
+"""mypy --strict reports no error for the package: stubs of the compiled module and Python sources."""
 import pathlib
 import sys
 
@@ -15,7 +15,7 @@ SETTINGS = pathlib.Path(__file__).parents[1] / "pyproject.toml"
 @pytest.fixture
 def check(tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
-    if FOLDER.parent.name not in ("site-packages", "dist-packages"):  # where mypy looks by itself
+    if FOLDER.parent.name not in ("site-packages", "dist-packages"):  # mypy searches these folders automatically
         monkeypatch.setenv("MYPYPATH", str(FOLDER.parent))
 
     def run(*what):
@@ -33,7 +33,7 @@ def test_the_package(check):
 
 
 def test_who_calls_it(check, tmp_path):
-    """A script of a user's, and one that a checker has to refuse."""
+    """Checks a valid user script, and a script with a type error."""
     good, bad = tmp_path / "good.py", tmp_path / "bad.py"
     good.write_text("""import tumble
 

@@ -37,7 +37,7 @@ bool is_tumble_error(nb::python_error& error) {
 }
 
 void warn(const std::string& text) {
-  nb::module_::import_("warnings").attr("warn")("left out: " + text);
+  nb::module_::import_("warnings").attr("warn")("skipped: " + text);
 }
 
 }  // namespace

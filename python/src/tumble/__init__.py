@@ -1,18 +1,19 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Estimators and mapper for robots that tumble and roll: gyros that clip, lidar sweeps bent by the motion, spheres that slip.
+"""Estimators and mapping for robots that tumble and roll: clipping gyros, motion-distorted lidar sweeps, slipping spheres.
 
-Arrays of numpy in and out; times are int64 nanoseconds, everything else SI; quaternions are Hamilton, x y z w, sensor or body to
-world (z up). What is wrong with input is TumbleError, with field, value and bound. `parameters()` of a class lists its keywords.
+Inputs and outputs are numpy arrays. Times are int64 nanoseconds, all other quantities are in SI units. Quaternions are Hamilton,
+x y z w, and rotate sensor or body axes to the world (z up). Invalid input raises TumbleError, with field, value and bound.
+`parameters()` of a class lists its keywords.
 
-The door        TumblingOdometry (an IMU that may clip and a lidar), RollingOdometry (IMUs in a sphere), sheets of sensors
+Odometry        TumblingOdometry (an IMU that may clip and a lidar), RollingOdometry (IMUs in a sphere), sheets of sensors
 Rates           RegimeSmoother, RateSmoother, CarriedSmoother, Saave (whole recordings), RegimeStream, RateStream, CarriedStream (live), find_rails
 Attitude        TumbleAttitude, Vqf, Strapdown
 Sphere          RollingSmoother, RollingFilter (live)
 Mapper          LidarInertialOdometry
-Recordings      read, write, their truth with them; rate, tumbling, rolling take them whole
+Recordings      read and write, with ground truth; rate, tumbling and rolling process a whole recording
 Estimates       read_tum, write_tum, read_estimate
-Figures         plot (Matplotlib); point_errors: where returns lie by poses, and how far from where they were
-The program     record, run, estimate, score, sweep, results; serve and describe_method make a function a method of it
+Figures         plot (Matplotlib); point_errors: distances of returns from their true positions
+The program     record, run, estimate, score, sweep, results; serve and describe_method add a Python function as a method
 """
 import importlib.metadata
 

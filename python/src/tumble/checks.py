@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""What functions of the package are given: refused by name, with the value found and its bound."""
+"""Checks of function arguments. Errors name the argument, the value found and its bound."""
 from __future__ import annotations
 
 import math
@@ -14,36 +14,36 @@ import numpy.typing as npt
 from .errors import TumbleError
 
 Array = npt.NDArray[Any]
-SYMMETRIC = 1e-3  # in correlations, as of a function of Python that the program calls
-RIGID = 1e-6  # as the program asks of what it reads
+SYMMETRIC = 1e-3  # tolerance in correlations, the same as for a Python method that the program calls
+RIGID = 1e-6  # tolerance of a rotation, the same as in the program's readers
 
 
 def refusal(trouble: str, field: str, value: Any, bound: Any, index: int | None = None) -> TumbleError:
-    """The error "FIELD is VALUE, must be BOUND"."""
+    """Returns the error "FIELD is VALUE, must be BOUND"."""
     where = "" if index is None else f" (row {index})"
     return TumbleError(f"{field} is {value}, must be {bound}{where}", trouble, field, value, bound, index)
 
 
 def wrong_type(field: str, given: Any, bound: str) -> TumbleError:
-    """The error of an argument that is something else."""
+    """Returns the error for an argument of the wrong type."""
     return refusal("type", field, type(given).__name__, bound)
 
 
 def having(field: str, given: Any, what: str, *names: str) -> None:
-    """Refuses what lacks one of the attributes `names`; `what` it should have been."""
+    """Raises TumbleError `type` if `given` lacks one of the attributes `names`. `what` describes a valid argument."""
     if given is None or not all(hasattr(given, name) for name in names):
         raise wrong_type(field, given, what)
 
 
 def path_of(field: str, given: Any) -> str:
-    """A path as text."""
+    """Returns a path as text."""
     if not isinstance(given, (str, os.PathLike)):
         raise wrong_type(field, given, "a path")
     return os.fspath(given)
 
 
 def whole(field: str, given: Any, low: int, high: int) -> int:
-    """A whole number within bounds, of Python or numpy; no other number is cut down to one."""
+    """Returns an integer of Python or numpy within bounds. Floats are rejected, not truncated."""
     try:
         if isinstance(given, (bool, np.bool_)):
             raise TypeError
@@ -56,7 +56,7 @@ def whole(field: str, given: Any, low: int, high: int) -> int:
 
 
 def number_from(field: str, given: Any, low: float = -math.inf) -> float:
-    """A finite number of at least `low`."""
+    """Returns a finite number that is at least `low`."""
     if not isinstance(given, kinds.Real) or isinstance(given, bool):
         raise refusal("type", field, repr(given), "a number")
     number = float(given)
@@ -66,7 +66,7 @@ def number_from(field: str, given: Any, low: float = -math.inf) -> float:
 
 
 def unmasked(field: str, given: Any) -> Array:
-    """As an array of numbers that are real; what lies below a mask is none, and a complex number would lose a part."""
+    """Returns an array of real numbers. Rejects masked values and complex numbers."""
     if np.ma.is_masked(given):
         raise refusal("type", field, "masked", "numbers without a mask")
     try:
@@ -79,7 +79,7 @@ def unmasked(field: str, given: Any) -> Array:
 
 
 def rising(field: str, times: Array) -> None:
-    """Refuses times of which one is not after the one before."""
+    """Raises TumbleError `time_order` unless each time is later than the previous one."""
     late = np.flatnonzero(times[1:] <= times[:-1])
     if len(late):
         k = int(late[0]) + 1
@@ -87,7 +87,7 @@ def rising(field: str, times: Array) -> None:
 
 
 def symmetric(field: str, matrices: Array) -> None:
-    """Refuses covariances (N, M, M) of which one is not symmetric, up to what single precision makes of one."""
+    """Raises TumbleError unless all covariances (N, M, M) are symmetric, within the precision of single-precision numbers."""
     deviation = np.sqrt(np.maximum(np.diagonal(matrices, axis1=1, axis2=2), 0.0))
     apart = np.abs(matrices - matrices.transpose(0, 2, 1)) > SYMMETRIC * deviation[:, :, None] * deviation[:, None, :]
     bad = np.flatnonzero(apart.any(axis=(1, 2)))
@@ -96,11 +96,11 @@ def symmetric(field: str, matrices: Array) -> None:
 
 
 def rigid(field: str, given: Any) -> None:
-    """Refuses what is no rotation and shift, (4, 4)."""
+    """Raises TumbleError unless `given` is a rigid transform, (4, 4)."""
     pose = unmasked(field, given)
     if pose.shape != (4, 4):
         raise refusal("shape", field, pose.shape, (4, 4))
     turn = pose[:3, :3].astype(float)
     fits = np.isfinite(pose).all() and np.abs(turn.T @ turn - np.eye(3)).max() <= RIGID and np.linalg.det(turn) > 0.0
     if not fits or not np.array_equal(pose[3], [0, 0, 0, 1]):
-        raise refusal("out_of_range", field, "no rigid transform", "a rotation and a translation")
+        raise refusal("out_of_range", field, "not a rigid transform", "a rotation and a translation")

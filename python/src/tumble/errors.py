@@ -1,20 +1,21 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""What goes wrong with input."""
+"""The error that invalid input raises."""
 from __future__ import annotations
 
 from typing import Any
 
 
 class TumbleError(ValueError):
-    """Input that a caller has to expect trouble with: which field, the value found, the bound that it broke.
+    """Invalid input: the field, the value found and the violated bound.
 
-    trouble   "empty", "non_finite", "time_order", "gap", "out_of_range", "too_few", "degenerate", "diverged" as the library
-              has them (`Status`); "type", "shape", "unknown" of an argument; "file" of a file; "program" of the program
-    field     the input or the parameter; of a file its path and place
-    value     what was found, in the field's unit; a time is an int of nanoseconds
-    bound     what it broke: a number, or a text
-    index     of an array of samples: the one that was refused; a stream has taken in those before it, what takes a whole recording none
-    so_far    what came out of these, where anything does
+    trouble   "empty", "non_finite", "time_order", "gap", "out_of_range", "too_few", "degenerate" or "diverged", from the library's
+              `Status`; "type", "shape" or "unknown" for an argument; "file" for a file; "program" for the program
+    field     input or parameter; for a file, its path and the place within the file
+    value     value found, in the unit of the field; a time is an int in nanoseconds
+    bound     violated bound: a number or a text
+    index     index of the rejected sample in an array. A stream has processed the samples before it; an estimator of whole recordings
+              has processed none
+    so_far    results from the samples before the rejected one, if there are any
     """
 
     def __init__(self, message: str, trouble: str = "", field: str | None = None, value: Any = None, bound: Any = None,

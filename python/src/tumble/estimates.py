@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Estimates as files: poses as TUM, and the folders that the program leaves (scenarios/methods/ESTIMATE.md)."""
+"""Files of estimates: poses in TUM format, and the folders that the program writes (scenarios/methods/ESTIMATE.md)."""
 from __future__ import annotations
 
 import json
@@ -31,9 +31,12 @@ class Trajectory:
 
 
 def write_tum(path: str | os.PathLike[str], poses: Any) -> None:
-    """Writes whatever has time_ns, position and quaternion, or time_ns and quaternion alone (the place is 0 then), as TUM:
-    `t x y z qx qy qz qw`, t in seconds, to the nanosecond. Numbers come back to the bit. Written beside and renamed."""
-    having("poses", poses, "whatever has time_ns and quaternion", "time_ns", "quaternion")
+    """Writes poses in TUM format: `t x y z qx qy qz qw`, with t in seconds, exact to the nanosecond.
+
+    poses: an object with time_ns, quaternion and, optionally, position (else 0). `read_tum` restores the numbers to the bit. The file is
+    written under a temporary name and then renamed.
+    """
+    having("poses", poses, "an object with time_ns and quaternion", "time_ns", "quaternion")
     times, quaternions = unmasked("time_ns", poses.time_ns), unmasked("quaternion", poses.quaternion)
     if times.dtype.kind not in "iu":
         raise refusal("type", "time_ns", times.dtype, "int64 (nanoseconds)")
@@ -53,7 +56,7 @@ def write_tum(path: str | os.PathLike[str], poses: Any) -> None:
 
 
 def _nanoseconds(text: str) -> int:
-    """Exact where the text is a plain decimal: a double has lost the nanoseconds of a stamp since 1970."""
+    """Converts seconds to nanoseconds, exactly for a plain decimal. A double cannot represent nanoseconds since 1970."""
     sign, digits = (-1, text[1:]) if text.startswith("-") else (1, text)
     whole, _, part = digits.partition(".")
     if not (whole + part).isdigit() or not (whole + part).isascii():
@@ -63,8 +66,10 @@ def _nanoseconds(text: str) -> int:
 
 
 def read_tum(path: str | os.PathLike[str], separator: str | None = None) -> Trajectory:
-    """Poses of a TUM file; lines that begin with # are left out. separator: of the numbers, else blanks. TumbleError `file` with the
-    line that is wrong."""
+    """Reads poses from a TUM file. Lines that start with # are skipped.
+
+    separator: text between the numbers; None: white space. Raises TumbleError `file` with the number of an invalid line.
+    """
     name = path_of("path", path)
     times, rows = [], []
     try:
@@ -94,7 +99,7 @@ def read_tum(path: str | os.PathLike[str], separator: str | None = None) -> Traj
 
 @dataclass
 class RateTable:
-    """Rates of an estimate on disk."""
+    """Angular velocities of an estimate that was read from disk."""
 
     time_ns: Array  #: (N,) int64
     rate: Array  #: (N, 3), rad/s
@@ -105,21 +110,21 @@ class RateTable:
 
 @dataclass
 class Estimate:
-    """The folder of an estimate; what it does not hold is None."""
+    """Contents of the folder of an estimate. Members whose file is missing are None."""
 
     method: str
     kind: str
     frame: str
-    status: str  #: "ok", or the trouble of the run
-    health: dict[str, float]  #: what the method counted, by name
-    rates: RateTable | None = None  #: of the first IMU
-    poses: Trajectory | None = None  #: of the frame; of an attitude without a place
-    sweep_poses: Trajectory | None = None  #: inside of sweeps
+    status: str  #: "ok", or the error of the run
+    health: dict[str, float]  #: health counters of the method, by name
+    rates: RateTable | None = None  #: angular velocity of the first IMU
+    poses: Trajectory | None = None  #: poses of the frame; an attitude estimate has zero positions
+    sweep_poses: Trajectory | None = None  #: poses within sweeps
     sweeps: dict[str, Array] = field(default_factory=dict)  #: columns of sweeps.csv
 
 
 def _columns(path: pathlib.Path) -> dict[str, Array]:
-    """Columns of a CSV; those of times as int64."""
+    """Returns the columns of a CSV file. Columns of times are int64."""
     with open(path, encoding="ascii") as file:
         names = file.readline().strip().split(",")
         rows = [line.strip().split(",") for line in file]
@@ -138,11 +143,11 @@ def _rates(path: pathlib.Path) -> RateTable:
 
 
 def read_estimate(folder: str | os.PathLike[str]) -> Estimate:
-    """The folder that `tumble estimate -o` and, per method, `tumble run -o` leave."""
+    """Reads the folder of an estimate, which `tumble estimate -o` and, per method, `tumble run -o` write."""
     root = pathlib.Path(path_of("folder", folder))
     try:
-        told = json.loads((root / "estimate.json").read_text(encoding="utf-8"))
-        out = Estimate(told["method"], told["kind"], told["frame"], told["status"]["trouble"], told["health"])
+        head = json.loads((root / "estimate.json").read_text(encoding="utf-8"))
+        out = Estimate(head["method"], head["kind"], head["frame"], head["status"]["trouble"], head["health"])
         if (root / "rates.csv").exists():
             out.rates = _rates(root / "rates.csv")
         for name in ("trajectory.tum", "attitude.tum"):

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Files: packages that only some need, and results that are there whole or not at all."""
+"""Import of optional packages, and writing of files that are either complete or absent."""
 from __future__ import annotations
 
 import contextlib
@@ -12,7 +12,7 @@ from typing import Any
 
 
 def optional(module: str, extra: str) -> Any:
-    """A package that is no requirement. ImportError says how to get it; what is wrong inside of it is its own error."""
+    """Imports an optional package. Raises ImportError with the install command if it is missing; errors within the package pass through."""
     try:
         return importlib.import_module(module)
     except ModuleNotFoundError as error:
@@ -23,7 +23,7 @@ def optional(module: str, extra: str) -> Any:
 
 @contextlib.contextmanager
 def beside(path: str | os.PathLike[str]) -> Iterator[str]:
-    """A name in the folder of `path` to write to; renamed to `path` in the end, or gone where something was raised."""
+    """Yields a temporary name in the folder of `path`. On success the file is renamed to `path`; on an exception it is deleted."""
     target = pathlib.Path(path)
     handle, part = tempfile.mkstemp(prefix=f".{target.name}.", dir=target.parent)
     os.close(handle)

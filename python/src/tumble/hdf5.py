@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Groups of a file of HDF5: what is missing or of another type or shape is said by its place."""
+"""Groups of an HDF5 file. Errors name the place of a missing item or of an item with the wrong type or shape."""
 from __future__ import annotations
 
 from collections.abc import Sequence
@@ -14,18 +14,18 @@ from .files import optional
 
 Array = npt.NDArray[Any]
 XYZ = "x y z"
-CHUNK_BYTES = 2**20  # of a deflated dataset, FORMAT.md
-PLAIN = {"position_L_m", "range_m", "intensity", "hit_W_m"}  # floats of a lidar, like noise: deflating takes long and saves little
+CHUNK_BYTES = 2**20  # chunk size of a compressed dataset, see FORMAT.md
+PLAIN = {"position_L_m", "range_m", "intensity", "hit_W_m"}  # floats of a lidar resemble noise: compression is slow and saves little
 
 
 class Group:
-    """A group of a file that says where it is when something is missing or of another type."""
+    """A group of an HDF5 file, whose errors contain its path."""
 
     def __init__(self, group: Any, path: str) -> None:
         self.group, self.place = group, f"{path}: {group.name}"
 
     def attribute(self, name: str, kind: type, default: Any = None) -> Any:
-        """An attribute as `kind`; TumbleError `file` where it is missing and has no default."""
+        """Returns an attribute as `kind`. Raises TumbleError `file` if it is missing and has no default."""
         value = self.group.attrs.get(name, default)
         if value is None:
             raise missing(f"{self.place} attribute {name}")
@@ -34,7 +34,7 @@ class Group:
         return kind(value)
 
     def rows(self, name: str, dtype: str, columns: tuple[int, ...] = (), optional: bool = False) -> Any:
-        """A dataset as an array of that type and those columns; None where an optional one is missing, else TumbleError `file`."""
+        """Returns a dataset of the given type and columns, or None if an optional one is missing. Raises TumbleError `file`."""
         if name not in self.group:
             if optional:
                 return None
@@ -50,23 +50,23 @@ class Group:
         return data[()]
 
     def texts(self, name: str) -> list[str]:
-        """A dataset of texts."""
+        """Returns a dataset of texts."""
         place = f"{self.place}/{name}"
         if name not in self.group:
             raise missing(place)
         try:
             return [str(text) for text in self.group[name].asstr()[()]]
         except (AttributeError, TypeError, UnicodeDecodeError) as error:
-            raise TumbleError(f"{place} is no list of texts, must be", "file", place, None, "texts") from error
+            raise TumbleError(f"{place} is not a list of texts, must be one", "file", place, None, "texts") from error
 
     def member(self, name: str) -> Group:
-        """The group within it."""
+        """Returns a subgroup."""
         if not hasattr(self.group.get(name), "keys"):
             raise missing(f"{self.place}/{name}")
         return Group(self.group[name], self.place.split(": ")[0])
 
     def members(self, name: str) -> list[Group]:
-        """The groups 0, 1, ... within `name`, in order; none where there is no such group."""
+        """Returns the groups 0, 1, ... within `name`, in order; an empty list if `name` is missing."""
         if name not in self.group:
             return []
         within = self.group[name]
@@ -78,12 +78,12 @@ class Group:
 
 
 def missing(place: str) -> TumbleError:
-    """The error of what a file has to hold and does not."""
+    """Returns the error for a required item that is missing."""
     return TumbleError(f"{place} is missing", "file", place, None, "there")
 
 
 def same_length(place: str, first: Array, **others: Array | None) -> None:
-    """TumbleError `file` for the first of `others` that has another number of rows than `first`; None is left out."""
+    """Raises TumbleError `file` if one of `others` has a different number of rows than `first`; None is skipped."""
     for name, rows in others.items():
         if rows is not None and len(rows) != len(first):
             raise TumbleError(f"{place}/{name} has {len(rows)} rows, must have {len(first)}", "file", f"{place}/{name}",
@@ -91,7 +91,7 @@ def same_length(place: str, first: Array, **others: Array | None) -> None:
 
 
 def _storage(name: str, rows: Array) -> dict[str, Any]:
-    """How the program stores such rows (scenarios/recordings/FORMAT.md)."""
+    """Returns the storage options that the program uses for such rows (scenarios/recordings/FORMAT.md)."""
     if name in PLAIN or len(rows) == 0:
         return {}
     in_chunk = max(1, CHUNK_BYTES // (rows.itemsize * rows[0].size))
@@ -99,10 +99,10 @@ def _storage(name: str, rows: Array) -> dict[str, Any]:
 
 
 def put(group: Any, name: str, rows: Any, dtype: str, unit: str, shape: tuple[int, ...], columns: str = "", many: bool = True) -> None:
-    """Writes a dataset with its unit and the names of its columns, stored as the program does. many=False: rows of a fixed number,
-    which are too few to be deflated.
+    """Writes a dataset with its unit and column names, stored as by the program.
 
-    TumbleError `shape`; `type` of numbers that are complex, masked, or to be whole and are not, `out_of_range` of those that the file's type does not hold.
+    many=False: the dataset has a fixed, small number of rows and is not compressed. Raises TumbleError `shape`; `type` for numbers that
+    are complex, masked, or floats for an integer type; `out_of_range` for numbers beyond the file's type.
     """
     given = unmasked(f"{group.name}/{name}", rows)
     if np.dtype(dtype).kind in "iu" and given.dtype.kind not in "iu":
@@ -125,7 +125,7 @@ def put(group: Any, name: str, rows: Any, dtype: str, unit: str, shape: tuple[in
 
 
 def put_texts(group: Any, name: str, texts: Sequence[str]) -> None:
-    """Writes a dataset of texts, as long as the longest one."""
+    """Writes a dataset of texts with a fixed length, that of the longest text."""
     rows = [text.encode() for text in texts]
     utf8 = optional("h5py", "files").string_dtype("utf-8", max([1, *map(len, rows)]))
     group.create_dataset(name, data=np.array(rows, dtype=utf8))

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""A function of Python as a method of the program, where a name of a method may stand: in runs, sweeps, gates.
+"""Use of a Python function as a method of the program, in runs, sweeps and gates.
 
     import tumble
 
@@ -9,8 +9,8 @@
     if __name__ == "__main__":
         tumble.serve("rate", rate)
 
-and `tumble.describe_method("mine.yaml", "mine", "rate", "mine.py")` beside it. The program runs the file for each draw, in a process
-of its own; it sees the sensors, never the truth.
+`tumble.describe_method("mine.yaml", "mine", "rate", "mine.py")` writes the description of this method. The program runs the file for each
+draw in a separate process. The function receives the sensor data without the ground truth.
 """
 from __future__ import annotations
 
@@ -35,11 +35,13 @@ TIME_MAX_S = 1e6
 
 
 def serve(kind: str, function: Callable[[Recording], Any], arguments: Sequence[str] | None = None) -> None:
-    """Answers the program: reads the recording, calls `function` with it, leaves the result where it is wanted.
+    """Reads the recording, calls `function` with it, and writes the result to the file that the program requested.
 
-    What `function` returns: of a rate (N, 3), rad/s in axes of the first IMU, one row for each of its samples, or that and
-    (N, 3, 3) of covariances, or whatever has `rate` and `covariance` (Rates); of an attitude whatever has time_ns and
-    quaternion (Attitudes); of a position or slam whatever has time_ns, position and quaternion (Poses, Trajectory).
+    `function` returns, by kind:
+    rate                 (N, 3), rad/s in axes of the first IMU, one row per sample; or this and covariances (N, 3, 3); or an object with
+                         `rate` and `covariance` (Rates)
+    attitude             an object with time_ns and quaternion (Attitudes)
+    position, slam       an object with time_ns, position and quaternion (Poses, Trajectory)
     """
     if kind not in KINDS:
         raise TumbleError(f"kind is '{kind}', must be one of {', '.join(KINDS)}", "unknown", "kind", kind, KINDS)
@@ -84,8 +86,10 @@ def _write_rates(path: str, recording: Recording, result: Any) -> None:
 
 def describe_method(path: str | os.PathLike[str], name: str, kind: str, script: str | os.PathLike[str], doc: str = "",
                     robots: Sequence[str] = (), time_limit_s: float = 600.0) -> pathlib.Path:
-    """Writes the file that makes `script`, which calls `serve`, a method named KIND/NAME: this interpreter runs it. All keys of
-    such files: scenarios/methods/EXTERNAL.md."""
+    """Writes the file that describes `script`, which calls `serve`, as a method named KIND/NAME. The program runs it with this interpreter.
+
+    All keys of such files: scenarios/methods/EXTERNAL.md.
+    """
     if kind not in KINDS:
         raise TumbleError(f"kind is '{kind}', must be one of {', '.join(KINDS)}", "unknown", "kind", kind, KINDS)
     _require_description(name, script, robots, time_limit_s)
@@ -103,9 +107,9 @@ def describe_method(path: str | os.PathLike[str], name: str, kind: str, script: 
 
 
 def _require_description(name: str, script: str | os.PathLike[str], robots: Sequence[str], time_limit_s: float) -> None:
-    """What the program refuses when it reads the file, now."""
+    """Raises the errors that the program would report when it reads the file."""
     if not isinstance(name, str) or not re.fullmatch(r"[a-z][a-z0-9_]{0,99}", name):
-        raise refusal("out_of_range", "name", repr(name), "a lower-case letter followed by letters, digits and underscores, 100 at most")
+        raise refusal("out_of_range", "name", repr(name), "a lower-case letter followed by letters, digits and underscores, at most 100 characters")
     if not pathlib.Path(path_of("script", script)).is_file():
         raise refusal("file", "script", os.fspath(script), "a file")
     if number_from("time_limit_s", time_limit_s, 0.0) == 0.0 or time_limit_s > TIME_MAX_S:
@@ -114,7 +118,7 @@ def _require_description(name: str, script: str | os.PathLike[str], robots: Sequ
         raise wrong_type("robots", robots, "names")
     for robot in (robots,) if isinstance(robots, str) else robots:
         if robot not in ROBOTS:
-            raise refusal("unknown", "robots", repr(robot), f"of {', '.join(ROBOTS)}")
+            raise refusal("unknown", "robots", repr(robot), f"one of {', '.join(ROBOTS)}")
 
 
 def _quoted(text: str) -> str:

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Where the returns of a lidar lie in the world, by poses of an estimate or by the truth, and how far the two are apart."""
+"""Positions of lidar returns in the world by estimated poses and by ground truth, and the distances between them."""
 from __future__ import annotations
 
 from typing import Any
@@ -15,7 +15,7 @@ Array = npt.NDArray[Any]
 
 
 def rotations(quaternion: Array) -> Array:
-    """(N, 3, 3) of (N, 4), x y z w, of any length but 0."""
+    """Converts quaternions (N, 4), x y z w, to rotation matrices (N, 3, 3). The quaternions need not have unit length."""
     x, y, z, w = (quaternion / np.linalg.norm(quaternion, axis=1, keepdims=True)).T
     rows = [[1 - 2 * (y * y + z * z), 2 * (x * y - z * w), 2 * (x * z + y * w)],
             [2 * (x * y + z * w), 1 - 2 * (x * x + z * z), 2 * (y * z - x * w)],
@@ -24,11 +24,13 @@ def rotations(quaternion: Array) -> Array:
 
 
 def poses_at(time_ns: Array, poses: Any) -> tuple[Array, Array]:
-    """Positions (N, 3) and rotations (N, 3, 3) at times within those of `poses` (time_ns, position, quaternion): positions along the
-    chord, attitudes along the arc between two neighbours. Not a number outside."""
+    """Interpolates `poses` (time_ns, position, quaternion): positions (N, 3) linearly, rotations (N, 3, 3) by spherical interpolation.
+
+    Returns NaN for times outside those of `poses`.
+    """
     known = np.asarray(poses.time_ns)
     if len(known) < 2:
-        raise TumbleError(f"poses is {len(known)} poses, must be 2 at least", "too_few", "poses", len(known), 2)
+        raise TumbleError(f"poses is {len(known)} poses, must be at least 2", "too_few", "poses", len(known), 2)
     k = np.clip(np.searchsorted(known, time_ns, side="right") - 1, 0, len(known) - 2)
     share = ((time_ns - known[k]) / (known[k + 1] - known[k]))[:, None]
     share[(time_ns < known[0]) | (time_ns > known[-1])] = np.nan
@@ -44,20 +46,20 @@ def poses_at(time_ns: Array, poses: Any) -> tuple[Array, Array]:
 
 
 def point_errors(recording: Recording, poses: Any, every: int = 1) -> tuple[Array, Array]:
-    """Places the first lidar's returns by poses of the first IMU and says how far each is from where it truly was.
+    """Computes the positions of the first lidar's returns from poses of the first IMU, and their distances from the true positions.
 
-    Returns positions (N, 3), m, in the estimate's world, and distances (N,), m, of those returns that lie within the poses and the
-    truth. The two worlds are laid over each other by position and yaw at the first of the poses within the truth's times, as
-    the program's scores are (`ate_m`). every: takes each so-manyth return. The estimate places a return by the calibration that the recording states, the truth
-    by its own mounting of the IMU: what the calibration is off by is part of the distance.
-    TumbleError `empty` without a truth or without returns.
+    Returns positions (N, 3), m, in the world of the estimate, and distances (N,), m, for the returns within the times of both the poses
+    and the ground truth. The worlds are aligned in position and yaw at the first pose within the times of the truth, as for the
+    program's scores (`ate_m`). The estimated position uses the calibration stated by the recording, the true position uses the true
+    mounting. The distance therefore contains the calibration error. every: uses every n-th return.
+    Raises TumbleError `empty` without ground truth or without returns.
     """
     having("recording", recording, "a Recording", "truth", "imus", "lidars")
-    having("poses", poses, "whatever has time_ns, position and quaternion", "time_ns", "position", "quaternion")
+    having("poses", poses, "an object with time_ns, position and quaternion", "time_ns", "position", "quaternion")
     every = whole("every", every, 1, 2**63 - 1)
     truth = recording.truth
     if truth is None:
-        raise TumbleError("truth is not there, must be in the recording", "empty", "truth", None, "a truth")
+        raise TumbleError("truth is missing, must be in the recording", "empty", "truth", None, "a truth")
     lidar = recording.sweeps
     counts: Array = np.diff(lidar.sweep_first.astype(np.int64))
     time_ns = (np.repeat(lidar.sweep_start_ns, counts) + lidar.offset_ns)[::every]
@@ -70,12 +72,12 @@ def point_errors(recording: Recording, poses: Any, every: int = 1) -> tuple[Arra
     true = position + np.einsum("nij,nj->ni", R_WB, returns_B)
     inside = np.isfinite(estimated).all(axis=1) & np.isfinite(true).all(axis=1)
     if not inside.any():
-        raise TumbleError("poses have no return of the lidar within their times, must have one at least", "empty", "poses", 0, 1)
+        raise TumbleError("poses have no return of the lidar within their times, must have at least one", "empty", "poses", 0, 1)
     estimated, true = estimated[inside], true[inside]
     known = np.asarray(poses.time_ns)
     begin = known[(known >= truth.time_ns[0]) & (known <= truth.time_ns[-1])][:1]
     if len(begin) == 0:
-        raise TumbleError("poses are not within the times of the truth, must have one there at least", "empty", "poses", 0, 1)
+        raise TumbleError("poses are not within the times of the truth, must have at least one there", "empty", "poses", 0, 1)
     p_e, R_e = poses_at(begin, poses)
     p_t, R_t = poses_at(begin, truth)
     T_BI = truth.imu_T_BI[0]

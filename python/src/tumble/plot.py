@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Figures of Matplotlib: `pip install tumble[plots]`. Each function returns a Figure, which a notebook shows and `.savefig(path)` writes;
-none touches pyplot or what is open there."""
+"""Figures with Matplotlib: `pip install tumble[plots]`. Each function returns a Figure, which a notebook shows and `.savefig(path)` writes.
+The functions do not use pyplot and leave its open figures unchanged."""
 from __future__ import annotations
 
 import importlib
@@ -26,12 +26,15 @@ def _figure(**options: Any) -> Any:
 
 
 def rate(imu: Imu, rates: Any, truth: Array | None = None, axes: str = "xyz") -> Any:
-    """Angular velocity of a recording against time, a panel per axis of the IMU: the gyro, `rates` (Rates: tumble.rate) with three stated
-    deviations about it, the truth (N, 3) where it is given. Where the gyro clips on an axis its panel is shaded."""
+    """Plots angular velocity against time, one panel per axis of the IMU.
+
+    Shows the gyro, `rates` (Rates, from tumble.rate) with a band of three standard deviations, and the truth (N, 3) if given. Times at
+    which the gyro clips on an axis are shaded.
+    """
     if not axes or set(axes) - set("xyz"):
         raise TumbleError(f"axes is '{axes}', must be of x, y, z", "unknown", "axes", axes, "xyz")
     having("imu", imu, "an Imu, as recording.imus[0]", "time_ns", "gyro")
-    having("rates", rates, "whatever has rate, covariance and clipped_axes, as tumble.rate gives", "rate", "covariance", "clipped_axes")
+    having("rates", rates, "an object with rate, covariance and clipped_axes, as tumble.rate returns", "rate", "covariance", "clipped_axes")
     for name, rows in (("rates", rates.rate), ("truth", truth)):
         if rows is not None and np.shape(rows) != np.shape(imu.gyro):
             raise refusal("shape", name, np.shape(rows), np.shape(imu.gyro))
@@ -48,7 +51,7 @@ def rate(imu: Imu, rates: Any, truth: Array | None = None, axes: str = "xyz") ->
         sigma = np.sqrt(rates.covariance[:, j, j])
         panel.plot(t, rates.rate[:, j], color=_OURS, lw=1.0, label="estimate")
         shown = np.where(np.isfinite(sigma), np.minimum(3 * sigma, 4 * np.abs(rates.rate).max()), np.nan)
-        panel.fill_between(t, rates.rate[:, j] - shown, rates.rate[:, j] + shown, color=_OURS, alpha=0.25, lw=0, label="3 deviations")
+        panel.fill_between(t, rates.rate[:, j] - shown, rates.rate[:, j] + shown, color=_OURS, alpha=0.25, lw=0, label="3 standard deviations")
         panel.set_ylabel(f"rate {axis} [rad/s]")
     panels[-1].set_xlabel("time [s]")
     panels[0].legend(loc="upper left", ncols=5, fontsize="small")
@@ -56,11 +59,14 @@ def rate(imu: Imu, rates: Any, truth: Array | None = None, axes: str = "xyz") ->
 
 
 def trajectory(poses: Any, truth: Any = None) -> Any:
-    """A way from above and from the side. poses, truth: whatever has `position` (N, 3), m (Poses, Trajectory, Truth). The truth is moved
-    to where `poses` begin; it is not turned."""
+    """Plots a trajectory from above and from the side.
+
+    poses, truth: objects with `position` (N, 3), m (Poses, Trajectory, Truth). The truth is translated to the start of `poses`, without
+    a rotation.
+    """
     for name, given in (("poses", poses), ("truth", truth)):
         if given is not None or name == "poses":
-            having(name, given, "whatever has position", "position")
+            having(name, given, "an object with position", "position")
             if np.ndim(given.position) != 2 or np.shape(given.position)[1] != 3 or len(given.position) == 0:
                 raise refusal("shape", f"{name}.position", np.shape(given.position), "(N, 3), N at least 1")
     figure = _figure(figsize=(9.0, 4.5))
@@ -77,8 +83,11 @@ def trajectory(poses: Any, truth: Any = None) -> Any:
 
 
 def map_by_error(recording: Recording, poses: Any, every: int = 10, worst_m: float | None = None) -> Any:
-    """The lidar's returns where `poses` (of the first IMU) place them, from above and from the side, coloured by how far each is from
-    where it truly was (`point_errors`). every: each so-manyth return. worst_m: end of the scale of colours; else the 99 % quantile."""
+    """Plots the lidar's returns at the positions given by `poses` of the first IMU, from above and from the side.
+
+    The colour of a return is its distance from the true position (`point_errors`). every: uses every n-th return. worst_m: upper end of
+    the colour scale; None: the 99 % quantile.
+    """
     points, error_m = point_errors(recording, poses, every)
     figure = _figure(figsize=(10.0, 4.8))
     order = np.argsort(error_m)  # the worst on top
@@ -92,10 +101,12 @@ def map_by_error(recording: Recording, poses: Any, every: int = 10, worst_m: flo
 
 
 def scores(frame: Any, metric: str, unit: str = "") -> Any:
-    """One metric of a sweep's frame (`tumble.sweep`, `tumble.results`) by method, a dot per draw and a bar at the median, on a logarithmic
-    scale. A draw that a method did not end `ok`, or has no value of, is a cross at the top and counts as the worst in the median.
-    unit: of the axis; else what the metric's name ends in."""
-    having("frame", frame, "a frame of tumble.results", "metric", "kind", "method", "status", "value")
+    """Plots one metric of a sweep (`tumble.sweep`, `tumble.results`) by method on a logarithmic scale: a dot per draw, a bar at the median.
+
+    A draw that failed, or that has no value, is a cross at the top and counts as the worst value in the median. unit: unit of the axis;
+    by default from the end of the metric's name.
+    """
+    having("frame", frame, "a data frame from tumble.results", "metric", "kind", "method", "status", "value")
     rows = frame[frame.metric == metric]
     if len(rows) == 0:
         known = sorted(set(frame.metric.dropna()))
@@ -123,7 +134,7 @@ def scores(frame: Any, metric: str, unit: str = "") -> Any:
 
 
 def _values(ended: Any, rows: Any) -> Array:
-    """Per draw; infinite where there is none, or the method did not end ok."""
+    """Returns one value per draw; infinite if there is none or the method failed."""
     found = {(row.scenario, row.seed): row.value for row in rows.itertuples() if row.status == "ok" and row.value is not None}
     out = np.array([found.get((row.scenario, row.seed), np.inf) for row in ended.itertuples()], float)
     return np.where(np.isnan(out), np.inf, out)

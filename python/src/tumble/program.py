@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""The program `tumble` from Python: simulate, estimate, score, sweep. It is built from the whole tree and is no part of this
-package: found in $TUMBLE_PROGRAM, then on the path."""
+"""Calls the program `tumble` from Python: simulate, estimate, score, sweep. The program is built from the whole tree and is not part of
+this package. It is searched in $TUMBLE_PROGRAM, then in $PATH."""
 from __future__ import annotations
 
 import json
@@ -22,16 +22,16 @@ Number = float | int
 
 
 class ProgramError(RuntimeError):
-    """The program ended as nobody has to expect: a defect of its own, or a signal. What it said is the message."""
+    """The program failed by a defect or a signal. The message contains its output."""
 
 
 def program() -> str:
-    """Path of the program. TumbleError `program` where there is none."""
+    """Returns the path of the program. Raises TumbleError `program` if it is not found."""
     named = os.environ.get("TUMBLE_PROGRAM")
     found = shutil.which(named) if named else shutil.which("tumble")
     if found is None:
-        place = f"$TUMBLE_PROGRAM ({named})" if named else "the path"
-        raise TumbleError(f"the program tumble is not in {place}: build it (README of the tree), or set TUMBLE_PROGRAM", "program",
+        place = f"$TUMBLE_PROGRAM ({named})" if named else "$PATH"
+        raise TumbleError(f"the program tumble is not in {place}: build it (see README.md of the tree) or set TUMBLE_PROGRAM", "program",
                           "TUMBLE_PROGRAM", named, "the program")
     return found
 
@@ -39,14 +39,14 @@ def program() -> str:
 def call(verb: str, *words: Path | Number, timeout_s: float | None = None) -> str:
     """Runs `tumble verb words... --quiet` and returns what it prints.
 
-    TumbleError `program` on wrong use, bad input and checks that failed (its exit status is the value), ProgramError on a
-    defect, subprocess.TimeoutExpired.
+    Raises TumbleError `program` for wrong use, invalid input and failed checks (the value is the exit status), ProgramError for a
+    defect, and subprocess.TimeoutExpired.
     """
     command = [program(), verb, *map(_word, words), "--quiet"]
     ended = subprocess.run(command, capture_output=True, text=True, errors="replace", timeout=timeout_s)
     if ended.returncode in (1, 2):
-        said = ended.stderr.strip() or ended.stdout.strip()
-        raise TumbleError(said, "program", verb, ended.returncode, 0)
+        output = ended.stderr.strip() or ended.stdout.strip()
+        raise TumbleError(output, "program", verb, ended.returncode, 0)
     if ended.returncode != 0:
         raise ProgramError(f"{' '.join(command)} ended with {ended.returncode}: {ended.stderr.strip()}")
     return ended.stdout
@@ -59,15 +59,15 @@ def _word(word: Path | Number) -> str:
 
 
 def _digits(number: Number | Real) -> str:
-    """As the program reads it: numpy's own numbers have their type in their text."""
+    """Returns a number as text for the program. The text of a numpy number contains its type, so it is converted first."""
     return repr(int(number) if isinstance(number, Integral) else float(number))
 
 
 def _named(field: str, given: Path) -> str:
-    """What stands where the program expects no option."""
+    """Returns a positional argument. Rejects texts that the program would read as an option."""
     text = path_of(field, given)
     if not text or text.startswith("-"):
-        raise refusal("unknown", field, repr(text), "a name or a file (one that begins with - as ./-NAME)")
+        raise refusal("unknown", field, repr(text), "a name or a file (write ./-NAME for a file that starts with -)")
     return text
 
 
@@ -93,44 +93,50 @@ def _seed(field: str, given: Any) -> int:
 
 
 def record(scenario: Path, path: Path, seed: int = 1) -> pathlib.Path:
-    """Draws and simulates one situation, leaves its recording."""
+    """Draws and simulates one situation and writes its recording."""
     call("record", _named("scenario", scenario), "--seed", _seed("seed", seed), "-o", path_of("path", path))
     return pathlib.Path(path)
 
 
 def estimate(recording: Path, method: Path, folder: Path, settings: Mapping[str, Number] | None = None) -> pathlib.Path:
-    """Runs one method of the program on a recording, leaves the folder of its estimate (`read_estimate`). `settings`: by the
-    whole name, {"rate/tumble_lag.lag_s": 0.5}."""
+    """Runs one method of the program on a recording and writes the folder of its estimate (`read_estimate`).
+
+    settings: parameters by full name, {"rate/tumble_lag.lag_s": 0.5}.
+    """
     call("estimate", _named("recording", recording), "--method", path_of("method", method), *_settings(settings), "-o",
          path_of("folder", folder))
     return pathlib.Path(folder)
 
 
 def score(estimate: Path, recording: Path, kind: str | None = None, frame: str | None = None) -> dict[str, float | None]:
-    """Scores of an estimate (a folder, or a TUM file with kind "position" or "slam") against the truth of a recording: metric to
-    value, None where there was nothing to score."""
+    """Scores an estimate (a folder, or a TUM file with kind "position" or "slam") against the ground truth of a recording.
+
+    Returns metric to value; None if there was nothing to score.
+    """
     words = [*(["--kind", kind] if kind else []), *(["--frame", frame] if frame else [])]
-    told = json.loads(call("score", _named("estimate", estimate), _named("recording", recording), *words, "--json"))
-    return {row["metric"]: row["value"] for row in told["scores"]}
+    scored = json.loads(call("score", _named("estimate", estimate), _named("recording", recording), *words, "--json"))
+    return {row["metric"]: row["value"] for row in scored["scores"]}
 
 
 def run(scenario: Path, seed: int = 1, methods: Path | Iterable[Path] = (), folder: Path | None = None,
         settings: Mapping[str, Number] | None = None) -> dict[str, Any]:
-    """Draws, simulates, estimates and scores one situation; with `folder` leaves recording, estimates and pictures. Returns what
-    the program tells as JSON."""
+    """Draws, simulates, estimates and scores one situation. With `folder`, also writes recording, estimates and pictures.
+
+    Returns the JSON output of the program.
+    """
     words = ["--seed", _seed("seed", seed), *_methods(methods), *_settings(settings), *(["-o", folder] if folder else [])]
-    told: dict[str, Any] = json.loads(call("run", _named("scenario", scenario), *words, "--json"))
-    return told
+    report: dict[str, Any] = json.loads(call("run", _named("scenario", scenario), *words, "--json"))
+    return report
 
 
 def sweep(suite: Path, db: Path, seeds: tuple[int, int] | None = None, methods: Path | Iterable[Path] = (), jobs: int | None = None,
           data: Path | None = None, timeout_s: float | None = None) -> Any:
-    """Runs a suite, a suite's file or a scenario into a results database, and returns `results(db)`.
+    """Runs a suite, a suite's file or a scenario, stores the scores in a results database, and returns `results(db)`.
 
-    seeds     first and last, both included; else the suite's
-    methods   names, or files NAME.yaml that describe a command (`describe_method`); one of them, or several; else the suite's
-    jobs      processes at a time; else the processors
-    What the database holds already is not run again. Pictures of single draws are not left.
+    seeds     first and last seed, both included; default: those of the suite
+    methods   one or several names, or files NAME.yaml that describe a command (`describe_method`); default: those of the suite
+    jobs      number of concurrent processes; default: number of processors
+    Results that the database already contains are not computed again. No pictures of single draws are written.
     """
     words: list[Path | Number] = ["--db", path_of("db", db), "--examples", 0, *_methods(methods)]
     if seeds is not None:
@@ -146,11 +152,13 @@ def sweep(suite: Path, db: Path, seeds: tuple[int, int] | None = None, methods: 
 
 
 def score_rows(db: Path) -> list[dict[str, Any]]:
-    """Rows of a results database as dictionaries: scenario, seed, kind, method, status, metric, value. An outcome without scores
-    has one row whose metric is None."""
+    """Returns the rows of a results database as dictionaries: scenario, seed, kind, method, status, metric, value.
+
+    An outcome without scores has one row whose metric is None.
+    """
     path = pathlib.Path(path_of("db", db))
     if not path.is_file():
-        raise TumbleError(f"{path} is not there", "file", str(path), None, "a results database")
+        raise TumbleError(f"{path} does not exist", "file", str(path), None, "a results database")
     connection = sqlite3.connect(f"file:{path.resolve()}?mode=ro", uri=True)
     try:
         cursor = connection.execute("SELECT scenario, seed, kind, method, status, metric, value FROM scores "
@@ -158,16 +166,18 @@ def score_rows(db: Path) -> list[dict[str, Any]]:
         names = [column[0] for column in cursor.description]
         rows = [dict(zip(names, row, strict=True)) for row in cursor]
     except sqlite3.DatabaseError as error:
-        raise TumbleError(f"{path} is no results database: {error}", "file", str(path), None, "a results database") from error
+        raise TumbleError(f"{path} is not a results database: {error}", "file", str(path), None, "a results database") from error
     finally:
         connection.close()
     for row in rows:
-        row["seed"] %= 2**64  # kept as the signed number of the same bits
+        row["seed"] %= 2**64  # the database stores the same bits as a signed number
     return rows
 
 
 def results(db: Path) -> Any:
-    """`score_rows` as a data frame of pandas: `pip install tumble[tables]`. A table of one metric:
-    `frame[frame.metric == "ate_m"].pivot(index="seed", columns="method", values="value")`."""
+    """Returns `score_rows` as a pandas data frame: `pip install tumble[tables]`.
+
+    A table of one metric: `frame[frame.metric == "ate_m"].pivot(index="seed", columns="method", values="value")`.
+    """
     pandas = optional("pandas", "tables")
     return pandas.DataFrame(score_rows(db), columns=["scenario", "seed", "kind", "method", "status", "metric", "value"])

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Recordings (HDF5, scenarios/recordings/FORMAT.md) as arrays, read and written through h5py: `pip install tumble[files]`."""
+"""Reads and writes recordings (HDF5, scenarios/recordings/FORMAT.md) as arrays with h5py: `pip install tumble[files]`."""
 from __future__ import annotations
 
 import os
@@ -22,52 +22,52 @@ Array = npt.NDArray[Any]
 
 @dataclass
 class Imu:
-    """What one IMU said. T_BI (4, 4) places it in body axes, from the centre of mass; a range or density of 0 is not stated."""
+    """Samples of one IMU. T_BI (4, 4) is its pose in body axes, relative to the centre of mass. A range or density of 0 is not stated."""
 
     time_ns: Array  #: (N,) int64, end of each sample's window
     gyro: Array  #: (N, 3), rad/s, IMU axes
     accel: Array  #: (N, 3), m/s^2: specific force, +9.8 up at rest
     T_BI: Array = field(default_factory=lambda: np.eye(4))
-    clip_flags: Array | None = None  #: (N,) uint8, bits gyro x y z, accel x y z, as the device reports them; None: it reports none
+    clip_flags: Array | None = None  #: (N,) uint8, bits gyro x y z, accel x y z, as reported by the device; None: not reported
     name: str = "imu"
     device: str = ""
-    period_ns: int = 0  #: 0: the median of the times
+    period_ns: int = 0  #: sample period; 0: the median of the time steps
     gyro_range_rad_s: float = 0.0
     accel_range_m_s2: float = 0.0
     gyro_noise_rad_s_sqrt_hz: float = 0.0
     accel_noise_m_s2_sqrt_hz: float = 0.0
     magnetic_field_t: Array | None = None  #: (N, 3), tesla, IMU axes; None: no magnetometer
-    earth_field_t: Array | None = None  #: (3,), tesla, W: what a magnetometer would read without iron around
+    earth_field_t: Array | None = None  #: (3,), tesla, W: field without magnetic disturbances
 
     def __len__(self) -> int:
         return len(self.time_ns)
 
     @property
     def lever_arm_m(self) -> Array:
-        """From the centre of mass to the IMU, in IMU axes."""
+        """Vector from the centre of mass to the IMU, in IMU axes."""
         return self.T_BI[:3, :3].T @ self.T_BI[:3, 3]
 
     @property
     def samples(self) -> tuple[Array, Array, Array, Array | None]:
-        """time_ns, gyro, accel, clip_flags: what estimators take, in their order."""
+        """Returns time_ns, gyro, accel, clip_flags, in the order of the arguments of the estimators."""
         return self.time_ns, self.gyro, self.accel, self.clip_flags
 
 
 @dataclass
 class Sweep:
-    """One sweep of a lidar: views of its recording."""
+    """One sweep of a lidar. The arrays are views of the recording."""
 
     start_ns: int
     end_ns: int
-    position: Array  #: (M, 3) float32, m, in lidar axes at each point's own instant
-    offset_ns: Array  #: (M,) uint32, after the start
+    position: Array  #: (M, 3) float32, m, in lidar axes at the time of each point
+    offset_ns: Array  #: (M,) uint32, time after the start
     ring: Array  #: (M,) uint16
     intensity: Array  #: (M,) float32
 
 
 @dataclass
 class Lidar:
-    """What a lidar said: returns sweep after sweep. T_BL (4, 4) places it in body axes."""
+    """Returns of a lidar, in order of sweeps. T_BL (4, 4) is the pose of the lidar in body axes."""
 
     sweep_start_ns: Array  #: (S,) int64
     sweep_first: Array  #: (S + 1,) uint64, index of each sweep's first point
@@ -75,9 +75,9 @@ class Lidar:
     offset_ns: Array  #: (P,) uint32
     sweep_period_ns: int
     T_BL: Array = field(default_factory=lambda: np.eye(4))
-    range_m: Array | None = None  #: (P,) float32; when absent the distances of `position`
-    intensity: Array | None = None  #: (P,) float32, as the device states it; when absent 0
-    ring: Array | None = None  #: (P,) uint16, which laser; when absent 0
+    range_m: Array | None = None  #: (P,) float32; by default the norm of `position`
+    intensity: Array | None = None  #: (P,) float32, as reported by the device; by default 0
+    ring: Array | None = None  #: (P,) uint16, index of the laser; by default 0
     name: str = "lidar"
     device: str = ""
     point_times: str = "measured"  #: or "not_skewed", "unknown"
@@ -95,8 +95,11 @@ class Lidar:
         return len(self.sweep_start_ns)
 
     def __getitem__(self, index: int) -> Sweep:
-        """Sweep `index`: it lasts for the period, or until the next begins where that is sooner; points later than that by more than a
-        microsecond are left out. Where points have no times of their own a sweep has no length: all belong to its start."""
+        """Returns sweep `index`. It ends after the sweep period, or at the start of the next sweep if that is earlier.
+
+        Points more than one microsecond after the end are dropped. If points have no individual times, the sweep has zero length and all
+        points belong to its start.
+        """
         count = len(self)
         if not -count <= index < count:
             raise IndexError(f"sweep {index} of {count}")
@@ -120,19 +123,18 @@ class Lidar:
 
 @dataclass
 class Series:
-    """What any other sensor said: at each time one number for each of its quantities, `series["pressure_pa"]`. T_BX (4, 4) places it in
-    body axes."""
+    """Samples of any other sensor: one number per time and quantity, `series["pressure_pa"]`. T_BX (4, 4) is its pose in body axes."""
 
     time_ns: Array  #: (N,) int64, end of each sample's window
-    values: dict[str, Array]  #: by quantity, whose name ends in its unit: (N,) float64
-    units: dict[str, str] = field(default_factory=dict)  #: by quantity: "Pa"
-    noise: dict[str, float] = field(default_factory=dict)  #: by quantity: standard deviation of a reading as stated; 0: not stated
-    constants: dict[str, float] = field(default_factory=dict)  #: known of the sensor, by names that end in their units
+    values: dict[str, Array]  #: by quantity, (N,) float64; the name of a quantity ends in its unit
+    units: dict[str, str] = field(default_factory=dict)  #: by quantity, for example "Pa"
+    noise: dict[str, float] = field(default_factory=dict)  #: by quantity: stated standard deviation of a reading; 0: not stated
+    constants: dict[str, float] = field(default_factory=dict)  #: known constants of the sensor; names end in their units
     T_BX: Array = field(default_factory=lambda: np.eye(4))
     name: str = "series"
-    kind: str = ""  #: "barometer"
+    kind: str = ""  #: for example "barometer"
     device: str = ""
-    period_ns: int = 0  #: 0: the median of the times
+    period_ns: int = 0  #: sample period; 0: the median of the time steps
 
     def __len__(self) -> int:
         return len(self.time_ns)
@@ -143,9 +145,9 @@ class Series:
 
 @dataclass
 class Recording:
-    """A recording: what the sensors said, and what truly happened where that is known."""
+    """A recording: sensor data, and ground truth if it is known."""
 
-    imus: list[Imu] = field(default_factory=list)  #: the first is the primary one
+    imus: list[Imu] = field(default_factory=list)  #: the first is the primary IMU
     lidars: list[Lidar] = field(default_factory=list)
     robot: str = ""  #: "rig", "sphere", "pendulum", or ""
     sphere_radius_m: float = 0.0
@@ -153,30 +155,30 @@ class Recording:
     scenario: str = ""
     seed: int = 0
     situation_yaml: str = ""
-    attribution: str = ""  #: of a real recording: who made it, under which licence
-    origin_ns: int = 0  #: of a real recording: stamp of time 0 in its source's clock, nanoseconds since 1970; 0: not known
-    tumble_version: str = ""  #: of the program that made it
-    engine_version: str = ""  #: of MuJoCo
-    truth: Truth | None = None  #: where it is known and was read
-    series: list[Series] = field(default_factory=list)  #: of sensors that are neither, a barometer for one
+    attribution: str = ""  #: for a real recording: author and licence
+    origin_ns: int = 0  #: for a real recording: stamp of time 0 in the clock of its source, ns since 1970; 0: unknown
+    tumble_version: str = ""  #: version of the program that wrote it
+    engine_version: str = ""  #: version of MuJoCo
+    truth: Truth | None = None  #: ground truth; None: unknown or not read
+    series: list[Series] = field(default_factory=list)  #: other sensors, for example a barometer
 
     @property
     def sweeps(self) -> Lidar:
-        """Those of the first lidar."""
+        """The first lidar. Raises TumbleError `empty` if there is none."""
         if not self.lidars:
             raise TumbleError("lidars is empty, must be at least one", "empty", "lidars", 0, 1)
         return self.lidars[0]
 
     @property
     def first_imu(self) -> Imu:
-        """The primary one. TumbleError `empty` where there is none."""
+        """The primary IMU. Raises TumbleError `empty` if there is none."""
         if not self.imus:
             raise TumbleError("imus is empty, must be at least one", "empty", "imus", 0, 1)
         return self.imus[0]
 
     @property
     def T_IL(self) -> Array:
-        """(4, 4), the first lidar in axes of the first IMU, from the two calibrations."""
+        """(4, 4), pose of the first lidar in axes of the first IMU, from the two calibrations."""
         T_BI, T_BL = self.first_imu.T_BI, self.sweeps.T_BL
         R = T_BI[:3, :3].T
         out = np.eye(4)
@@ -185,11 +187,11 @@ class Recording:
         return out
 
 
-ROUNDING_NS = 1000  # a point so much after its sweep's end belongs to the end
+ROUNDING_NS = 1000  # a point at most this long after the end of its sweep is moved to the end
 
 _IMU_NUMBERS = {"stated_gyro_range_rad_s": "gyro_range_rad_s", "stated_accel_range_m_s2": "accel_range_m_s2",
                 "gyro_noise_rad_s_sqrt_hz": "gyro_noise_rad_s_sqrt_hz", "accel_noise_m_s2_sqrt_hz": "accel_noise_m_s2_sqrt_hz"}
-_TIME_MAX_NS = 10**17  # the program's: beyond it a time is another clock's
+_TIME_MAX_NS = 10**17  # limit of the program: larger times belong to another clock
 
 
 def _read_imu(group: Group) -> Imu:
@@ -235,16 +237,16 @@ def _read_series(group: Group) -> Series:
 
 
 def read(path: str | os.PathLike[str], truth: bool = True) -> Recording:
-    """The recording of an HDF5 file, whole, in memory. truth=False: what an estimator may see alone.
+    """Reads the whole recording of an HDF5 file into memory. truth=False: only the data that an estimator may use.
 
-    TumbleError with `file`: which place of the file is missing or of another type or shape. ImportError without h5py.
+    Raises TumbleError `file` with the place in the file that is missing or has the wrong type or shape, and ImportError without h5py.
     """
     h5py = optional("h5py", "files")
     name = path_of("path", path)
     try:
         file = h5py.File(name, "r")
     except OSError as error:
-        raise TumbleError(f"{name} is no file of HDF5 that can be read: {error}", "file", name, None, "HDF5") from error
+        raise TumbleError(f"{name} is not a readable HDF5 file: {error}", "file", name, None, "HDF5") from error
     with file:
         try:
             top = Group(file, name)
@@ -264,18 +266,22 @@ def read(path: str | os.PathLike[str], truth: bool = True) -> Recording:
                 origin_ns=top.attribute("origin_ns", int, 0), tumble_version=top.attribute("tumble_version", str, ""),
                 engine_version=top.attribute("engine_version", str, ""),
                 truth=read_truth(Group(file["truth"], name)) if seen else None)
-        except (OSError, RuntimeError, KeyError) as error:  # damaged inside
+        except (OSError, RuntimeError, KeyError) as error:  # the file is damaged
             raise TumbleError(f"{name} cannot be read: {error}", "file", name, None, "HDF5") from error
 
 
 def write(path: str | os.PathLike[str], recording: Recording, truth: bool = True) -> None:
-    """Writes a recording as HDF5, which the program takes wherever it takes one: what was read and not changed is in the file again,
-    and estimates have the same scores against its truth. truth=False: what an estimator may see alone.
+    """Writes a recording as HDF5, which the program accepts like its own recordings. truth=False: only the data that an estimator may use.
 
-    Sensors that were changed have to keep as many samples and points as their truth, or it has no rows. The digests that the program
-    writes, which would show damage, are left out. Written beside its place and renamed. TumbleError `shape` where arrays do not fit
-    together, `type` for times that are no integers and numbers that are complex or masked, `time_order` for times that do not rise,
-    `out_of_range` for what the program would refuse to read: a range below 0, a T_BI that is no pose, whole numbers that the file's type does not hold.
+    Data that were read and not changed are written without loss, so scores against the ground truth are the same. If samples or points
+    are added or removed, the truth of that sensor must have the same number of rows, or none. The digests that the program writes are
+    omitted, so the program cannot detect damage to the file. The file is written under a temporary name and then renamed.
+
+    Raises TumbleError:
+    shape          arrays that do not fit together
+    type           times that are not integers; complex or masked numbers
+    time_order     times that do not increase
+    out_of_range   values that the program rejects: a range below 0, a T_BI that is not a pose, integers beyond the file's type
     """
     h5py = optional("h5py", "files")
     having("recording", recording, "a Recording", "imus", "lidars", "series", "truth")
@@ -300,7 +306,7 @@ def write(path: str | os.PathLike[str], recording: Recording, truth: bool = True
             _write_imu(imus.create_group(str(k)), imu)
         for k, lidar in enumerate(recording.lidars):
             _write_lidar(lidars.create_group(str(k)), lidar)
-        if recording.series:  # files of recordings without are as they were
+        if recording.series:  # a recording without other sensors has no such group
             others = sensors.create_group("series")
             for k, series in enumerate(recording.series):
                 _write_series(others.create_group(str(k)), series)
@@ -310,7 +316,7 @@ def write(path: str | os.PathLike[str], recording: Recording, truth: bool = True
 
 
 def _require_sound(recording: Recording) -> None:
-    """Refuses what the program refuses to read (scenarios/recordings/recording_check.cpp), but for lengths and types (`put`)."""
+    """Raises the errors of the program's reader (scenarios/recordings/recording_check.cpp), except for lengths and types (see `put`)."""
     for name in ("sphere_radius_m", "gravity_m_s2"):
         number_from(name, getattr(recording, name), 0.0)
     whole("seed", recording.seed, 0, 2**64 - 1)
@@ -345,7 +351,7 @@ def _require_sound(recording: Recording) -> None:
 def _require_times(field: str, given: Any) -> None:
     times = unmasked(field, given)
     if times.ndim != 1 or times.dtype.kind not in "iu":
-        return  # `put` says so
+        return  # `put` reports this error
     rising(field, times)
     for number in times[[0, -1]] if len(times) else ():
         whole(field, number, -_TIME_MAX_NS, _TIME_MAX_NS)

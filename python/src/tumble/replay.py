@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Whole recordings through the estimators, in one call each."""
+"""Runs estimators over whole recordings, in one call each."""
 from __future__ import annotations
 
 from collections.abc import Callable
@@ -13,7 +13,7 @@ from .checks import having
 from .errors import TumbleError
 from .recordings import Imu, Recording
 
-#: The box of the rig's own returns, in axes of its lidar.
+#: Box in lidar axes whose returns belong to the rig: smallest and largest corner.
 RIG_BODY_L = ((-0.5, -0.4, -0.27), (0.5, 0.4, 0.23))
 
 
@@ -22,7 +22,7 @@ def _require_imu(imu: Any) -> None:
 
 
 def sheet_of(imu: Imu) -> _tumble.ImuSheet:
-    """What a recording states of an IMU; where it says nothing of a noise the library's number stands."""
+    """Returns the data sheet of an IMU from the recording. A noise density that is not stated has the library's default."""
     _require_imu(imu)
     numbers = {"gyro_range_rad_s": imu.gyro_range_rad_s, "accel_range_m_s2": imu.accel_range_m_s2}
     period_ns = imu.period_ns or (float(np.median(np.diff(imu.time_ns))) if len(imu) > 1 else 0.0)
@@ -35,11 +35,12 @@ def sheet_of(imu: Imu) -> _tumble.ImuSheet:
 
 
 def rate(imu: Imu, gravity_m_s2: float = 9.80665, live: bool = False, **options: Any) -> _tumble.Rates:
-    """Angular velocity through saturation, one per sample of a recording, with what the recording states of its IMU (lever arm,
-    ranges, noise): RegimeSmoother, as the program's `rate/tumble` of a recording with one IMU.
+    """Estimates angular velocity through gyro saturation, one per sample, with the IMU's lever arm, ranges and noise from the recording.
 
-    live      RegimeStream instead, which looks 0.2 s ahead (lag_s) and not over the whole: `rate/tumble_lag`
-    options   keywords of these; they count before what the recording states
+    Uses RegimeSmoother. The result equals the program's `rate/tumble` for a recording with one IMU.
+
+    live      uses RegimeStream, which looks only 0.2 s ahead (lag_s): the program's `rate/tumble_lag`
+    options   keywords of these classes; they override the values of the recording
     """
     _require_imu(imu)
     stated: dict[str, Any] = {
@@ -66,17 +67,17 @@ def _require_recording(recording: Any) -> None:
 
 @dataclass
 class Tumble:
-    """A tumble as TumblingOdometry saw it."""
+    """Results of TumblingOdometry for one recording."""
 
-    poses: _tumble.Poses  #: of the IMU, at its samples inside of sweeps: each sweep's last word
-    sweeps: list[_tumble.SweepReport]  #: of those that have a place, as they were registered
-    refused: list[str]  #: what was wrong with the others
-    map: _tumble.MapPoints
-    odometry: _tumble.TumblingOdometry  #: what it has learnt: rig(), calibration()
+    poses: _tumble.Poses  #: final (smoothed) poses of the IMU, at its samples within sweeps
+    sweeps: list[_tumble.SweepReport]  #: reports of the sweeps that have poses, in order of registration
+    refused: list[str]  #: error messages of the other sweeps
+    map: _tumble.MapPoints  #: map within mapping_map_radius_m of the sensor
+    odometry: _tumble.TumblingOdometry  #: the estimator, with its calibration: rig(), calibration()
 
 
 def tumbling_options(recording: Recording, **options: Any) -> dict[str, Any]:
-    """Keywords of TumblingOdometry from what a recording states; `options` count before them."""
+    """Returns the keywords of TumblingOdometry from a recording. `options` override the values of the recording."""
     _require_recording(recording)
     imu = recording.first_imu
     stated: dict[str, Any] = {"imu": sheet_of(imu), "lever_arm_m": imu.lever_arm_m, "T_IL": recording.T_IL,
@@ -87,11 +88,13 @@ def tumbling_options(recording: Recording, **options: Any) -> dict[str, Any]:
 
 
 def tumbling(recording: Recording, on_sample: Callable[[_tumble.TumblingOdometry], None] | None = None, **options: Any) -> Tumble:
-    """Pose, velocity and map of a body that tumbles, as a robot lives through it: each sample when its window ends, each sweep when
-    its last point was fired (the program's `slam/tumble_lag`). The first IMU and the first lidar count.
+    """Estimates pose, velocity and map of a tumbling body with the first IMU and the first lidar of a recording.
 
-    on_sample   is called after each sample, with the odometry: newest() has the live pose
-    options     keywords of TumblingOdometry; they count before what the recording states
+    The data are added in the order of a live robot: each sample at the end of its window, each sweep after its last point. This is the
+    program's `slam/tumble_lag`.
+
+    on_sample   is called after each sample with the odometry, whose newest() returns the live pose
+    options     keywords of TumblingOdometry; they override the values of the recording
     """
     odometry = _tumble.TumblingOdometry(**tumbling_options(recording, **options))
     imu, lidar = recording.imus[0], recording.sweeps
@@ -116,7 +119,7 @@ def tumbling(recording: Recording, on_sample: Callable[[_tumble.TumblingOdometry
     for sweep in lidar:
         reached = int(np.searchsorted(imu.time_ns, sweep.end_ns, side="left"))
         if reached == len(imu):
-            break  # the IMU ends before
+            break  # the IMU samples end before this sweep does
         if reached >= given:
             add_until(reached + 1)
         odometry.add_sweep(sweep.start_ns, sweep.end_ns, sweep.position, sweep.offset_ns, sweep.ring, sweep.intensity)
@@ -126,16 +129,17 @@ def tumbling(recording: Recording, on_sample: Callable[[_tumble.TumblingOdometry
     odometry.finish()
     done += odometry.take_all()
     placed = [sweep.report for sweep in done if sweep.placed]
-    words = [report.smoothed for report in placed if len(report.smoothed) > 0]
-    return Tumble(poses=_tumble.Poses.joined([*words, odometry.window_trajectory()]), sweeps=placed,
+    final = [report.smoothed for report in placed if len(report.smoothed) > 0]
+    return Tumble(poses=_tumble.Poses.joined([*final, odometry.window_trajectory()]), sweeps=placed,
                   refused=[sweep.message for sweep in done if not sweep.placed], map=odometry.map(), odometry=odometry)
 
 
 def rolling(recording: Recording, **options: Any) -> _tumble.RollingPoses:
-    """Poses of a rolling sphere's centre from all its IMUs (but one named imu_reference), with RollingOdometry: live ones, or with
-    lag_s=SECONDS smoothed with what follows. All IMUs have to be read at the same times.
+    """Estimates poses of the centre of a rolling sphere with RollingOdometry: live, or smoothed with lag_s=SECONDS.
 
-    options: keywords of RollingOdometry; they count before what the recording states.
+    Uses the first four IMUs, except one named imu_reference. All IMUs must have the same sample times.
+
+    options: keywords of RollingOdometry; they override the values of the recording.
     """
     _require_recording(recording)
     imus = [recording.first_imu, *(imu for imu in recording.imus[1:] if imu.name != "imu_reference")][:4]

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""What truly happened in a recording: the group `truth` of its file (scenarios/recordings/FORMAT.md), whole."""
+"""Ground truth of a recording: the group `truth` of its file (scenarios/recordings/FORMAT.md)."""
 from __future__ import annotations
 
 from collections.abc import Sequence
@@ -16,47 +16,49 @@ Array = npt.NDArray[Any]
 
 
 def _none(dtype: str, *columns: int) -> Any:
-    """A member that has no rows unless some are given."""
+    """Returns a dataclass field whose default is an array without rows."""
     return field(default_factory=lambda: np.zeros((0, *columns), dtype))
 
 
 @dataclass
 class ImuTruth:
-    """What one IMU would have said, N as it has samples or 0 where it is not known; a reading that differs from the unclipped one is
-    what a rail took. Of a real recording the rates alone may be there."""
+    """Ground truth of one IMU. N is the number of its samples, or 0 if unknown.
+
+    A reading that differs from the unclipped reading was clipped. A real recording may have the rates only.
+    """
 
     name: str = ""
     T_BI: Array = field(default_factory=lambda: np.eye(4))  #: (4, 4), true mounting
-    rate: Array = _none("f8", 3)  #: (N, 3), rad/s: the exact mean over each sample's window, IMU axes
-    specific_force: Array = _none("f8", 3)  #: (N, 3), m/s^2: likewise
-    gyro_unclipped: Array = _none("f8", 3)  #: (N, 3), rad/s: the reading with all errors but the rail
+    rate: Array = _none("f8", 3)  #: (N, 3), rad/s: exact mean over the window of each sample, IMU axes
+    specific_force: Array = _none("f8", 3)  #: (N, 3), m/s^2: same
+    gyro_unclipped: Array = _none("f8", 3)  #: (N, 3), rad/s: the reading with all errors except clipping
     accel_unclipped: Array = _none("f8", 3)  #: (N, 3), m/s^2
-    gyro_bias: Array = _none("f8", 3)  #: (N, 3), rad/s, in force at each sample
+    gyro_bias: Array = _none("f8", 3)  #: (N, 3), rad/s, at each sample
     accel_bias: Array = _none("f8", 3)  #: (N, 3), m/s^2
-    gyro_elements: Array | None = None  #: (3, 3), row i: what element i makes of the reading's axes; None: upright
-    gyro_element_offset_rad_s: Array | None = None  #: (3,), taken off after the rail
-    accel_elements: Array | None = None  #: (3, 3), likewise
+    gyro_elements: Array | None = None  #: (3, 3), row i: sensitivity of element i to the axes of the reading; None: aligned with the axes
+    gyro_element_offset_rad_s: Array | None = None  #: (3,), subtracted after clipping
+    accel_elements: Array | None = None  #: (3, 3), same for the accelerometer
     accel_element_offset_m_s2: Array | None = None  #: (3,)
     magnetic_field_t: Array | None = None  #: (N, 3), T: true mean over the window
 
 
 @dataclass
 class LidarTruth:
-    """Where the returns of a lidar truly lie; P as it has points, or 0 where it is not known."""
+    """True positions of the returns of a lidar. P is the number of its points, or 0 if unknown."""
 
     name: str = ""
     T_BL: Array = field(default_factory=lambda: np.eye(4))  #: (4, 4), true mounting
     hit: Array = _none("f4", 3)  #: (P, 3) float32, m, W
-    surface_id: Array = _none("i4")  #: (P,) int32, into Truth.surfaces; -1 unknown, -2 the robot's own cage
+    surface_id: Array = _none("i4")  #: (P,) int32, index into Truth.surfaces; -1: unknown, -2: cage of the robot
 
 
 @dataclass
 class SeriesTruth:
-    """What a sensor of a Series would have said without any error."""
+    """True values of the sensor of a Series."""
 
     name: str = ""
     T_BX: Array = field(default_factory=lambda: np.eye(4))  #: (4, 4), true mounting
-    values: dict[str, Array] = field(default_factory=dict)  #: by quantity: (N,), exact means; N as it has samples, or 0; {}: not known
+    values: dict[str, Array] = field(default_factory=dict)  #: by quantity: (N,), exact means; N is the number of samples, or 0; {}: unknown
     units: dict[str, str] = field(default_factory=dict)  #: by quantity
 
     def __getitem__(self, quantity: str) -> Array:
@@ -65,14 +67,14 @@ class SeriesTruth:
 
 @dataclass
 class Contacts:
-    """Contacts in order of time, several or none per step of the physics."""
+    """Contacts in order of time. A simulation step may have several contacts or none."""
 
     time_ns: Array = _none("i8")  #: (C,) int64
     point: Array = _none("f8", 3)  #: (C, 3), m, W
     normal: Array = _none("f8", 3)  #: (C, 3), W, into the robot
-    slip_velocity: Array = _none("f8", 3)  #: (C, 3), m/s, W, of the robot's material point, tangential
+    slip_velocity: Array = _none("f8", 3)  #: (C, 3), m/s, W, tangential velocity of the robot's point in contact
     normal_force_n: Array = _none("f8")  #: (C,)
-    surface_id: Array = _none("i4")  #: (C,) int32, into Truth.surfaces; -1 unknown
+    surface_id: Array = _none("i4")  #: (C,) int32, index into Truth.surfaces; -1: unknown
 
     def __len__(self) -> int:
         return len(self.time_ns)
@@ -80,21 +82,23 @@ class Contacts:
 
 @dataclass
 class Truth:
-    """What truly happened, at equal steps of period_ns from time 0; of a real recording what another instrument saw: not a number
-    where it saw nothing."""
+    """Ground truth in steps of period_ns from time 0.
+
+    For a real recording, the measurements of a reference instrument; NaN at times without a measurement.
+    """
 
     period_ns: int
     position: Array  #: (N, 3), m: centre of mass in W
     quaternion: Array  #: (N, 4), x y z w, body to world
     velocity: Array  #: (N, 3), m/s
     rate: Array  #: (N, 3), rad/s, of the body in W, body axes
-    label: Array = _none("u1")  #: (N,) uint8: 0 air, 1 grip, 2 slip, 3 slide; no row where it is not known
-    p_BG_m: Array = field(default_factory=lambda: np.zeros(3))  #: (3,), geometric centre in the body
+    label: Array = _none("u1")  #: (N,) uint8: 0 air, 1 grip, 2 slip, 3 slide; no rows if unknown
+    p_BG_m: Array = field(default_factory=lambda: np.zeros(3))  #: (3,), geometric centre in body axes
     imus: list[ImuTruth] = field(default_factory=list)  #: one for each IMU of the recording
     lidars: list[LidarTruth] = field(default_factory=list)  #: one for each lidar
-    specific_force: Array = _none("f8", 3)  #: (N, 3), m/s^2, at the centre of mass, body axes; no row where it is not known
+    specific_force: Array = _none("f8", 3)  #: (N, 3), m/s^2, at the centre of mass, body axes; no rows if unknown
     contacts: Contacts = field(default_factory=Contacts)
-    surfaces: list[str] = field(default_factory=list)  #: names by surface_id
+    surfaces: list[str] = field(default_factory=list)  #: names of surfaces, indexed by surface_id
     series: list[SeriesTruth] = field(default_factory=list)  #: one for each series
 
     @property
@@ -104,7 +108,7 @@ class Truth:
 
     @property
     def imu_rate(self) -> list[Array]:
-        """Per IMU: (M, 3), rad/s, the exact mean rate over each sample's window, IMU axes."""
+        """Per IMU: (M, 3), rad/s, exact mean rate over the window of each sample, IMU axes."""
         return [imu.rate for imu in self.imus]
 
     @property
@@ -115,24 +119,24 @@ class Truth:
 
 @dataclass(frozen=True)
 class _Rows:
-    """A dataset of the file and the member that holds it: all that reading and writing know of it, so that neither forgets one."""
+    """A dataset of the file and its dataclass member. Reading and writing share this list, so that they cover the same datasets."""
 
     name: str
     member: str
     dtype: str
     unit: str
     columns: str = XYZ
-    like: str = ""  #: the member, or `sensor`, that has as many rows; `one` (a vector), `three`; "": any number
-    or_none: bool = False  #: or no row at all, where it is not known
-    left_out: bool = False  #: where the member is None
+    like: str = ""  #: member, or `sensor`, with the same number of rows; `one` (a vector), `three`; "": any number
+    or_none: bool = False  #: whether it may have no rows because it is unknown
+    left_out: bool = False  #: whether the dataset is omitted if the member is None
 
     @property
     def shape(self) -> tuple[int, ...]:
-        """Of a row."""
+        """Shape of a row."""
         return (len(self.columns.split()),) if self.columns else ()
 
     def count(self, record: Any, sensor: int | None) -> int | None:
-        """How many rows there must be; None: any number. sensor: how many samples or points it has, where that is known."""
+        """Returns the required number of rows; None: any number. sensor: number of samples or points of the sensor, if known."""
         if not self.like or (self.or_none and len(getattr(record, self.member)) == 0):
             return len(getattr(record, self.member))
         fixed = {"one": 1, "three": 3, "sensor": sensor}
@@ -184,14 +188,14 @@ def _write_rows(group: Any, listed: Sequence[_Rows], record: Any, sensor: int | 
             continue
         rows = np.asarray(rows)[None] if each.like == "one" else np.atleast_1d(rows)
         count = each.count(record, sensor)
-        assert count is not None, "of a list with rows like the sensor's, whose number is given"
+        assert count is not None, "datasets with one row per sample need the number of samples"
         put(group, each.name, rows, each.dtype, each.unit, (count, *each.shape), each.columns, many=each.like not in ("one", "three"))
 
 
 def require_quantity(place: str, name: str) -> None:
-    """TumbleError `out_of_range` for what is no name of a quantity: letters, digits and _, at least one."""
+    """Raises TumbleError `out_of_range` unless `name` has only letters, digits and _, at least one."""
     if not (isinstance(name, str) and name.isascii() and name.replace("_", "a").isalnum()):
-        raise TumbleError(f"{place} has a quantity {name!r}, must be letters, digits and _, at least one", "out_of_range", place, name, "a-z A-Z 0-9 _")
+        raise TumbleError(f"{place} has a quantity {name!r}, must have only letters, digits and _, at least one", "out_of_range", place, name, "a-z A-Z 0-9 _")
 
 
 def _read_series(group: Group) -> SeriesTruth:
@@ -213,7 +217,7 @@ def _write_series(group: Any, series: SeriesTruth, samples: int, place: str) -> 
 
 
 def read_truth(group: Group) -> Truth:
-    """Of the group `truth`."""
+    """Reads the group `truth`."""
     imus = [_read_rows(each, _IMU, ImuTruth, name=each.attribute("name", str), T_BI=each.rows("T_BI", "f8", (4,)))
             for each in group.members("imus")]
     lidars = [_read_rows(each, _LIDAR, LidarTruth, name=each.attribute("name", str), T_BL=each.rows("T_BL", "f8", (4,)))
@@ -225,11 +229,14 @@ def read_truth(group: Group) -> Truth:
 
 
 def write_truth(group: Any, truth: Truth, samples: Sequence[int], points: Sequence[int], readings: Sequence[int] = ()) -> None:
-    """Into the group `truth`. samples, points, readings: how many each IMU, lidar and series of the recording has. TumbleError `shape`, `type`,
-    `out_of_range` as of the sensors."""
+    """Writes the group `truth`.
+
+    samples, points, readings: number of rows of each IMU, lidar and series of the recording. Raises TumbleError `shape`, `type` or
+    `out_of_range`, as for the sensors.
+    """
     for name, records, counts in (("imus", truth.imus, samples), ("lidars", truth.lidars, points), ("series", truth.series, readings)):
         if len(records) != len(counts):
-            raise TumbleError(f"truth.{name} is {len(records)}, must be {len(counts)}: one for each that the recording has", "shape",
+            raise TumbleError(f"truth.{name} is {len(records)}, must be {len(counts)}: one for each sensor of the recording", "shape",
                               f"truth.{name}", len(records), len(counts))
     group.attrs["period_ns"] = np.int64(truth.period_ns)
     _write_rows(group, _BODY, truth)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Sweeps of a recording as evalio's clouds: dense, row by row, each point with its time."""
+"""Conversion of a recording's sweeps to evalio's dense clouds: row by row, with a time per point."""
 from __future__ import annotations
 
 from typing import Any
@@ -17,7 +17,7 @@ from evalio._cpp import helpers  # noqa: E402
 
 Array = npt.NDArray[Any]
 
-#: evalio's clock begins at 0 and has no sign: ours begins here.
+#: Offset that is added to all times, because evalio's clock is unsigned.
 ORIGIN_NS = 1_000_000_000_000
 
 _POINT = np.dtype([("x", "f4"), ("y", "f4"), ("z", "f4"), ("intensity", "f4"), ("t", "u4"), ("range", "u4"), ("ring", "u2")])
@@ -29,8 +29,8 @@ def stamp(time_ns: int) -> types.Stamp:
 
 
 class Grid:
-    """How the returns of a lidar lie in rows (rings) and columns. Where its rings fire in a fixed sequence a column is one sequence;
-    else the returns of a ring stand in its columns one after the other."""
+    """Assigns the returns of a lidar to rows (rings) and columns. If the rings fire in a fixed sequence, a column is one sequence.
+    Otherwise the returns of a ring fill its columns in order."""
 
     def __init__(self, lidar: Lidar) -> None:
         ring, offset = np.asarray(lidar.ring).astype(np.int64), lidar.offset_ns.astype(np.int64)
@@ -45,10 +45,10 @@ class Grid:
         self.columns = max(1, columns if fixed else longest)
         for name, value, bound in (("rings", self.rows, 256), ("columns", self.columns, 65_536)):
             if value > bound:
-                raise TumbleError(f"{name} is {value}, must be {bound} at most: evalio's points hold no more", "out_of_range", name, value, bound)
+                raise TumbleError(f"{name} is {value}, must be at most {bound}, the limit of evalio's points", "out_of_range", name, value, bound)
 
     def cells(self, ring: Array, offset_ns: Array) -> Array:
-        """(rows, columns): index of the return in each cell, -1 where there is none."""
+        """Returns an array (rows, columns) with the index of the return in each cell, or -1 for an empty cell."""
         if self.sequence_ns:
             column = offset_ns.astype(np.int64) // self.sequence_ns
         else:
@@ -62,8 +62,10 @@ class Grid:
 
 
 def measurement(sweep: Sweep, grid: Grid, own_body_L: Any = None) -> types.LidarMeasurement:
-    """A dense cloud, row by row as evalio has them; cells without a return are 0. Converted by evalio, from the bytes.
-    own_body_L (2, 3): returns inside are left out."""
+    """Converts a sweep to a dense cloud, row by row; cells without a return are 0. evalio converts it from bytes.
+
+    own_body_L (2, 3): smallest and largest corner of a box; returns within the box are skipped.
+    """
     kept = np.ones(len(sweep.position), bool)
     if own_body_L is not None:
         kept = ~np.all((sweep.position > np.float32(own_body_L[0])) & (sweep.position < np.float32(own_body_L[1])), axis=1)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""evalio and the compiled half, which are no requirements of the package."""
+"""Import of evalio and of the compiled part, which are optional dependencies."""
 from __future__ import annotations
 
 import importlib
@@ -13,7 +13,7 @@ def _trouble(message: str, found: Any, bound: str) -> TumbleError:
 
 
 def needed_evalio() -> Any:
-    """The module evalio. TumbleError `evalio` where it is missing."""
+    """Returns the module evalio. Raises TumbleError `evalio` if it is missing."""
     try:
         return importlib.import_module("evalio")
     except ModuleNotFoundError as error:
@@ -21,7 +21,7 @@ def needed_evalio() -> Any:
 
 
 def needed_bindings() -> Any:
-    """The module tumble_evalio. TumbleError `evalio` where it is missing, or was compiled for another evalio."""
+    """Returns the module tumble_evalio. Raises TumbleError `evalio` if it is missing or was compiled for another evalio."""
     tag = needed_evalio()._abi_tag()
     try:
         bindings = importlib.import_module("tumble_evalio")
@@ -29,5 +29,5 @@ def needed_bindings() -> Any:
     except ModuleNotFoundError as error:
         raise _trouble("this needs tumble-evalio: pip install ./python/evalio", None, "tumble-evalio") from error
     except (ImportError, RuntimeError) as error:
-        raise _trouble(f"tumble-evalio does not go with the evalio that is here: {error}", tag, "the ABI of tumble-evalio") from error
+        raise _trouble(f"tumble-evalio is not compatible with the installed evalio: {error}", tag, "the ABI of tumble-evalio") from error
     return bindings

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Poses to evalio and from it."""
+"""Conversion of poses to and from evalio."""
 from __future__ import annotations
 
 import os
@@ -25,10 +25,12 @@ def pose(T: Array) -> types.SE3:
 
 
 def read_poses(path: str | os.PathLike[str], imu: Imu | None = None) -> Trajectory:
-    """Poses of the IMU from a file of `evalio run` on this data set, with times of the recording: what `write_tum` and `score` take.
+    """Reads poses of the IMU from a file that `evalio run` wrote for this data set. Times are those of the recording. `write_tum` and
+    `score` accept the result.
 
-    imu: of the recording, at rest for its first second: the whole way is turned so that the first pose is level as its specific force
-    says, with the yaw that it has. For pipelines whose world is their first pose. Ours is level by itself.
+    imu: IMU of the recording, stationary for its first second. If given, the whole trajectory is rotated so that roll and pitch of the
+    first pose agree with the measured gravity; the yaw is unchanged. Use it for pipelines whose world frame is their first pose. The
+    pipeline `tumble` already has a level world frame.
     """
     out = read_tum(path, separator=",")
     out.time_ns = out.time_ns - ORIGIN_NS
@@ -42,12 +44,12 @@ def read_poses(path: str | os.PathLike[str], imu: Imu | None = None) -> Trajecto
 
 
 def _turning(up: Array) -> Array:
-    """The smallest turn that takes a unit vector to z: a quaternion."""
+    """Returns the smallest rotation that maps a unit vector to z, as a quaternion."""
     half = np.array([up[1], -up[0], 0.0, 1.0 + up[2]])
     return half / np.linalg.norm(half) if np.linalg.norm(half) > 1e-9 else np.array([1.0, 0.0, 0.0, 0.0])
 
 
 def _product(p: Array, q: Array) -> Array:
-    """Of a quaternion with each of (N, 4), x y z w."""
+    """Multiplies a quaternion by each row of (N, 4), x y z w."""
     vector = p[3] * q[:, :3] + q[:, 3:] * p[:3] + np.cross(p[:3], q[:, :3])
     return np.concatenate([vector, p[3] * q[:, 3:] - q[:, :3] @ p[:3, None]], axis=1)

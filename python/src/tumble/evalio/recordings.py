@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Recordings of this harness as a data set of evalio."""
+"""Recordings of this project as an evalio data set."""
 from __future__ import annotations
 
 import os
@@ -24,22 +24,22 @@ needed_evalio()
 from evalio import types  # noqa: E402
 from evalio.datasets import Dataset, RawDataIter  # noqa: E402
 
-#: Scenarios of the rig with a lidar, all of them (tests/architecture/registration_test.cpp).
+#: All scenarios of the rig with a lidar (checked by tests/architecture/registration_test.cpp).
 SCENARIOS = ("hill", "scree", "forest", "stairs", "cliff", "bare", "throw", "drop", "stroll", "hill_upright", "hill_consumer")
 
 
 def seeds() -> range:
-    """$TUMBLE_EVALIO_SEEDS, "1..8" where it is not set: draws of each scenario that the data set lists."""
+    """Returns the seeds of each scenario that the data set lists: $TUMBLE_EVALIO_SEEDS, by default "1..8"."""
     text = os.environ.get("TUMBLE_EVALIO_SEEDS", "1..8")
     first, dots, last = text.partition("..")
     if not (dots and first.isdigit() and last.isdigit() and 0 <= int(last) - int(first) < 10_000):
-        raise TumbleError(f"TUMBLE_EVALIO_SEEDS is '{text}', must be FIRST..LAST, 10000 draws at most", "out_of_range",
+        raise TumbleError(f"TUMBLE_EVALIO_SEEDS is '{text}', must be FIRST..LAST with at most 10000 draws", "out_of_range",
                           "TUMBLE_EVALIO_SEEDS", text, "FIRST..LAST")
     return range(int(first), int(last) + 1)
 
 
 def files() -> dict[str, pathlib.Path]:
-    """Recordings named by $TUMBLE_EVALIO_FILES (files HDF5, separated as in PATH), by the names of their files."""
+    """Returns the recordings listed in $TUMBLE_EVALIO_FILES (HDF5 files, separated as in PATH), by file name."""
     named = [pathlib.Path(each) for each in os.environ.get("TUMBLE_EVALIO_FILES", "").split(os.pathsep) if each]
     out = {path.stem: path for path in named}
     for path in named:
@@ -64,7 +64,7 @@ def _draws() -> dict[str, tuple[str, int]]:
 
 
 class _Sequences(Dataset):
-    """What each sequence of Recordings does."""
+    """Behaviour of each sequence of Recordings."""
 
     @classmethod
     def dataset_name(cls) -> str:
@@ -97,11 +97,11 @@ class _Sequences(Dataset):
         record(scenario, self.path, seed=seed)
 
     def recording(self) -> Recording:
-        """TumbleError for one without an IMU or a lidar."""
+        """Reads the recording. Raises TumbleError if it has no IMU or no lidar."""
         out = read(self.path)
         for name in ("imus", "lidars"):
             if not getattr(out, name):
-                raise TumbleError(f"{self.path} has no {name}, must have one at least", "empty", name, 0, 1)
+                raise TumbleError(f"{self.path} has no {name}, must have at least one", "empty", name, 0, 1)
         return out
 
     def quick_len(self) -> int | None:
@@ -133,14 +133,14 @@ class _Sequences(Dataset):
         return pose(np.eye(4) if truth is None else np.linalg.inv(truth.imu_T_BI[0]))
 
     def imu_params(self) -> types.ImuParams:
-        """What the recording states; of a draw that is not there yet what the data sheet of the rig's IMU says."""
+        """Parameters stated by the recording. If it is not simulated yet, those of the data sheet of the rig's IMU."""
         if not self.path.exists():
             return _imu_params(sheets.mti30(), 9.80665, "mti30")
         recording = self.recording()
         return _imu_params(sheet_of(recording.imus[0]), recording.gravity_m_s2, recording.imus[0].device)
 
     def lidar_params(self) -> types.LidarParams:
-        """As imu_params. The ranges are those of the device's sheet, where the package has it."""
+        """As imu_params. The ranges are those of the device's data sheet, if the package has it."""
         if not self.path.exists():
             return _lidar_params(16, 2000, 10.0, "rs16")
         lidar = self.recording().sweeps
@@ -149,7 +149,7 @@ class _Sequences(Dataset):
 
 
 def _lacks(path: pathlib.Path) -> str:
-    """Why evalio can do nothing with a file, "" where it can."""
+    """Returns why evalio cannot use a file, or "" if it can."""
     try:
         with optional("h5py", "files").File(path, "r") as file:
             return " and ".join(f"no {kind}" for kind in ("imus", "lidars") if not file.get(f"sensors/{kind}"))
@@ -158,11 +158,11 @@ def _lacks(path: pathlib.Path) -> str:
 
 
 def _fit(named: dict[str, pathlib.Path]) -> dict[str, pathlib.Path]:
-    """Those that are recordings with an IMU and a lidar: one that is none, and is named in a warning, does not spoil the list."""
+    """Returns the files that are recordings with an IMU and a lidar. Warns about each other file and skips it."""
     out = {}
     for name, path in named.items():
         if lacks := _lacks(path):
-            warnings.warn(f"TUMBLE_EVALIO_FILES: {path} is left out: it has {lacks}", stacklevel=2)
+            warnings.warn(f"TUMBLE_EVALIO_FILES: {path} is skipped: it has {lacks}", stacklevel=2)
         else:
             out[name] = path
     return out
@@ -171,12 +171,12 @@ def _fit(named: dict[str, pathlib.Path]) -> dict[str, pathlib.Path]:
 def _sequences() -> dict[str, str]:
     draws, named = _draws(), files()
     if both := sorted(draws.keys() & named.keys()):
-        raise TumbleError(f"TUMBLE_EVALIO_FILES has a file named {both[0]}, must be named as no draw of a scenario", "file",
+        raise TumbleError(f"TUMBLE_EVALIO_FILES has a file named {both[0]}, must not have the name of a draw", "file",
                           "TUMBLE_EVALIO_FILES", both[0], "another name")
     return {name: name for name in [*draws, *_fit(named)]}
 
 
-Recordings = _Sequences("Recordings", _sequences(), module=__name__)  # type: ignore[call-arg]  # an enumeration that is made
+Recordings = _Sequences("Recordings", _sequences(), module=__name__)  # type: ignore[call-arg]  # an enumeration created at run time
 Recordings.__doc__ = """Draws of the rig's scenarios, `hill_1` and so on (`$TUMBLE_EVALIO_SEEDS`), and the HDF5 files of `$TUMBLE_EVALIO_FILES`,
-each by its name. `evalio dl tumble/hill_1` simulates a draw with the program, into evalio's folder of data. The truth is the body's, with
-its exact mounting. What the rig's lidar sees of the rig itself is left out."""
+by name. `evalio dl tumble/hill_1` simulates a draw with the program and stores it in evalio's data folder. The ground truth is that of
+the body, with the exact mounting. Returns of the lidar from the rig itself are removed."""
