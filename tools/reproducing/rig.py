@@ -315,7 +315,7 @@ the published method and ours on the same recordings. The published methods run 
 - *published*: `rate/saave` and `slam/published`. *ours*: `rate/tumble`, `slam/tumble` on the whole recording, and
   `rate/tumble_lag`, `slam/tumble_lag` with a fixed lag.
 - *published, threshold 10.0 rad/s*: the same methods with `{threshold}`. The default of 10.45 rad/s fits a device
-  whose rails are at 10.5 rad/s, as in the paper. Each of our draws has a device of its own, whose rails differ by about 1 %.
+  whose rails are at 10.5 rad/s, as in the paper. Each of our draws has its own device, whose rails differ by about 1 %.
   {unseen} of the clipped samples do not exceed 10.45 rad/s on any axis, and the published method leaves them as they are.
 - A draw on which a method failed counts as the largest error, with overlap 0 and a failed map.
 
